@@ -1,0 +1,1 @@
+"""What the robot can do by itself: the repertoire of actions, and the policies that scripted teachers consult."""

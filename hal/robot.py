@@ -1,0 +1,69 @@
+"""What the runtime knows of any robot: what it senses, what it can be told, and who answers for it."""
+
+from typing import NamedTuple, Protocol
+
+
+class WheelSpeeds(NamedTuple):
+    """Set points of the two sides in metres per second, forward positive.
+
+    A named tuple, not a dataclass: several are made in every tick, and a frozen dataclass costs four times as much.
+    """
+
+    left_m_s: float
+    right_m_s: float
+
+
+STANDSTILL = WheelSpeeds(0.0, 0.0)
+
+
+class Senses(NamedTuple):
+    """What the robot sensed, newest value of each channel, as seen at `time_s`."""
+
+    time_s: float
+    """Time of the tick on the runtime's clock."""
+    infrared_counts: tuple[int, ...]
+    """One raw count per sensor, in the order of the robot's sensor table (s1 first); 0 before the first frame."""
+    infrared_age_s: float
+    """Age of the oldest of the infra-red frames; infinite while one of them never came."""
+    encoder_left_ticks: int
+    """Ticks of the left side since the previous Senses, forward positive."""
+    encoder_right_ticks: int
+    encoder_age_s: float
+    """Age of the newest ENCODER frame; infinite before the first."""
+    bumpers: int
+    """Bit n set: bumper n of the robot's table is pressed."""
+
+
+class Grant(NamedTuple):
+    """What the guard let through."""
+
+    wheel_speeds: WheelSpeeds
+    """Set points that stand in the CONTROL frame of this tick."""
+    reasons: tuple[str, ...]
+    """Why they differ from what was asked for, in the guard's words; empty when they do not."""
+    latched: bool
+    """True while the robot stays stopped until `release` is called (emergency stop, ticks ceased, bus lost)."""
+
+
+class Robot(Protocol):
+    """A robot that the runtime can sense and drive. Every set point passes a guard inside."""
+
+    def sense(self, now_s: float) -> Senses:
+        """Take everything that arrived, without waiting, and return the newest values."""
+        ...
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+        """Ask for wheel speeds; what is safe goes out in this tick's CONTROL frame."""
+        ...
+
+    def emergency_stop(self, reason: str) -> None:
+        """Brake now and stay stopped until `release`."""
+        ...
+
+    def release(self) -> None:
+        """End a latched stop; the robot still stands until it is driven."""
+        ...
+
+    def close(self) -> None:
+        """Stop the wheels and give the bus back."""
+        ...

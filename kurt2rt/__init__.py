@@ -1,0 +1,1 @@
+"""The runtime: clock, scheduler, perception, rule-like associations, teaching and knowledge."""
