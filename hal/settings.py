@@ -76,7 +76,8 @@ def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
         return schema.model_validate_json(json.dumps(content, default=str))
     except ValidationError as error:
-        problems = error.errors(include_url=False)
+        # A misspelled key also leaves the right one missing: name the misspelling, it is what to mend.
+        problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         raise SettingsError(f"{path}: {_explain(problems[0], schema)}{more}") from error
 
@@ -85,6 +86,8 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
     key = ".".join(str(part) for part in problem["loc"]) or "(whole file)"
     if problem["type"] == "extra_forbidden":
         return f"{key}: no such key; allowed here: {', '.join(_keys_at(schema, problem['loc'][:-1]))}"
+    if problem["type"] == "missing":
+        return f"{key}: this key is missing"
     shown = repr(problem["input"])
     return f"{key}: {problem['msg']} (found {shown if len(shown) <= 60 else shown[:57] + '...'})"
 

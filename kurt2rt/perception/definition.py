@@ -1,0 +1,121 @@
+"""Schema of `config/situations/*.yaml`: which features a situation has, and the hash that knowledge is bound to."""
+
+import hashlib
+import json
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from hal.settings import Settings, SettingsError, find_config, load_settings
+
+Heading = Literal["front", "left", "right", "rear"]
+
+
+class Reading(Settings):
+    """Raw count of one sensor."""
+
+    kind: Literal["reading"]
+    sensor: str
+
+    @property
+    def name(self) -> str:
+        """Name shown to the teacher."""
+        return self.sensor
+
+
+class Extreme(Settings):
+    """Largest (nearest obstacle) or smallest count among sensors of one heading."""
+
+    kind: Literal["maximum", "minimum"]
+    heading: Heading
+    sensors: Annotated[tuple[str, ...], Field(min_length=1)]
+
+    @property
+    def name(self) -> str:
+        """Name shown to the teacher."""
+        return f"{self.kind} {self.heading}"
+
+
+class Orientation(Settings):
+    """Difference of two sensors of one heading where positive, else 0: how far the wall is from parallel."""
+
+    kind: Literal["orientation"]
+    heading: Heading
+    nearer: str
+    farther: str
+
+    @property
+    def name(self) -> str:
+        """Name shown to the teacher."""
+        return f"orientation {self.heading} {self.nearer}>{self.farther}"
+
+
+class WheelSpeed(Settings):
+    """Set point of one side of the action last driven, held while the robot waits."""
+
+    kind: Literal["wheel_speed"]
+    side: Literal["left", "right"]
+
+    @property
+    def name(self) -> str:
+        """Name shown to the teacher."""
+        return f"wheel speed {self.side}"
+
+
+Feature = Annotated[Reading | Extreme | Orientation | WheelSpeed, Field(discriminator="kind")]
+
+
+class SituationDefinition(Settings):
+    """The features of a situation; the recent values come first, then the same values averaged."""
+
+    name: str
+    history_steps: Annotated[int, Field(ge=1, le=100_000)]
+    features: Annotated[tuple[Feature, ...], Field(min_length=1)]
+    wheel_speed_counts_per_m_s: Annotated[int, Field(ge=0, le=1000)]
+    """Scale of the wheel-speed features; 0 leaves them out of every distance."""
+    recent_weight: Annotated[float, Field(ge=0, le=10)]
+    past_weight: Annotated[float, Field(ge=0, le=10)]
+
+    @property
+    def dimensions(self) -> int:
+        """Length of a situation vector: recent and averaged values."""
+        return 2 * len(self.features)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """One name per dimension, as the teacher sees them."""
+        recent = tuple(feature.name for feature in self.features)
+        return recent + tuple(f"{name} (10 s average)" for name in recent)
+
+    @property
+    def sensors_used(self) -> frozenset[str]:
+        """Sensors that any feature reads."""
+        used: set[str] = set()
+        for feature in self.features:
+            match feature:
+                case Reading():
+                    used.add(feature.sensor)
+                case Extreme():
+                    used.update(feature.sensors)
+                case Orientation():
+                    used.update((feature.nearer, feature.farther))
+                case WheelSpeed():
+                    continue
+        return frozenset(used)
+
+    def hash(self, sensors: tuple[str, ...]) -> str:
+        """Fingerprint of the definition together with the robot's sensor order; knowledge is refused under another."""
+        content = {"definition": self.model_dump(mode="json"), "sensors": list(sensors)}
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefinition:
+    """Load a definition for a robot with these sensors. Raises SettingsError, also for a sensor it does not have."""
+    path = find_config("situations", name_or_path)
+    definition = load_settings(path, SituationDefinition)
+    missing = sorted(definition.sensors_used - set(sensors))
+    if missing:
+        raise SettingsError(
+            f"{path}: features: the robot has no sensor {', '.join(missing)}; allowed: {', '.join(sensors)}"
+        )
+    return definition
