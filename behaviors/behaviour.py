@@ -1,0 +1,17 @@
+"""The contract of everything that can stand as an action in an RLA."""
+
+from typing import Protocol
+
+from hal.robot import Senses, WheelSpeeds
+
+
+class Behaviour(Protocol):
+    """An action of the repertoire. Its state is its own and begins anew with `start`."""
+
+    def start(self) -> None:
+        """Called in the tick in which this behaviour takes the wheels over from another one."""
+        ...
+
+    def step(self, senses: Senses) -> WheelSpeeds:
+        """Wheel speeds for this tick; called once per tick while it is active."""
+        ...

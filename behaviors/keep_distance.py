@@ -1,0 +1,41 @@
+"""A control loop: drive along the wall beside the robot at a wanted distance."""
+
+from hal.robot import Senses, WheelSpeeds
+from hal.robot_settings import InfraredSettings
+
+
+class KeepDistance:
+    """Proportional control of distance and angle to the wall, from the two outer sensors of one side."""
+
+    def __init__(
+        self,
+        infrared: InfraredSettings,
+        *,
+        front_sensor: str,
+        back_sensor: str,
+        distance_m: float,
+        speed_m_s: float,
+        gain_per_m: float,
+    ) -> None:
+        self._infrared = infrared
+        self._front = infrared.names.index(front_sensor)
+        self._back = infrared.names.index(back_sensor)
+        front, back = infrared.sensors[self._front], infrared.sensors[self._back]
+        self._baseline_m = front.x_m - back.x_m
+        self._towards_left = 1.0 if front.heading_deg > 0 else -1.0
+        self._distance_m = distance_m
+        self._speed_m_s = speed_m_s
+        self._gain_per_m = gain_per_m
+
+    def start(self) -> None:
+        """Nothing to forget: the loop looks at the present reading only."""
+
+    def step(self, senses: Senses) -> WheelSpeeds:
+        """Steer towards the wall when too far from it or turned away, and off it when too near or turned to it."""
+        front_m = self._infrared.distance_m(senses.infrared_counts[self._front])
+        back_m = self._infrared.distance_m(senses.infrared_counts[self._back])
+        too_far_m = 0.5 * (front_m + back_m) - self._distance_m
+        turned_away = (front_m - back_m) / self._baseline_m
+        steer = self._towards_left * (self._gain_per_m * too_far_m + turned_away)
+        steer = max(-1.0, min(1.0, steer))
+        return WheelSpeeds(self._speed_m_s * (1.0 - steer), self._speed_m_s * (1.0 + steer))

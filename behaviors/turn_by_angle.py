@@ -1,0 +1,28 @@
+"""A simple behaviour: turn on the spot by an angle, measured by the encoders, then stand."""
+
+import math
+
+from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from hal.robot_settings import GeometrySettings
+
+
+class TurnByAngle:
+    """Turns left by a positive angle, right by a negative one; stands when it is done."""
+
+    def __init__(self, geometry: GeometrySettings, *, angle_deg: float, speed_m_s: float) -> None:
+        # Each side travels the arc of half the effective track.
+        self._wanted_m = math.radians(abs(angle_deg)) * geometry.effective_track_m / 2
+        self._metres_per_tick = geometry.metres_per_tick
+        sign = 1.0 if angle_deg > 0 else -1.0
+        self._turning = WheelSpeeds(-sign * speed_m_s, sign * speed_m_s)
+        self._turned_m = 0.0
+
+    def start(self) -> None:
+        """Begin a turn of the whole angle."""
+        self._turned_m = 0.0
+
+    def step(self, senses: Senses) -> WheelSpeeds:
+        """Turn until the wheels have run the arc."""
+        difference = abs(senses.encoder_right_ticks - senses.encoder_left_ticks)
+        self._turned_m += 0.5 * difference * self._metres_per_tick
+        return self._turning if self._turned_m < self._wanted_m else STANDSTILL

@@ -1,0 +1,52 @@
+"""Perception: senses in, situation out, once per tick."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from kurt2rt.perception.definition import SituationDefinition
+from kurt2rt.perception.features import FeatureExtractor
+from kurt2rt.perception.history import History
+
+
+class Situation(NamedTuple):
+    """Where the robot is in feature space."""
+
+    vector: NDArray[np.float64]
+    """Recent features, then the same averaged over the history, weighted; shape (dimensions,)."""
+    history_frozen: bool
+    """True while the robot waits for its teacher: the averages stand still."""
+
+
+class Perception:
+    """Turns Senses into a Situation (paper, VI.B.1)."""
+
+    def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
+        self.definition = definition
+        width = len(definition.features)
+        self._extract = FeatureExtractor(definition, sensors)
+        self._history = History(definition.history_steps, width)
+        self._width = width
+        self._recent_weight = definition.recent_weight
+        self._past_weight = definition.past_weight
+        self._driven = STANDSTILL
+
+    def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
+        """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
+        recent = self._extract(senses.infrared_counts, self._driven)
+        if not history_frozen:
+            self._history.push(recent)
+        vector = np.empty(2 * self._width)
+        vector[: self._width] = recent
+        self._history.average_into(vector[self._width :])
+        if self._recent_weight != 1.0:
+            vector[: self._width] *= self._recent_weight
+        if self._past_weight != 1.0:
+            vector[self._width :] *= self._past_weight
+        return Situation(vector, history_frozen)
+
+    def remember_driven(self, wheel_speeds: WheelSpeeds) -> None:
+        """Set points of an action that was chosen; held while the robot waits, where nothing is chosen."""
+        self._driven = wheel_speeds
