@@ -1,0 +1,120 @@
+"""The CAN bus: opening, draining without waiting, and the two ports through which frames go out."""
+
+import contextlib
+import socket
+
+import can
+
+CONTROL_ID = 0x01
+"""Identifier of the only frame that moves the robot (reference 1.2)."""
+
+_QUEUE_FRAMES = 4096
+"""Frames that wait for a listener of the in-process bus, and the most that one drain takes: a bus that is full for
+10 ms carries about 200, so whatever waited when a drain began is taken by it."""
+
+
+class BusError(OSError):
+    """The bus cannot be opened or used. The message is one line: bus, what happened, what to do."""
+
+
+class CanBus:
+    """One end of a CAN bus. CONTROL goes out through a port that exists once, all else through telemetry ports."""
+
+    def __init__(self, spec: str) -> None:
+        """Open `virtual:NAME` or a SocketCAN interface. Raises BusError."""
+        self.name = spec
+        self._raw: can.BusABC | None = _open_raw(spec)
+        self._control_taken = False
+
+    def drain(self) -> list[can.Message]:
+        """Every frame that waits, oldest first, without blocking. Raises BusError when the bus is gone."""
+        raw = self._usable()
+        messages: list[can.Message] = []
+        try:
+            for _ in range(_QUEUE_FRAMES):
+                # No software filters are set: with them recv(0) gives None when a filtered frame was next.
+                message = raw.recv(0)
+                if message is None:
+                    break
+                messages.append(message)
+        except (can.CanError, OSError, ValueError) as error:
+            raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
+        return messages
+
+    def telemetry_port(self) -> "FramePort":
+        """A port for every frame except CONTROL."""
+        return FramePort(self, is_control=False)
+
+    def control_port(self) -> "FramePort":
+        """The port for CONTROL, for the guard alone. Raises BusError when it was taken before."""
+        if self._control_taken:
+            raise BusError(f"bus {self.name}: the CONTROL port is taken; one guard drives one robot")
+        self._control_taken = True
+        return FramePort(self, is_control=True)
+
+    def reopen(self) -> None:
+        """Open the same bus anew after it was lost; ports stay valid. Raises BusError while it is still gone."""
+        self.shutdown()
+        self._raw = _open_raw(self.name)
+
+    def shutdown(self) -> None:
+        """Give the bus back; may be called twice."""
+        raw, self._raw = self._raw, None
+        if raw is not None:
+            with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
+                raw.shutdown()
+
+    def _usable(self) -> can.BusABC:
+        if self._raw is None:
+            raise BusError(f"bus {self.name}: is shut down; open it again")
+        return self._raw
+
+    def _send(self, frame: can.Message) -> None:
+        raw = self._usable()
+        try:
+            raw.send(frame, timeout=0)
+        except (can.CanError, OSError, ValueError) as error:
+            raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
+
+
+class FramePort:
+    """A way out to the bus that lets through either CONTROL alone or everything else."""
+
+    def __init__(self, bus: CanBus, *, is_control: bool) -> None:
+        self._bus = bus
+        self._is_control = is_control
+
+    def send(self, frame: can.Message) -> None:
+        """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""
+        frame_id = frame.arbitration_id
+        # Wider identifiers would lose their upper bits on the way out and could come out as CONTROL.
+        if not 0 <= frame_id < (0x2000_0000 if frame.is_extended_id else 0x800):
+            raise ValueError(f"identifier 0x{frame_id:X} does not fit its frame")
+        if (frame_id == CONTROL_ID and not frame.is_extended_id) is not self._is_control:
+            carries = "only CONTROL" if self._is_control else "all but CONTROL, which the guard sends"
+            raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} refused, this port carries {carries}")
+        self._bus._send(frame)
+
+
+def open_bus(spec: str) -> CanBus:
+    """Open one end of a bus: `virtual:NAME` within this process, or a SocketCAN interface such as can0. BusError."""
+    return CanBus(spec)
+
+
+def _open_raw(spec: str) -> can.BusABC:
+    kind, colon, name = spec.partition(":")
+    if colon:
+        if kind != "virtual" or not name:
+            raise BusError(f"bus {spec!r}: no such kind; give virtual:NAME or a SocketCAN interface such as can0")
+        return can.Bus(interface="virtual", channel=name, rx_queue_size=_QUEUE_FRAMES, ignore_config=True)
+    try:
+        socket.if_nametoindex(spec)
+    except OSError as error:
+        raise BusError(
+            f"bus {spec!r}: no such network interface; plug in the adapter, or set it up: "
+            f"ip link set {spec or 'can0'} up type can bitrate 1000000"
+        ) from error
+    try:
+        return can.Bus(interface="socketcan", channel=spec, ignore_config=True)
+    except (can.CanError, OSError, AttributeError) as error:
+        raise BusError(f"bus {spec!r}: cannot be opened as CAN ({error}); is it a CAN interface, and up?") from error

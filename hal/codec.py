@@ -1,0 +1,151 @@
+"""From the DBC file to frames and back: cantools reads the file once, then each message is packed by plain integers."""
+
+import struct
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+import cantools
+from cantools.database import Message, Signal
+from cantools.database.can import Database
+
+from config import CONFIG_DIR
+from hal.frame import Frame
+
+_STRUCT_LETTERS = {8: "b", 16: "h", 32: "i", 64: "q"}
+
+
+class CodecError(ValueError):
+    """A CAN database cannot be used. The message is one line: file, message, what is wrong."""
+
+
+class JunkFrameError(ValueError):
+    """A received frame cannot be what its identifier says."""
+
+
+class MessageCodec:
+    """One plain (not multiplexed) message: raw integers in the order of `signals` to a frame and back."""
+
+    def __init__(self, message: Message) -> None:
+        """Compile a message of the database. Raises CodecError for what this bus does not have."""
+        signals = sorted(message.signals, key=_first_bit)
+        for signal in signals:
+            if signal.byte_order != "big_endian" or signal.conversion.is_float:
+                raise CodecError(f"{message.name}.{signal.name}: must be a big-endian integer, mend the database")
+        self.name = message.name
+        self.frame_id = message.frame_id
+        self.length = message.length
+        self.signals = tuple(signal.name for signal in signals)
+        self._ranges = tuple(_raw_range(signal) for signal in signals)
+        self._covers_bytes = max((_first_bit(signal) + signal.length + 7) // 8 for signal in signals)
+        # Shift and width of each signal in the payload read as one big-endian integer.
+        self._places = tuple(
+            (8 * message.length - _first_bit(signal) - signal.length, signal.length, signal.is_signed)
+            for signal in signals
+        )
+        self._struct = _byte_aligned_struct(signals, message.length)
+
+    def pack(self, *raw: int) -> Frame:
+        """Frame of the raw values. Raises ValueError that names message, signal, value and range."""
+        if self._struct is None:
+            return Frame(self.frame_id, self._pack_bits(raw))
+        try:
+            return Frame(self.frame_id, self._struct.pack(*raw))
+        except struct.error:
+            raise self._why_not(raw) from None
+
+    def unpack(self, data: bytes | bytearray) -> tuple[int, ...]:
+        """Raw values of a payload that covers the signals, whatever its DLC. Raises JunkFrameError when too short."""
+        length = self.length
+        if len(data) < length:
+            if len(data) < self._covers_bytes:
+                raise JunkFrameError(f"{self.name}: {len(data)} bytes, needs at least {self._covers_bytes}")
+            data = data.ljust(length, b"\0")
+        if self._struct is None:
+            return self._unpack_bits(data)
+        return self._struct.unpack_from(data)
+
+    def _pack_bits(self, raw: tuple[int, ...]) -> bytes:
+        if len(raw) != len(self.signals) or any(
+            not low <= value <= high for value, (low, high) in zip(raw, self._ranges, strict=True)
+        ):
+            raise self._why_not(raw)
+        payload = 0
+        for value, (shift, width, _) in zip(raw, self._places, strict=True):
+            payload |= (value & ((1 << width) - 1)) << shift
+        return payload.to_bytes(self.length, "big")
+
+    def _unpack_bits(self, data: bytes | bytearray) -> tuple[int, ...]:
+        payload = int.from_bytes(data[: self.length], "big")
+        values = []
+        for shift, width, signed in self._places:
+            value = (payload >> shift) & ((1 << width) - 1)
+            values.append(value - (1 << width) if signed and value >> (width - 1) else value)
+        return tuple(values)
+
+    def _why_not(self, raw: tuple[int, ...]) -> ValueError:
+        if len(raw) != len(self.signals):
+            return ValueError(f"{self.name}: {len(raw)} values given, needs {', '.join(self.signals)}")
+        for signal, value, (low, high) in zip(self.signals, raw, self._ranges, strict=True):
+            if not low <= value <= high:
+                return ValueError(f"{self.name}.{signal}: {value} given, allowed are integers from {low} to {high}")
+        return ValueError(f"{self.name}: {raw} given, all values must be integers")
+
+
+class Codec:
+    """All plain messages of a CAN database; CONTROL with its modes is in hal.control."""
+
+    def __init__(self, source: str, messages: tuple[MessageCodec, ...]) -> None:
+        self._source = source
+        self._by_name = {message.name: message for message in messages}
+        self.by_id: Mapping[int, MessageCodec] = MappingProxyType({message.frame_id: message for message in messages})
+
+    def message(self, name: str) -> MessageCodec:
+        """One message by its name in the database. Raises CodecError that lists the names."""
+        if name not in self._by_name:
+            raise CodecError(f"{self._source}: no plain message {name}; there are: {', '.join(self._by_name)}")
+        return self._by_name[name]
+
+
+def load_database(database: str = "kurt2.dbc") -> Database:
+    """A CAN database as cantools knows it: a file of config/can by name, or any file by path. Raises CodecError."""
+    path = Path(database)
+    if not path.is_file():
+        path = CONFIG_DIR / "can" / database
+    try:
+        loaded = cantools.database.load_file(path)
+    except (OSError, UnicodeDecodeError, cantools.Error) as error:
+        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+    if not isinstance(loaded, Database):
+        raise CodecError(f"{path}: is a diagnostics database, give a CAN database (DBC)")
+    return loaded
+
+
+def load_codec(database: str = "kurt2.dbc") -> Codec:
+    """Codec of a database in config/can by name, or of any DBC file by path. Raises CodecError."""
+    messages = load_database(database).messages
+    return Codec(database, tuple(MessageCodec(message) for message in messages if not message.is_multiplexed()))
+
+
+def _first_bit(signal: Signal) -> int:
+    """Place of the most significant bit, counted from the front of the payload (DBC counts each byte from its end)."""
+    return 8 * (signal.start // 8) + 7 - signal.start % 8
+
+
+def _raw_range(signal: Signal) -> tuple[int, int]:
+    if signal.is_signed:
+        return -(1 << (signal.length - 1)), (1 << (signal.length - 1)) - 1
+    return 0, (1 << signal.length) - 1
+
+
+def _byte_aligned_struct(signals: list[Signal], length: int) -> struct.Struct | None:
+    """One struct for the whole payload, or None where a signal (24 bits, single bits) does not fit one."""
+    layout, at_bit = ">", 0
+    for signal in signals:
+        first = _first_bit(signal)
+        if first % 8 or signal.length not in _STRUCT_LETTERS:
+            return None
+        letter = _STRUCT_LETTERS[signal.length]
+        layout += "x" * ((first - at_bit) // 8) + (letter if signal.is_signed else letter.upper())
+        at_bit = first + signal.length
+    return struct.Struct(layout + "x" * (length - at_bit // 8))
