@@ -1,0 +1,1 @@
+"""Lessons and exams in lockstep: teach the simulated robot, examine it without its teacher, report both."""

@@ -1,0 +1,64 @@
+"""What an experiment needs of the place where the robot drives; the composition root knows who provides it."""
+
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
+
+from matplotlib.axes import Axes
+
+from hal.robot import Robot
+
+
+class Position(NamedTuple):
+    """Where the robot is, in metres."""
+
+    x_m: float
+    y_m: float
+
+
+class Arena(Protocol):
+    """A robot in a world, watched from above. Only the experimenter sees this; neither runtime nor teacher does."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot, behind its bus and its guard."""
+        ...
+
+    @property
+    def position(self) -> Position:
+        """True position."""
+        ...
+
+    @property
+    def collisions(self) -> int:
+        """Contacts with walls or obstacles so far."""
+        ...
+
+    @property
+    def touching(self) -> bool:
+        """Whether the robot touches something now."""
+        ...
+
+    @property
+    def laps(self) -> float:
+        """Way made along the world's outline with the wall on the left, in whole rounds; backwards counts against."""
+        ...
+
+    def step(self) -> None:
+        """Let the world go on by one cycle of 10 ms."""
+        ...
+
+    def rescue(self) -> None:
+        """Lift the robot and set it down, standing, at the nearest start pose."""
+        ...
+
+    def draw(self, axes: Axes) -> None:
+        """Draw the world from above."""
+        ...
+
+    def close(self) -> None:
+        """Stop the robot and give its bus back."""
+        ...
+
+
+OpenArena = Callable[[str, int], Arena]
+"""Opens a world by name with a seed: seed decides start pose and all chance in it."""

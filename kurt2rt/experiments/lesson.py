@@ -1,0 +1,113 @@
+"""A lesson: a scripted teacher teaches the robot, phases 1 and 2, in lockstep."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from behaviors.policies.build import build_policy
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.arena import Arena, Position
+from kurt2rt.experiments.progress import WayMade
+from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.tick import LessonKeeper, TickRecord
+from kurt2rt.timing.clock import LockstepClock
+
+TRAIL_STRIDE = 10
+"""Ticks between two points of a trail."""
+
+
+@dataclass(frozen=True, slots=True)
+class LessonResult:
+    """What a lesson came to."""
+
+    seed: int
+    world: str
+    teaching_s: float
+    rlas: tuple[Rla, ...]
+    knowledge_hash: str
+    asks: int
+    corrections: int
+    rescues: int
+    statistics: StatisticsCounter
+    growth: tuple[int, ...]
+    """Number of RLAs after each second of teaching."""
+    trail: tuple[Position, ...]
+    ask_positions: tuple[Position, ...]
+
+
+async def teach(
+    arena: Arena,
+    settings: RobotSettings,
+    task: TaskSettings,
+    keeper: LessonKeeper,
+    events: Sequence[TeachingEvent],
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> LessonResult:
+    """Teach the task for its whole duration; what was taught goes to `keeper`.
+
+    `events`: what an earlier lesson taught, to go on from there. `on_progress` gets simulated seconds.
+    """
+    period_s = settings.can.cycle_s
+    clock = LockstepClock(arena.step)
+    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock)
+    teacher = ScriptedTeacher(
+        build_policy(task.policy, settings.infrared),
+        tuple(runtime.level.repertoire),
+        task.teaching.teacher,
+        period_s=period_s,
+        seed=seed,
+        session=f"lesson-{seed}-after-{len(events)}",
+    )
+    way = WayMade(task.teaching.rescue_after_s, period_s)
+    ticks = round(task.teaching.duration_s / period_s)
+    corrections_from = round(task.teaching.supervised_s / period_s)
+    ticks_per_second = round(1 / period_s)
+    growth: list[int] = []
+    trail: list[Position] = []
+    ask_positions: list[Position] = []
+    asking = False
+    rescues = 0
+
+    def after_tick(record: TickRecord) -> None:
+        nonlocal asking, rescues
+        if record.tick == corrections_from:
+            runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
+        command = teacher.watch(record)
+        if command is not None:
+            runtime.inbox.put(command)
+        if record.decision.asking and not asking:
+            ask_positions.append(arena.position)
+        asking = record.decision.asking
+        if asking:
+            way.restart()
+        elif way.none_since_window(arena.position):
+            arena.rescue()
+            way.restart()
+            rescues += 1
+        if record.tick % TRAIL_STRIDE == 0:
+            trail.append(arena.position)
+        if record.tick % ticks_per_second == 0:
+            growth.append(len(runtime.level.system))
+            on_progress(record.now_s)
+
+    await runtime.scheduler.run(ticks, after_tick)
+    system = runtime.level.system
+    return LessonResult(
+        seed=seed,
+        world=task.teaching.world,
+        teaching_s=ticks * period_s,
+        rlas=system.rlas,
+        knowledge_hash=system.knowledge_hash(),
+        asks=len(ask_positions),
+        corrections=runtime.school.corrections,
+        rescues=rescues,
+        statistics=runtime.statistics,
+        growth=tuple(growth),
+        trail=tuple(trail),
+        ask_positions=tuple(ask_positions),
+    )

@@ -1,0 +1,30 @@
+"""Whether the robot makes way."""
+
+from collections import deque
+
+from kurt2rt.experiments.arena import Position
+
+
+class WayMade:
+    """Tells a robot that stays where it is from one that travels."""
+
+    def __init__(self, window_s: float, period_s: float, *, least_m: float = 0.1) -> None:
+        self._stride = round(0.5 / period_s)
+        self._positions: deque[Position] = deque(maxlen=max(2, round(window_s / 0.5) + 1))
+        self._least_m = least_m
+        self._ticks = 0
+
+    def none_since_window(self, position: Position) -> bool:
+        """Take in one tick's position; true when a whole window passed within `least_m`."""
+        if self._ticks % self._stride == 0:
+            self._positions.append(position)
+        self._ticks += 1
+        full = len(self._positions) == self._positions.maxlen
+        return full and all(
+            abs(position.x_m - old.x_m) + abs(position.y_m - old.y_m) < self._least_m for old in self._positions
+        )
+
+    def restart(self) -> None:
+        """Begin a new window."""
+        self._positions.clear()
+        self._ticks = 0

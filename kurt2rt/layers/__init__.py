@@ -1,0 +1,1 @@
+"""The stack of layers: information goes up, commands come down (paper, section V)."""

@@ -1,0 +1,65 @@
+"""The basic level: one RLA system over the 72-D situation, its actions taken from the repertoire."""
+
+from behaviors.behaviour import Behaviour
+from behaviors.repertoire import Repertoire
+from hal.robot import STANDSTILL, Senses
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.perception.perception import Situation
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla_system import Match, RlaSystem
+
+
+class UnknownActionError(ValueError):
+    """Knowledge names an action that the repertoire does not have."""
+
+
+class BasicLevel:
+    """Winner takes all, with a minimum time per action against dithering between neighbours."""
+
+    def __init__(self, system: RlaSystem, repertoire: Repertoire, minimum_action_ticks: int) -> None:
+        for rla in system.rlas:
+            if rla.action not in repertoire:
+                raise UnknownActionError(
+                    f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
+                    f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"
+                )
+        self.system = system
+        self.repertoire = repertoire
+        self._minimum_action_ticks = minimum_action_ticks
+        self._active: Behaviour | None = None
+        self._action: str | None = None
+        self._rla_id: int | None = None
+        self._ticks_active = 0
+
+    def apply(self, event: TeachingEvent) -> None:
+        """Change the knowledge; the next decision follows it at once, whatever action was being held."""
+        self.system.apply(event)
+        self._ticks_active = self._minimum_action_ticks
+
+    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+        """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
+        match = self.system.match(situation.vector)
+        if stand_because is not None:
+            return self._stand(stand_because, match)
+        if match is None or not match.known:
+            return self._stand(Cause.UNKNOWN, match)
+        cause = Cause.RLA
+        winner = match.rla
+        active = self._active
+        if active is not None and winner.action == self._action:
+            self._rla_id = winner.rla_id
+        elif active is not None and self._ticks_active < self._minimum_action_ticks:
+            cause = Cause.HELD
+        else:
+            active = self._active = self.repertoire[winner.action]
+            active.start()
+            self._action = winner.action
+            self._rla_id = winner.rla_id
+            self._ticks_active = 0
+        self._ticks_active += 1
+        return Decision(active.step(senses), cause, self._action, self._rla_id, match)
+
+    def _stand(self, cause: Cause, match: Match | None) -> Decision:
+        """Stand; the next action begins anew."""
+        self._active = None
+        return Decision(STANDSTILL, cause, None, None, match)

@@ -1,0 +1,47 @@
+"""What was decided in a tick, and the rule that decided it."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from hal.robot import WheelSpeeds
+from kurt2rt.rla.rla_system import Match
+
+
+class Cause(StrEnum):
+    """Why the wheels are told what they are told."""
+
+    RLA = "rla"
+    """The nearest RLA answers, inside its radius."""
+    HELD = "held"
+    """Another RLA is nearest now; the action chosen before keeps its minimum time."""
+    TEACHER = "teacher"
+    """A teacher, or the policy that stands in for one, drives."""
+    UNKNOWN = "unknown"
+    """No RLA is near enough: the robot stands and asks."""
+    STOPPED = "stopped"
+    """A teacher stopped the robot."""
+    UNSAVED = "unsaved"
+    """Lessons cannot be saved at the moment: the robot stands until they are."""
+
+
+class Decision(NamedTuple):
+    """One tick's decision."""
+
+    wheel_speeds: WheelSpeeds
+    cause: Cause
+    action: str | None
+    """Name of the action that drives; None while the robot stands."""
+    rla_id: int | None
+    """The RLA whose action drives; None while the robot stands or a teacher drives."""
+    match: Match | None
+    """Nearest RLA at this situation, its distance, R and the runner-up; None before the first lesson."""
+
+    @property
+    def driving(self) -> bool:
+        """Whether an action drives the wheels."""
+        return self.action is not None
+
+    @property
+    def asking(self) -> bool:
+        """Whether the robot stands because it does not know this situation."""
+        return self.cause is Cause.UNKNOWN

@@ -1,0 +1,27 @@
+"""How often each RLA was used and what followed it: the counts behind the RLA network (paper, III.B)."""
+
+from collections import Counter
+
+
+class StatisticsCounter:
+    """Counts activations of RLAs and transitions between them.
+
+    An RLA is used once each time it becomes the one that drives; standing still ends a chain of transitions.
+    """
+
+    def __init__(
+        self, uses: dict[int, int] | None = None, transitions: dict[tuple[int, int], int] | None = None
+    ) -> None:
+        self.uses = Counter(uses)
+        self.transitions = Counter(transitions)
+        self._previous: int | None = None
+
+    def count(self, current: int | None) -> None:
+        """Take in one tick: the RLA that drives, None while the robot stands."""
+        if current == self._previous:
+            return
+        if current is not None:
+            self.uses[current] += 1
+            if self._previous is not None:
+                self.transitions[self._previous, current] += 1
+        self._previous = current

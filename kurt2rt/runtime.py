@@ -1,0 +1,78 @@
+"""The runtime, assembled: everything between the robot and the scheduler, built in one place."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from behaviors.repertoire import load_repertoire
+from hal.robot import Robot
+from hal.robot_settings import RobotSettings
+from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.level import Level
+from kurt2rt.perception.definition import SituationDefinition, load_situation
+from kurt2rt.perception.perception import Perception
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.inbox import TeacherInbox
+from kurt2rt.teaching.school import School
+from kurt2rt.tick import LessonKeeper, Tick
+from kurt2rt.timing.clock import Clock
+from kurt2rt.timing.ledger import Ledger
+from kurt2rt.timing.scheduler import Scheduler
+
+
+@dataclass(frozen=True, slots=True)
+class Runtime:
+    """The parts that others talk to."""
+
+    robot: RobotSettings
+    task: TaskSettings
+    definition: SituationDefinition
+    level: BasicLevel
+    school: School
+    inbox: TeacherInbox
+    statistics: StatisticsCounter
+    ledger: Ledger
+    tick: Tick
+    scheduler: Scheduler
+
+
+def build_runtime(
+    robot: Robot,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Iterable[TeachingEvent],
+    keeper: LessonKeeper,
+    clock: Clock,
+    *,
+    level_override: Level | None = None,
+) -> Runtime:
+    """Build the runtime for a robot and a task, with what `events` have taught.
+
+    `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
+    own policy, for instance, to see what it would reach itself.
+    Raises hal.settings.SettingsError, and UnknownActionError for knowledge that the repertoire cannot act out.
+    """
+    sensors = settings.infrared.names
+    definition = load_situation(task.situation, sensors)
+    system = RlaSystem(definition.dimensions, task.learning.radius)
+    events = tuple(events)
+    system.apply_all(events)
+    period_s = settings.can.cycle_s
+    level = BasicLevel(
+        system, load_repertoire(task.repertoire, settings), round(task.learning.minimum_action_s / period_s)
+    )
+    school = School(
+        level,
+        insert_beyond_share=task.learning.insert_beyond_share,
+        taken_command_ids=(event.origin.command_id for event in events),
+    )
+    inbox = TeacherInbox()
+    statistics = StatisticsCounter()
+    ledger = Ledger()
+    tick = Tick(
+        robot, Perception(definition, sensors), level_override or level, school, inbox, keeper, statistics, ledger
+    )
+    scheduler = Scheduler(clock, tick, period_s, ledger)
+    return Runtime(settings, task, definition, level, school, inbox, statistics, ledger, tick, scheduler)

@@ -1,0 +1,1 @@
+"""The teacher's side: commands, questions, lessons, and a scripted teacher."""

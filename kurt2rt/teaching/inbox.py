@@ -1,0 +1,35 @@
+"""Where commands wait for the next tick."""
+
+from collections import deque
+
+from kurt2rt.teaching.commands import Command
+
+
+class InboxFullError(RuntimeError):
+    """More commands wait than a teacher can mean; nothing was taken in."""
+
+
+class TeacherInbox:
+    """A bounded queue that any thread may fill and the tick empties."""
+
+    def __init__(self, capacity: int = 256) -> None:
+        self._waiting: deque[Command] = deque()
+        self._capacity = capacity
+
+    def put(self, command: Command) -> None:
+        """Hand a command to the next tick. Raises InboxFullError."""
+        if len(self._waiting) >= self._capacity:
+            raise InboxFullError(
+                f"{self._capacity} commands wait already; is the robot's loop running? Send it again later"
+            )
+        self._waiting.append(command)
+
+    def take(self) -> tuple[Command, ...]:
+        """All commands that wait, in the order they came; never blocks."""
+        if not self._waiting:
+            return ()
+        # One at a time: another thread may append meanwhile, and what came late may as well come along.
+        taken = []
+        while self._waiting:
+            taken.append(self._waiting.popleft())
+        return tuple(taken)

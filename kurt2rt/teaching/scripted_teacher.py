@@ -1,0 +1,86 @@
+"""A teacher that consults a reference policy: answers questions, and corrects what it would do otherwise."""
+
+import random
+from collections.abc import Sequence
+
+from behaviors.policies.policy import ReferencePolicy
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import TeacherSettings
+from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
+from kurt2rt.tick import TickRecord
+
+_NAME = "scripted teacher"
+
+
+class ScriptedTeacher:
+    """Consistent and memoryless about the task; of its own it has only patience and reaction time.
+
+    Watches the same records that a person sees on the screen and answers with the same commands.
+    """
+
+    def __init__(
+        self,
+        policy: ReferencePolicy,
+        actions: Sequence[str],
+        settings: TeacherSettings,
+        *,
+        period_s: float,
+        seed: int,
+        session: str,
+    ) -> None:
+        """`session` begins the ids of all its commands and must differ between lessons on the same knowledge."""
+        self._session = session
+        self._policy = policy
+        self._actions = tuple(actions)
+        self._error_rate = settings.error_rate
+        self._reaction_ticks = round(settings.reaction_s / period_s)
+        self._patience_ticks = round(settings.patience_s / period_s)
+        self._chance = random.Random(seed)
+        self._said = 0
+        self._ticks_asked = 0
+        self._ticks_otherwise = 0
+        self._wanted: str | None = None
+        self.phase = Phase.SUPERVISED
+
+    def enter(self, phase: Phase) -> Command:
+        """Begin a phase: what to tell the robot."""
+        self.phase = phase
+        return SetPhase(self._next_id(), _NAME, phase)
+
+    def watch(self, record: TickRecord) -> Command | None:
+        """See one tick; what the teacher says to it, if anything."""
+        if record.decision.asking:
+            self._ticks_otherwise = 0
+            self._ticks_asked += 1
+            if self._ticks_asked < self._reaction_ticks:
+                return None
+            self._ticks_asked = 0
+            return Teach(self._next_id(), _NAME, self._choose(record))
+        self._ticks_asked = 0
+        if self.phase is Phase.SUPERVISED or not record.decision.driving:
+            return None
+        return self._correct(record)
+
+    def _correct(self, record: TickRecord) -> Command | None:
+        wanted = self._policy.choose(record.senses.infrared_counts)
+        if wanted == record.decision.action:
+            self._ticks_otherwise = 0
+            return None
+        if wanted != self._wanted:  # patience runs for one opinion at a time
+            self._wanted = wanted
+            self._ticks_otherwise = 0
+        self._ticks_otherwise += 1
+        if self._ticks_otherwise < self._patience_ticks:
+            return None
+        self._ticks_otherwise = 0
+        return Correct(self._next_id(), _NAME, self._choose(record))
+
+    def _choose(self, record: TickRecord) -> str:
+        right = self._policy.choose(record.senses.infrared_counts)
+        if self._chance.random() >= self._error_rate:
+            return right
+        return self._chance.choice([action for action in self._actions if action != right])
+
+    def _next_id(self) -> str:
+        self._said += 1
+        return f"{self._session}-{self._said}"

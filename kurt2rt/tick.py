@@ -1,0 +1,112 @@
+"""The tick: the one place that knows the order in which things happen, 100 times a second."""
+
+from typing import NamedTuple, Protocol
+
+from hal.robot import Grant, Robot, Senses
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.level import Level
+from kurt2rt.perception.perception import Perception, Situation
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.teaching.commands import CommandResult, Resume
+from kurt2rt.teaching.inbox import TeacherInbox
+from kurt2rt.teaching.school import School
+from kurt2rt.timing.ledger import Ledger, Stage
+
+
+class LessonKeeper(Protocol):
+    """Where teaching events go to be kept; answers at once and works outside the tick."""
+
+    @property
+    def trouble(self) -> str | None:
+        """Why lessons cannot be saved at the moment, in one line; None when they can."""
+        ...
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Keep an event."""
+        ...
+
+
+class TickRecord(NamedTuple):
+    """All that one tick saw, decided and did."""
+
+    tick: int
+    now_s: float
+    senses: Senses
+    situation: Situation
+    decision: Decision
+    grant: Grant
+    results: tuple[CommandResult, ...]
+    """What became of the teacher's commands that this tick took."""
+
+
+class Tick:
+    """bus -> sense -> perceive -> decide -> guard -> bus, then learn and publish.
+
+    A deterministic function of its state, the senses and the commands: no wall clock, no chance, no I/O but the bus.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        perception: Perception,
+        level: Level,
+        school: School,
+        inbox: TeacherInbox,
+        keeper: LessonKeeper,
+        statistics: StatisticsCounter,
+        ledger: Ledger,
+    ) -> None:
+        self._robot = robot
+        self._perception = perception
+        self._level = level
+        self._school = school
+        self._inbox = inbox
+        self._keeper = keeper
+        self._statistics = statistics
+        self._ledger = ledger
+        self._driving = False
+
+    def run(self, tick: int, now_s: float) -> TickRecord:
+        """One tick at `now_s` of the runtime's clock."""
+        mark = self._ledger.mark
+        senses = self._robot.sense(now_s)
+        mark(Stage.SENSE)
+
+        # While the robot waits for its teacher history stands still: autonomy has no waits to learn from.
+        situation = self._perception.perceive(senses, history_frozen=not self._driving)
+        mark(Stage.PERCEIVE)
+
+        commands = self._inbox.take()
+        results: tuple[CommandResult, ...] = ()
+        events: list[TeachingEvent] = []
+        for command in commands:
+            result, event = self._school.attend(command, situation, tick)
+            results += (result,)
+            if event is not None:
+                events.append(event)
+            if isinstance(command, Resume):
+                self._robot.release()
+        decision = self._level.decide(situation, senses, self._reason_to_stand())
+        mark(Stage.DECIDE)
+
+        grant = self._robot.drive(decision.wheel_speeds, now_s, now_s)
+        mark(Stage.GUARD)
+
+        self._driving = decision.driving and not grant.latched
+        if decision.driving:
+            self._perception.remember_driven(decision.wheel_speeds)
+        self._statistics.count(decision.rla_id)
+        mark(Stage.LEARN)
+
+        for event in events:
+            self._keeper.submit(event)
+        mark(Stage.PUBLISH)
+        return TickRecord(tick, now_s, senses, situation, decision, grant, results)
+
+    def _reason_to_stand(self) -> Cause | None:
+        if self._school.stopped:
+            return Cause.STOPPED
+        if self._keeper.trouble is not None:
+            return Cause.UNSAVED
+        return None
