@@ -1,0 +1,186 @@
+"""The guard: the only sender of CONTROL. It knows nothing of why somebody wants to drive, only what is safe."""
+
+import math
+from threading import RLock
+
+from hal.bus import BusError, CanBus
+from hal.control import control_frame, encode_brake, set_point
+from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot_settings import BumperEnd, RobotSettings
+
+NOT_A_NUMBER = "not a number"
+COMMAND_TOO_OLD = "command too old"
+CLOCK_RAN_BACKWARDS = "clock ran backwards"
+INFRARED_STALE = "infra-red stale"
+ENCODER_STALE = "encoder stale"
+FRONT_BUMPER = "front bumper"
+REAR_BUMPER = "rear bumper"
+SPEED_LIMIT = "speed limit"
+SLEW_LIMIT = "slew limit"
+BUS_LOST = "bus lost"
+
+_LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
+
+
+class Guard:
+    """Lets through what is safe of the wanted wheel speeds, and brakes when told to. Thread safe.
+
+    Every rule asks for proof that driving is safe, so a NaN in any input stands still.
+    """
+
+    def __init__(self, robot: RobotSettings, bus: CanBus) -> None:
+        """Take the bus's CONTROL port. Raises hal.bus.BusError when another guard has it."""
+        limits = robot.guard
+        self._port = bus.control_port()
+        self._speed_mode = robot.can.speed_mode
+        self._motors = robot.motors
+        self._maximum_speed_m_s = limits.maximum_speed_m_s
+        self._acceleration_m_s2 = limits.acceleration_m_s2
+        self._braking_m_s2 = limits.braking_m_s2
+        self._command_age_s = limits.command_age_s
+        self._stale_infrared_s = limits.stale_infrared_s
+        self._stale_encoder_s = limits.stale_encoder_s
+        self._cycle_s = robot.can.cycle_s
+        self._front_bits = _bumper_bits(robot, BumperEnd.FRONT)
+        self._rear_bits = _bumper_bits(robot, BumperEnd.REAR)
+        self._brake = encode_brake()
+        # Reentrant, for a signal handler may stop the robot in the middle of the same thread's drive().
+        self._lock = RLock()
+        self._latched: str | None = None
+        self._left_m_s = self._right_m_s = 0.0
+        self._driven_at_s = -math.inf
+        self._send_failures = 0
+        self._bus_trouble = ""
+
+    @property
+    def latched(self) -> str | None:
+        """Why the robot stays stopped until `release`; None when it does not."""
+        return self._latched
+
+    @property
+    def send_failures(self) -> int:
+        """CONTROL frames that the bus did not take."""
+        return self._send_failures
+
+    @property
+    def bus_trouble(self) -> str:
+        """Text of the newest sending error; empty when there was none."""
+        return self._bus_trouble
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
+
+        The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own.
+        """
+        with self._lock:
+            if self._latched is not None:
+                return self._stay_stopped()
+            left_m_s, right_m_s = wanted
+            stand = self._reason_to_stand(left_m_s, right_m_s, senses, decided_at_s, now_s)
+            if stand is None:
+                reasons = self._approach(left_m_s, right_m_s, senses.bumpers, now_s)
+            else:
+                reasons = (stand,)
+                self._left_m_s = self._right_m_s = 0.0
+            if math.isfinite(now_s):
+                self._driven_at_s = now_s
+            point = set_point(self._speed_mode, WheelSpeeds(self._left_m_s, self._right_m_s), self._motors)
+            try:
+                self._port.send(control_frame(point))
+            except BusError as error:
+                self._note(error)
+                self._latch(BUS_LOST)
+            if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
+                return self._stay_stopped()
+            return Grant(point.wheel_speeds(self._motors), reasons, latched=False)
+
+    def emergency_stop(self, reason: str) -> None:
+        """Brake now and stay stopped until `release`; the first reason stands. May be repeated, never raises."""
+        with self._lock:
+            self._latch(reason)
+            self._send_brake()
+
+    def release(self) -> None:
+        """End a latched stop; the robot stands until it is driven, and starts from zero."""
+        with self._lock:
+            self._latched = None
+
+    def _reason_to_stand(
+        self, left_m_s: float, right_m_s: float, senses: Senses, decided_at_s: float, now_s: float
+    ) -> str | None:
+        if not (math.isfinite(left_m_s) and math.isfinite(right_m_s)):
+            return NOT_A_NUMBER
+        sensed_ago_s = now_s - senses.time_s
+        decided_ago_s = now_s - decided_at_s
+        if not (now_s >= self._driven_at_s and sensed_ago_s >= 0.0 and decided_ago_s >= 0.0):
+            return CLOCK_RAN_BACKWARDS
+        if not decided_ago_s <= self._command_age_s:
+            return COMMAND_TOO_OLD
+        if not sensed_ago_s + senses.infrared_age_s <= self._stale_infrared_s:
+            return INFRARED_STALE
+        if not sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
+            return ENCODER_STALE
+        return None
+
+    def _approach(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[str, ...]:
+        """Move the set points toward the wanted speeds as far as the limits allow; returns why not further."""
+        reasons: tuple[str, ...] = ()
+        fastest_m_s = max(abs(left_m_s), abs(right_m_s))
+        if fastest_m_s > self._maximum_speed_m_s:
+            share = self._maximum_speed_m_s / fastest_m_s  # of both sides, so that the curve is kept
+            left_m_s *= share
+            right_m_s *= share
+            reasons = (SPEED_LIMIT,)
+        from_left_m_s, from_right_m_s = self._left_m_s, self._right_m_s
+        if bumpers:
+            # The old set points too: slewing down from them would go on pushing.
+            if bumpers & self._front_bits:
+                if left_m_s > 0.0 or right_m_s > 0.0:
+                    reasons += (FRONT_BUMPER,)
+                left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
+                from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
+            if bumpers & self._rear_bits:
+                if left_m_s < 0.0 or right_m_s < 0.0:
+                    reasons += (REAR_BUMPER,)
+                left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
+                from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
+        elapsed_s = min(now_s - self._driven_at_s, _LONGEST_SLEW_CYCLES * self._cycle_s)
+        self._left_m_s = self._slewed(from_left_m_s, left_m_s, elapsed_s)
+        self._right_m_s = self._slewed(from_right_m_s, right_m_s, elapsed_s)
+        if self._left_m_s != left_m_s or self._right_m_s != right_m_s:
+            reasons += (SLEW_LIMIT,)
+        return reasons
+
+    def _slewed(self, from_m_s: float, to_m_s: float, elapsed_s: float) -> float:
+        if to_m_s == from_m_s or to_m_s == 0.0:
+            return to_m_s  # a stop is not slewed: the controller brakes by itself
+        if from_m_s * to_m_s < 0.0:
+            to_m_s = 0.0  # a wheel comes to rest before it turns the other way
+        speeds_up = abs(to_m_s) > abs(from_m_s)
+        step_m_s = (self._acceleration_m_s2 if speeds_up else self._braking_m_s2) * elapsed_s
+        if to_m_s > from_m_s:
+            return min(to_m_s, from_m_s + step_m_s)
+        return max(to_m_s, from_m_s - step_m_s)
+
+    def _latch(self, reason: str) -> None:
+        if self._latched is None:
+            self._latched = reason
+        self._left_m_s = self._right_m_s = 0.0
+
+    def _stay_stopped(self) -> Grant:
+        self._send_brake()
+        return Grant(STANDSTILL, (self._latched or "",), latched=True)
+
+    def _send_brake(self) -> None:
+        try:
+            self._port.send(self._brake)
+        except BusError as error:
+            self._note(error)
+
+    def _note(self, error: BusError) -> None:
+        self._send_failures += 1
+        self._bus_trouble = str(error)
+
+
+def _bumper_bits(robot: RobotSettings, end: BumperEnd) -> int:
+    return sum(1 << bit for bit, bumper in enumerate(robot.bumpers) if bumper.end is end)

@@ -1,0 +1,72 @@
+"""The second guard: a thread with a clock of its own that brakes when ticks cease."""
+
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+from hal.guard import Guard
+
+TICKS_CEASED = "ticks ceased"
+POLL_S = 0.01
+
+
+class Watchdog:
+    """Stops the wheels when `beat` is not called for `ticks_ceased_s`; it watches from the first beat on.
+
+    It cannot help against a stuck interpreter; there the controller's own watchdog stops the motors.
+    """
+
+    def __init__(self, guard: Guard, ticks_ceased_s: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._guard = guard
+        self._ticks_ceased_s = ticks_ceased_s
+        self._clock = clock
+        self._beat_s: float | None = None
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def beat(self) -> None:
+        """A tick has been done."""
+        self._beat_s = self._clock()
+
+    def check(self, now_s: float) -> bool:
+        """True when ticks have ceased at `now_s` of the watchdog's clock; False before the first beat."""
+        beat_s = self._beat_s
+        return beat_s is not None and not now_s - beat_s <= self._ticks_ceased_s
+
+    @property
+    def running(self) -> bool:
+        """True while the thread watches."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def start(self) -> None:
+        """Start the thread; it waits for the first beat. Raises RuntimeError when it runs already."""
+        if self.running:
+            raise RuntimeError("the watchdog runs already; start it once")
+        self._beat_s = None
+        self._stopping.clear()
+        self._thread = threading.Thread(target=self._watch, name="watchdog", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread and wait for it; may be called twice."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+            self._thread = None
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def _watch(self) -> None:
+        while not self._stopping.wait(POLL_S):
+            if self.check(self._clock()):
+                # At every poll anew: one brake frame may meet a full queue, and the controller forgets after 200 ms.
+                self._guard.emergency_stop(TICKS_CEASED)
