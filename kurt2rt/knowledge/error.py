@@ -1,0 +1,31 @@
+"""The one error of this package, and what SQLite's complaints mean for whoever runs the robot."""
+
+import sqlite3
+from pathlib import Path
+
+
+class KnowledgeError(Exception):
+    """Knowledge cannot be read or written. The message is one line: what, where, what to do."""
+
+
+_ADVICE = {
+    sqlite3.SQLITE_FULL: "the disk is full; make room on it",
+    sqlite3.SQLITE_IOERR: "the disk fails; look at its health and room, and keep a copy of the file",
+    sqlite3.SQLITE_BUSY: "another program holds it locked; close that program",
+    sqlite3.SQLITE_LOCKED: "another program holds it locked; close that program",
+    sqlite3.SQLITE_READONLY: "it may not be written; give write permission for the file and its folder",
+    sqlite3.SQLITE_PERM: "it may not be written; give write permission for the file and its folder",
+    sqlite3.SQLITE_CANTOPEN: "it cannot be opened; look at permissions and room of its folder",
+    sqlite3.SQLITE_CORRUPT: "the file is damaged; keep it, and go on with a backup copy",
+    sqlite3.SQLITE_NOTADB: "the file is damaged; keep it, and go on with a backup copy",
+}
+
+
+def explained(error: sqlite3.Error, path: Path) -> KnowledgeError:
+    """The same error in our words: file, what is wrong, what to do, and SQLite's own words for the search engine."""
+    code: int | None = getattr(error, "sqlite_errorcode", None)  # absent where Python itself raised the error
+    primary = None if code is None else code & 0xFF  # the upper bits tell which read, write or sync it was
+    advice = "SQLite refuses it; keep the file, and go on with a backup copy"
+    if primary is not None:
+        advice = _ADVICE.get(primary, advice)
+    return KnowledgeError(f"{path}: {advice} (SQLite: {error})")

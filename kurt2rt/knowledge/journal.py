@@ -1,0 +1,187 @@
+"""The journal: every teaching act, appended once, durable before it is acknowledged (design, Knowledge)."""
+
+import os
+import sqlite3
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import BinaryIO, Self
+
+from kurt2rt.knowledge import journal_file
+from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
+from kurt2rt.knowledge.error import KnowledgeError, explained
+from kurt2rt.knowledge.events import encode_event
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import TeachingEvent
+
+_ROWS = "SELECT sequence, command_id, stamped_at, event, checksum FROM lesson ORDER BY sequence"
+
+
+class Journal:
+    """One knowledge file. Used by one thread at a time; all its errors are KnowledgeError."""
+
+    def __init__(self, path: Path, connection: sqlite3.Connection, lock: BinaryIO | None = None) -> None:
+        self.path = path
+        self.binding = journal_file.read_binding(connection, path)
+        self._connection = connection
+        self._lock = lock
+        self._files = journal_file.identities(path)
+
+    @classmethod
+    def open(cls, path: Path, binding: KnowledgeBinding) -> Self:
+        """Open the journal at `path` as its only writer, or begin one there. An error leaves every file as it was."""
+        path = path.resolve()
+        if path.exists():
+            journal_file.require_ours(path)
+        lock = journal_file.lock_for_writing(path)
+        try:
+            if not path.exists():
+                journal_file.create(path, binding)
+            connection = journal_file.connect(path, "mode=rw")
+            try:
+                require_same(journal_file.read_binding(connection, path), binding, path)
+                journal_file.make_durable(connection, path)
+                return cls(path, connection, lock)
+            except BaseException:
+                connection.close()
+                raise
+        except BaseException:
+            lock.close()
+            raise
+
+    @classmethod
+    def read_only(cls, path: Path) -> Self:
+        """Open to look at it, also while a robot writes it. What is read then may be a lesson behind."""
+        path = path.resolve()
+        journal_file.require_ours(path)
+        # Beside a file in a folder that may not be written SQLite cannot put its log; without a log, none is needed.
+        quiet = not os.access(path.parent, os.W_OK) and not journal_file.log_of(path).exists()
+        connection = journal_file.connect(path, "mode=ro&immutable=1" if quiet else "mode=ro")
+        try:
+            return cls(path, connection)
+        except BaseException:
+            connection.close()
+            raise
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        """Write lessons, all or none, durable on return; a known command id is not written twice. One receipt each."""
+        receipts = []
+        with self._transaction():
+            for entry in entries:
+                receipts.append(self._append(entry))
+        return receipts
+
+    def _append(self, entry: JournalEntry) -> Receipt:
+        text = encode_event(entry.event)
+        command_id = entry.event.origin.command_id
+        known = self._connection.execute(
+            "SELECT sequence, event FROM lesson WHERE command_id = ?", (command_id,)
+        ).fetchone()
+        if known is not None:
+            return Receipt(command_id, known[0], new=False, agrees=known[1] == text)
+        cursor = self._connection.execute(
+            "INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)",
+            (command_id, entry.stamped_at, text, checksum(command_id, entry.stamped_at, text)),
+        )
+        if cursor.lastrowid is None:
+            raise KnowledgeError(f"{self.path}: SQLite gave no row for command {command_id!r}; teach it again")
+        return Receipt(command_id, cursor.lastrowid, new=True, agrees=True)
+
+    def entries(self) -> list[StoredEntry]:
+        """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
+        with self._reading():
+            return [read_row(row, self._where(row)) for row in self._connection.execute(_ROWS)]
+
+    def events(self) -> list[TeachingEvent]:
+        """All teaching events in order: what an RLA system is the fold of."""
+        return [entry.event for entry in self.entries()]
+
+    def checkpoint(self, statistics: Statistics) -> None:
+        """Replace the statistics, in one transaction. Only rows that changed are written, to spare the flash disk."""
+        before = self.statistics()
+        used = [item for item in statistics.uses.items() if before.uses.get(item[0]) != item[1]]
+        unused = [(rla_id,) for rla_id in before.uses.keys() - statistics.uses.keys()]
+        counted = statistics.transitions.items()
+        gone = before.transitions.keys() - statistics.transitions.keys()
+        moved = [(*edge, count) for edge, count in counted if before.transitions.get(edge) != count]
+        if not (used or unused or moved or gone):
+            return
+        with self._transaction():
+            self._connection.executemany("DELETE FROM uses WHERE rla_id = ?", unused)
+            self._connection.executemany("INSERT OR REPLACE INTO uses VALUES (?, ?)", used)
+            self._connection.executemany("DELETE FROM transition WHERE from_rla = ? AND to_rla = ?", gone)
+            self._connection.executemany("INSERT OR REPLACE INTO transition VALUES (?, ?, ?)", moved)
+
+    def statistics(self) -> Statistics:
+        """The statistics of the last checkpoint."""
+        with self._reading():
+            uses = dict(self._connection.execute("SELECT rla_id, count FROM uses ORDER BY rla_id"))
+            edges = self._connection.execute("SELECT from_rla, to_rla, count FROM transition ORDER BY 1, 2")
+            return Statistics(uses, {(before, after): count for before, after, count in edges})
+
+    def check(self) -> list[str]:
+        """Everything that is wrong with the file, one line each; empty when it is sound."""
+        problems: list[str] = []
+        try:
+            for (line,) in self._connection.execute("PRAGMA integrity_check"):
+                if line != "ok":
+                    problems.append(f"{self.path}: {line}")
+            for expected, row in enumerate(self._connection.execute(_ROWS), start=1):
+                if row[0] != expected:
+                    problems.append(f"{self._where(row)}: stands where row {expected} should; keep the file")
+                try:
+                    read_row(row, self._where(row))
+                except KnowledgeError as error:
+                    problems.append(str(error))
+        except sqlite3.Error as error:
+            problems.append(str(explained(error, self.path)))
+        return problems
+
+    def close(self) -> None:
+        """Give the file back; the last one out merges SQLite's log into it."""
+        try:
+            with self._reading():
+                self._connection.close()
+        finally:
+            if self._lock is not None:
+                self._lock.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _where(self, row: tuple[int, str, str, str, int]) -> str:
+        return f"{self.path}: row {row[0]}"
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        try:
+            self._connection.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+                self._connection.execute("COMMIT")
+            except BaseException:
+                if self._connection.in_transaction:  # SQLite itself may have rolled back already
+                    self._connection.execute("ROLLBACK")
+                raise
+        except sqlite3.Error as error:
+            raise explained(error, self.path) from error
+        # SQLite goes on writing into a file that was deleted under it, and all would be gone at the end.
+        if journal_file.identities(self.path) != self._files:
+            raise KnowledgeError(
+                f"{self.path}: it or its log was moved, deleted or replaced while in use; "
+                "put the same files back, or stop the robot and give a knowledge file"
+            )
+
+    @contextmanager
+    def _reading(self) -> Iterator[None]:
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise explained(error, self.path) from error

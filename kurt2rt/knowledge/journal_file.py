@@ -1,0 +1,194 @@
+"""The journal's file: how it is born, recognised, locked against a second writer and connected to."""
+
+import fcntl
+import json
+import os
+import sqlite3
+import stat
+from contextlib import closing
+from pathlib import Path
+from typing import BinaryIO
+
+from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.error import KnowledgeError, explained
+
+APPLICATION_ID = 0x4B525432
+"""'KRT2' in SQLite's header: tells a knowledge file from every other SQLite file."""
+
+FORMAT_VERSION = 1
+
+BUSY_TIMEOUT_S = 0.2
+"""How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""
+
+_MAGIC = b"SQLite format 3\x00"
+_HEADER_BYTES = 100
+_APPLICATION_ID_AT = 68
+
+_SCHEMA = f"""
+PRAGMA application_id = {APPLICATION_ID};
+PRAGMA user_version = {FORMAT_VERSION};
+CREATE TABLE binding (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE lesson (
+    sequence INTEGER PRIMARY KEY,
+    command_id TEXT NOT NULL UNIQUE,
+    stamped_at TEXT NOT NULL,
+    event TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never deleted'); END;
+CREATE TRIGGER lesson_stands BEFORE UPDATE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never changed'); END;
+CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;
+CREATE TABLE transition (
+    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
+) STRICT, WITHOUT ROWID;
+"""
+
+
+def lock_for_writing(path: Path) -> BinaryIO:
+    """Hold the one writer's lock of a knowledge file until the result is closed, or the process is gone.
+
+    Two writers would both give the next RLA the same id. The lock sits on a file beside: closing any second handle of
+    the database itself would silently drop SQLite's own locks. Raises KnowledgeError.
+    """
+    beside = path.with_name(path.name + ".lock")
+    try:
+        lock = beside.open("ab")
+    except OSError as error:
+        raise KnowledgeError(
+            f"{path}: cannot be locked ({error}); give a path in a folder that exists and may be written"
+        ) from error
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        lock.close()
+        raise KnowledgeError(
+            f"{path}: another kurt2rt is writing it ({error}); stop that one, or give another knowledge file"
+        ) from error
+    return lock
+
+
+def create(path: Path, binding: KnowledgeBinding) -> None:
+    """Put an empty journal at `path`, where nothing is, under the writer's lock. Raises KnowledgeError.
+
+    It is born whole: built in memory, written beside, synced, then renamed, so that a crash never leaves half a file.
+    """
+    orphan = log_of(path)
+    if orphan.exists() and orphan.stat().st_size > 0:  # SQLite would mix its lessons into the new file
+        raise KnowledgeError(
+            f"{path}: is gone, but its log {orphan.name} is still there and may hold lessons; "
+            "put the file back beside it, or move the log away"
+        )
+    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
+        connection.executescript(_SCHEMA)
+        meaning = {
+            "feature_hash": binding.feature_hash,
+            "feature_names": json.dumps(binding.feature_names),
+            "system": binding.system,
+            "robot": binding.robot,
+        }
+        connection.executemany("INSERT INTO binding VALUES (?, ?)", meaning.items())
+        image = connection.serialize()
+    unborn = path.with_name(f".{path.name}.unborn")
+    try:
+        with unborn.open("wb") as file:
+            file.write(image)
+            file.flush()
+            os.fsync(file.fileno())
+        unborn.rename(path)
+        folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+    except OSError as error:
+        raise KnowledgeError(
+            f"{path}: cannot be created ({error}); give a path in a folder that may be written and has room"
+        ) from error
+
+
+def require_ours(path: Path) -> None:
+    """Look at the header, before SQLite may touch the file. Raises KnowledgeError if it is no knowledge file."""
+    what_to_do = "give the path of a kurt2rt knowledge file, or of a new one"
+    try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise KnowledgeError(f"{path}: is a folder or device, not a file; {what_to_do}")
+        with path.open("rb") as file:
+            header = file.read(_HEADER_BYTES)
+    except OSError as error:
+        raise KnowledgeError(f"{path}: cannot be read ({error}); {what_to_do}") from error
+    if not header.startswith(_MAGIC):
+        raise KnowledgeError(f"{path}: is not a knowledge file (no SQLite file); {what_to_do}")
+    if int.from_bytes(header[_APPLICATION_ID_AT : _APPLICATION_ID_AT + 4], "big") != APPLICATION_ID:
+        raise KnowledgeError(f"{path}: is an SQLite file of another program; {what_to_do}")
+
+
+def connect(path: Path, options: str) -> sqlite3.Connection:
+    """Connect to a file that is ours; `options` are those of an SQLite URI. Raises KnowledgeError."""
+    connection: sqlite3.Connection | None = None
+    try:
+        # One thread uses it at a time: the one that opens it reads the lessons, then the writer's thread takes over.
+        connection = sqlite3.connect(
+            f"{path.absolute().as_uri()}?{options}",
+            uri=True,
+            timeout=BUSY_TIMEOUT_S,
+            isolation_level=None,
+            check_same_thread=False,
+        )
+        # A damaged byte must not hide in which row it is: it is kept, and what reads the row refuses it.
+        connection.text_factory = lambda text: text.decode(errors="surrogateescape")
+        (version,) = connection.execute("PRAGMA user_version").fetchone()
+    except sqlite3.Error as error:
+        if connection is not None:
+            connection.close()
+        raise explained(error, path) from error
+    if version > FORMAT_VERSION:
+        connection.close()
+        raise KnowledgeError(
+            f"{path}: has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}; update kurt2rt"
+        )
+    return connection
+
+
+def log_of(path: Path) -> Path:
+    """SQLite's write-ahead log beside the file: the newest lessons stand in it until it is merged."""
+    return path.with_name(path.name + "-wal")
+
+
+def identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
+    """Which files (device, inode) stand at the journal's and its log's place; None: none does."""
+    found: list[tuple[int, int] | None] = []
+    for each in (path, log_of(path)):
+        try:
+            status = each.stat()
+        except OSError:
+            found.append(None)
+        else:
+            found.append((status.st_dev, status.st_ino))
+    return tuple(found)
+
+
+def make_durable(connection: sqlite3.Connection, path: Path) -> None:
+    """Every commit is on the disk when it returns, from now on. Raises KnowledgeError if the file cannot do that."""
+    try:
+        (mode,) = connection.execute("PRAGMA journal_mode = WAL").fetchone()
+        connection.execute("PRAGMA synchronous = FULL")
+        connection.execute("BEGIN IMMEDIATE")  # finds a read-only or full disk now, not at the first lesson
+        connection.execute("ROLLBACK")
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    if mode != "wal":
+        raise KnowledgeError(f"{path}: its disk cannot hold an SQLite log (mode {mode}); give a path on a local disk")
+
+
+def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:
+    """What the file is bound to. Raises KnowledgeError."""
+    try:
+        meaning: dict[str, str] = dict(connection.execute("SELECT key, value FROM binding"))
+        names = json.loads(meaning["feature_names"])
+        return KnowledgeBinding(meaning["feature_hash"], tuple(names), meaning["system"], meaning["robot"])
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    except (KeyError, TypeError, ValueError) as error:
+        raise KnowledgeError(
+            f"{path}: table binding is damaged ({error!r}); keep the file, and go on with a backup copy"
+        ) from error

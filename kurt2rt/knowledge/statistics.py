@@ -1,0 +1,28 @@
+"""What the robot counted while it used its knowledge; unlike a lesson, the last second of it may be lost."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Statistics:
+    """Counts since the knowledge was begun. Must not be changed once it is handed over to be written."""
+
+    uses: Mapping[int, int] = field(default_factory=dict)
+    """RLA id -> how often it won."""
+    transitions: Mapping[tuple[int, int], int] = field(default_factory=dict)
+    """(RLA id, follow-up RLA id) -> how often the one followed the other; edges of the RLA network (paper, III)."""
+
+
+def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:
+    """Share of each follow-up RLA in percent, most frequent first: RLA id -> {follow-up id: percent}."""
+    totals: dict[int, int] = {}
+    for (before, _), count in statistics.transitions.items():
+        totals[before] = totals.get(before, 0) + count
+    shares: dict[int, dict[int, float]] = {}
+    for (before, after), count in sorted(
+        statistics.transitions.items(), key=lambda edge: (edge[0][0], -edge[1], edge[0])
+    ):
+        if count > 0:
+            shares.setdefault(before, {})[after] = 100 * count / totals[before]
+    return shares

@@ -1,0 +1,206 @@
+"""The journal's writer: a thread that makes lessons durable while the tick goes on."""
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from types import TracebackType
+from typing import Self
+
+from kurt2rt.knowledge.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.events import encode_event
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import ActionReplaced, RlaCreated, RlaDeleted, TeachingEvent
+
+
+@dataclass(frozen=True, slots=True)
+class Acknowledgement:
+    """What became of a submitted lesson: durable at `sequence`, or never to be written because of `error`."""
+
+    command_id: str
+    sequence: int | None
+    error: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class RetryDelays:
+    """How long the writer waits before it tries a failing disk again: doubled each time, up to the longest."""
+
+    first_s: float = 0.1
+    longest_s: float = 2.0
+
+
+class _Stop:
+    """Queue token: no more comes."""
+
+
+def utc_now() -> str:
+    """The wall clock as UTC in ISO 8601, to the millisecond."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+class JournalWriter:
+    """Owns a journal from now on, and closes it. Lessons are written in the order of `submit`; none is ever dropped.
+
+    On a failing disk the lessons wait, `trouble` says why (the robot must stand meanwhile), and the writer tries again
+    until it succeeds.
+    """
+
+    def __init__(self, journal: Journal, now: Callable[[], str], retry: RetryDelays | None = None) -> None:
+        self.trouble: str | None = None
+        """One line: what, where, what to do; None while lessons become durable."""
+        self._journal = journal
+        self._now = now
+        self._retry = retry or RetryDelays()
+        # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
+        self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | threading.Event | _Stop] = queue.SimpleQueue()
+        self._acknowledged: queue.SimpleQueue[Acknowledgement] = queue.SimpleQueue()
+        self._accepting = True
+        self._submitted = 0
+        self._settled = 0
+        # The worker's own, from here on.
+        self._waiting: list[JournalEntry] = []
+        self._statistics: Statistics | None = None
+        self._flushes: list[threading.Event] = []
+        self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
+        self._thread.start()
+
+    @property
+    def unwritten(self) -> int:
+        """Lessons submitted and not yet settled."""
+        return self._submitted - self._settled
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Hand over a lesson; never waits. Raises KnowledgeError after `close`."""
+        self._require_open()
+        self._submitted += 1
+        self._inbox.put(event)
+
+    def submit_statistics(self, statistics: Statistics) -> None:
+        """Hand over statistics; never waits. Only the newest that wait are written."""
+        self._require_open()
+        self._inbox.put(statistics)
+
+    def acknowledged(self) -> list[Acknowledgement]:
+        """What was settled since the last call, in the order of `submit`; never waits."""
+        settled: list[Acknowledgement] = []
+        while True:
+            try:
+                settled.append(self._acknowledged.get_nowait())
+            except queue.Empty:
+                return settled
+
+    def flush(self, timeout_s: float) -> bool:
+        """Wait until everything handed over before is durable; False when it is not after `timeout_s`."""
+        done = threading.Event()
+        self._inbox.put(done)
+        return self._thread.is_alive() and done.wait(timeout_s)
+
+    def close(self, timeout_s: float = 10.0) -> None:
+        """Flush, then close the journal. Raises KnowledgeError that says why and how many lessons were not written."""
+        if not self._accepting:
+            return
+        self._accepting = False
+        self.flush(timeout_s)
+        self._inbox.put(_Stop())
+        self._thread.join(timeout_s)
+        if self.trouble is not None or self._thread.is_alive():
+            why = self.trouble or f"{self._journal.path}: the disk does not answer; look at its health"
+            raise KnowledgeError(f"{why}; closed with {self.unwritten} lessons not written")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _require_open(self) -> None:
+        if not self._accepting:
+            raise KnowledgeError(f"{self._journal.path}: its writer is closed; open the journal again to teach")
+
+    def _run(self) -> None:
+        try:
+            with self._journal:
+                self._work()
+        except KnowledgeError as error:  # closing failed; what was acknowledged is durable nevertheless
+            self.trouble = str(error)
+        except BaseException as error:
+            self.trouble = f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
+            raise
+
+    def _work(self) -> None:
+        pause_s = 0.0
+        while True:
+            stop = self._take_in(pause_s)
+            try:
+                self._write()
+            except KnowledgeError as error:
+                self.trouble = str(error)
+                pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
+            else:
+                self.trouble = None
+                pause_s = 0.0
+            if stop:
+                return
+
+    def _take_in(self, pause_s: float) -> bool:
+        """Take everything that was handed over; wait for something to come, or while the disk fails, all the pause."""
+        until_s = time.monotonic() + pause_s
+        item = self._inbox.get() if pause_s == 0.0 else None
+        while True:
+            match item:
+                case _Stop():
+                    return True
+                case threading.Event():
+                    self._flushes.append(item)
+                case Statistics():
+                    self._statistics = item
+                case RlaCreated() | ActionReplaced() | RlaDeleted():
+                    self._take_lesson(item)
+                case None:  # only at the start of a pause
+                    pass
+            try:
+                item = self._inbox.get(timeout=max(0.0, until_s - time.monotonic()))
+            except queue.Empty:
+                return False
+
+    def _take_lesson(self, event: TeachingEvent) -> None:
+        try:
+            encode_event(event)
+        except KnowledgeError as error:  # trying again would not help, and hold up all that come after
+            self._settle(Acknowledgement(event.origin.command_id, None, str(error)))
+        else:
+            self._waiting.append(JournalEntry(event, self._now()))
+
+    def _write(self) -> None:
+        if self._waiting:
+            receipts = self._journal.append(self._waiting)
+            self._waiting = []
+            for receipt in receipts:
+                self._settle(_acknowledgement(receipt))
+        if self._statistics is not None:
+            self._journal.checkpoint(self._statistics)
+            self._statistics = None
+        for flush in self._flushes:
+            flush.set()
+        self._flushes = []
+
+    def _settle(self, acknowledgement: Acknowledgement) -> None:
+        self._acknowledged.put(acknowledgement)
+        self._settled += 1
+
+
+def _acknowledgement(receipt: Receipt) -> Acknowledgement:
+    if receipt.agrees:
+        return Acknowledgement(receipt.command_id, receipt.sequence, None)
+    return Acknowledgement(
+        receipt.command_id,
+        None,
+        f"command {receipt.command_id!r}: another lesson of this id stands in row {receipt.sequence}; teach it again",
+    )
