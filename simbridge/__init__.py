@@ -1,1 +1,1 @@
-"""Rides on the other end of the bus: world, body, sensors and micro-controller of the simulated KURT2."""
+"""The other end of the bus: worlds, the simulated body and sensors, and the micro-controller that speaks CAN."""

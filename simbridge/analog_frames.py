@@ -1,0 +1,48 @@
+"""Frames of the analog channels: which reading travels in which frame, packed anew only when it changed."""
+
+from collections.abc import Sequence
+
+from hal.codec import Codec
+from hal.frame import Frame
+from hal.robot_settings import InfraredSettings
+from hal.settings import SettingsError
+
+_MESSAGES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15")
+"""ADC12_15 is not among them: it carries motor currents and the board's temperature."""
+
+
+class AnalogFrames:
+    """The newest frame of each analog message. Channels that no sensor is wired to are grounded and read 0."""
+
+    def __init__(self, infrared: InfraredSettings, codec: Codec) -> None:
+        """Find each sensor's place. Raises SettingsError for a sensor on a channel that carries something else."""
+        self._messages = [codec.message(name) for name in _MESSAGES]
+        self._values = [[0] * len(message.signals) for message in self._messages]
+        where = {
+            channel: (number, place)
+            for number, message in enumerate(self._messages)
+            for place, channel in enumerate(message.signals)
+        }
+        for sensor in infrared.sensors:
+            if sensor.channel not in where:
+                raise SettingsError(
+                    f"infrared.sensors {sensor.name}: the simulated robot has no distance sensor on {sensor.channel}; "
+                    f"use one of: {', '.join(where)}"
+                )
+        self._places = [where[sensor.channel] for sensor in infrared.sensors]
+        self.frames: list[Frame] = [
+            message.pack(*values) for message, values in zip(self._messages, self._values, strict=True)
+        ]
+        self.with_sensor = sorted({number for number, _ in self._places})
+        """Which of the frames carry a distance sensor."""
+        self.without_sensor = [number for number in range(len(_MESSAGES)) if number not in self.with_sensor]
+
+    def note(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
+        """Take over the new readings of some sensors; `counts` holds one for every sensor."""
+        changed = set()
+        for sensor in fresh:
+            number, place = self._places[sensor]
+            self._values[number][place] = counts[sensor]
+            changed.add(number)
+        for number in changed:
+            self.frames[number] = self._messages[number].pack(*self._values[number])

@@ -1,0 +1,71 @@
+"""Pictures of worlds, robots and their ways, on axes that the caller owns."""
+
+import math
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, Polygon
+
+from hal.robot_settings import RobotSettings
+from simbridge.geometry import Point, rectangle
+from simbridge.pose import Pose
+from simbridge.world_settings import WorldSettings
+
+_WALL = "#d5d5d5"
+_WALL_EDGE = "#9a9a9a"
+_ROBOT = "#2f6db3"
+_MARGIN_M = 0.15
+
+
+def draw_world(axes: Axes, world: WorldSettings) -> None:
+    """Walls and obstacles to scale, seen from above; x to the right, y up, metres."""
+    width_m, height_m = world.size_m
+    axes.set_xlim(-_MARGIN_M, width_m + _MARGIN_M)
+    axes.set_ylim(-_MARGIN_M, height_m + _MARGIN_M)
+    axes.set_aspect("equal")
+    axes.set_facecolor(_WALL)
+    axes.add_patch(
+        Polygon(world.outline, closed=True, facecolor="white", edgecolor=_WALL_EDGE, linewidth=1.0, zorder=0)
+    )
+    for corners in world.solids:
+        axes.add_patch(Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1))
+    for post in world.round_obstacles:
+        axes.add_patch(
+            Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+        )
+    axes.set_xticks(range(math.floor(width_m) + 1))
+    axes.set_yticks(range(math.floor(height_m) + 1))
+    axes.tick_params(length=0, labelsize=8, colors="#666666")
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_xlabel("m", fontsize=8, color="#666666")
+
+
+def draw_robot(axes: Axes, pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
+    """The body as a box with a wedge that points ahead."""
+    length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
+    centre = (pose.x_m, pose.y_m)
+    body = rectangle(centre, length_m, width_m, pose.heading_rad)
+    axes.add_patch(Polygon(body, closed=True, facecolor=colour, edgecolor=colour, alpha=0.25, zorder=3))
+    axes.add_patch(Polygon(body, closed=True, fill=False, edgecolor=colour, linewidth=1.0, zorder=3))
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+
+    def at(ahead_m: float, left_m: float) -> Point:
+        return pose.x_m + ahead_m * cos - left_m * sin, pose.y_m + ahead_m * sin + left_m * cos
+
+    wedge = (at(length_m * 0.42, 0.0), at(length_m * 0.12, width_m * 0.25), at(length_m * 0.12, -width_m * 0.25))
+    axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=4))
+
+
+def draw_trail(axes: Axes, points: Sequence[Point], colour: str = _ROBOT) -> None:
+    """The way the robot went, in metres."""
+    axes.plot(*_columns(points), color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2)
+
+
+def draw_marks(axes: Axes, points: Sequence[Point], label: str, colour: str = "#c2452d") -> None:
+    """Dots where something happened, named in the legend once the caller asks for one."""
+    axes.plot(*_columns(points), linestyle="none", marker="o", markersize=4.0, color=colour, label=label, zorder=5)
+
+
+def _columns(points: Sequence[Point]) -> tuple[list[float], list[float]]:
+    return [x for x, _ in points], [y for _, y in points]

@@ -1,0 +1,141 @@
+"""The robot's micro-controllers as a CAN node: CONTROL in, motors ordered, telemetry out, in a cycle of their own."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from hal.bus import CONTROL_ID, CanBus
+from hal.codec import JunkFrameError, load_codec
+from hal.control import Control, Mode, RawControl, SystemControl, decode_control
+from hal.robot_settings import RobotSettings
+from simbridge.instruments import Instruments
+from simbridge.telemetry import Telemetry
+
+CRASH_STEP_M_S = 0.45
+"""A set point that grows by more in one cycle crashes the controller. The real one was seen to crash from zero to full
+speed (reference 4); half of the full 0.9 m/s is our choice."""
+
+
+class Orders(NamedTuple):
+    """What the motors are told in a cycle."""
+
+    left_m_s: float
+    right_m_s: float
+    left_brake: bool = False
+    right_brake: bool = False
+
+
+_OFF = Orders(0.0, 0.0)
+_BRAKED = Orders(0.0, 0.0, left_brake=True, right_brake=True)
+
+
+class MicroController:
+    """Both controllers of the robot: the newest CONTROL of a cycle wins, junk changes nothing and is counted.
+
+    Without a valid CONTROL for the watchdog's time the motors are off and braked. A set point that jumps up makes the
+    controller go dead: motors off and no telemetry until MC_RESET. It never reverses a side without ramping it down.
+    """
+
+    def __init__(self, robot: RobotSettings, bus: CanBus, instruments: Instruments) -> None:
+        self._bus = bus
+        self._motors = robot.motors
+        self._instruments = instruments
+        self._telemetry = Telemetry(robot, load_codec(robot.can.database), bus.telemetry_port(), instruments)
+        self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.can.cycle_s)
+        self._silent_cycles = self._watchdog_cycles
+        self._actuators_on = True
+        self._last_payload = b""
+        self._last_control: Control = SystemControl(Mode.ACTUATOR_ON)
+        self.orders = _BRAKED
+        self.dead = False
+        """True after a crash, until MC_RESET."""
+        self.junk_frames = 0
+        """CONTROL frames that could not be understood, since the robot was switched on."""
+
+    def receive(self) -> None:
+        """First half of a cycle: take what waits on the bus and order the motors. Raises hal.bus.BusError."""
+        self._silent_cycles += 1
+        newest: Orders | None = None
+        for message in self._bus.drain():
+            if message.arbitration_id != CONTROL_ID or message.is_extended_id:
+                continue
+            if message.is_remote_frame or message.is_error_frame:
+                self.junk_frames += 1
+                continue
+            try:
+                control = self._decoded(message.data)
+            except JunkFrameError:
+                self.junk_frames += 1
+                continue
+            self._silent_cycles = 0
+            if isinstance(control, SystemControl):
+                newest = self._obey(control, newest)
+            else:
+                left_m_s, right_m_s = control.wheel_speeds(self._motors)
+                brakes = (
+                    (control.left.brake, control.right.brake) if isinstance(control, RawControl) else (False, False)
+                )
+                newest = Orders(left_m_s, right_m_s, *brakes)
+        if self.dead:
+            return
+        if newest is not None and self._actuators_on:
+            self._take(newest)
+        elif self._silent_cycles >= self._watchdog_cycles:
+            self.orders = _BRAKED
+
+    def note_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
+        """Converter results of the sensors that measured anew."""
+        self._telemetry.note_readings(fresh, counts)
+
+    def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
+        """Second half of a cycle: what was measured goes out. Raises hal.bus.BusError."""
+        self._instruments.count(left_ticks, right_ticks)
+        if not self.dead:
+            self._telemetry.send(left_ticks, right_ticks, bumpers)
+
+    def _decoded(self, data: bytes | bytearray) -> Control:
+        # Most cycles repeat the last set point.
+        if data != self._last_payload:
+            self._last_control = decode_control(data)
+            self._last_payload = bytes(data)
+        return self._last_control
+
+    def _take(self, wanted: Orders) -> None:
+        old = self.orders
+        if (
+            _speed_up_m_s(old.left_m_s, wanted.left_m_s) > CRASH_STEP_M_S
+            or _speed_up_m_s(old.right_m_s, wanted.right_m_s) > CRASH_STEP_M_S
+        ):
+            self.dead = True
+            self.orders = _OFF
+            return
+        self.orders = wanted
+
+    def _obey(self, command: SystemControl, newest: Orders | None) -> Orders | None:
+        """Obey a system command; returns the set point that still holds after it."""
+        if command.mode is Mode.MC_RESET:
+            self.dead = False
+            self._actuators_on = True
+            self.orders = _OFF
+            self._instruments.reset()
+            return None
+        if self.dead:
+            return newest
+        if command.mode is Mode.ACTUATOR_ON:
+            self._actuators_on = True
+        elif command.mode is Mode.ACTUATOR_OFF:
+            self._actuators_on = False
+            self.orders = _OFF
+            return None
+        elif command.mode is Mode.CALIBRATE_GYRO:
+            self._instruments.calibrate_gyro()
+        elif command.mode is Mode.RESET_GYRO:
+            self._instruments.zero_gyro()
+        elif command.mode is Mode.UPDATE_ANGLE:
+            self._instruments.set_angle(command.angle_urad / 1e6)
+        # RESET_SSC concerns a servo controller that this robot does not carry.
+        return newest
+
+
+def _speed_up_m_s(old_m_s: float, new_m_s: float) -> float:
+    """How much faster the new set point is; after a change of direction it starts from standing."""
+    return abs(new_m_s) - (abs(old_m_s) if old_m_s * new_m_s > 0 else 0.0)

@@ -1,0 +1,72 @@
+"""Schema of what stands inside a world: walls, posts and boxes, each with a name to move it by. Lengths in metres."""
+
+import math
+from typing import Annotated, Self
+
+from pydantic import Field, field_validator, model_validator
+
+from hal.settings import Settings
+from simbridge.geometry import Point, is_convex, rectangle
+
+Coordinate = Annotated[float, Field(ge=-50, le=50)]
+Corner = tuple[Coordinate, Coordinate]
+
+
+class WallSettings(Settings):
+    """A wooden wall inside the world, straight, with square ends; it can be moved while the robot drives."""
+
+    name: str
+    from_m: Corner
+    to_m: Corner
+    thickness_m: Annotated[float, Field(ge=0.02, le=1)]
+
+    @model_validator(mode="after")
+    def _has_length(self) -> Self:
+        if math.dist(self.from_m, self.to_m) < 0.01:
+            raise ValueError("from_m and to_m must be at least 0.01 m apart")
+        return self
+
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """Corners of the wall seen from above, counter-clockwise."""
+        (ax, ay), (bx, by) = self.from_m, self.to_m
+        heading_rad = math.atan2(by - ay, bx - ax)
+        return rectangle(
+            ((ax + bx) / 2, (ay + by) / 2), math.dist(self.from_m, self.to_m), self.thickness_m, heading_rad
+        )
+
+    def moved(self, dx_m: float, dy_m: float) -> Self:
+        """The same wall at another place."""
+        (ax, ay), (bx, by) = self.from_m, self.to_m
+        return self.model_copy(update={"from_m": (ax + dx_m, ay + dy_m), "to_m": (bx + dx_m, by + dy_m)})
+
+
+class RoundObstacleSettings(Settings):
+    """A post."""
+
+    name: str
+    x_m: Coordinate
+    y_m: Coordinate
+    radius_m: Annotated[float, Field(gt=0.001, le=5)]
+
+    def moved(self, dx_m: float, dy_m: float) -> Self:
+        """The same post at another place."""
+        return self.model_copy(update={"x_m": self.x_m + dx_m, "y_m": self.y_m + dy_m})
+
+
+class PolygonObstacleSettings(Settings):
+    """A box with straight sides; convex, since the physics takes the hull of anything else without a word."""
+
+    name: str
+    corners: Annotated[tuple[Corner, ...], Field(min_length=3)]
+
+    @field_validator("corners")
+    @classmethod
+    def _is_convex(cls, corners: tuple[Corner, ...]) -> tuple[Corner, ...]:
+        if not is_convex(corners):
+            raise ValueError("must be convex, each corner named once; build another shape from several convex ones")
+        return corners
+
+    def moved(self, dx_m: float, dy_m: float) -> Self:
+        """The same box at another place."""
+        return self.model_copy(update={"corners": tuple((x + dx_m, y + dy_m) for x, y in self.corners)})

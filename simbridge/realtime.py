@@ -1,0 +1,64 @@
+"""The simulated robot in real time: its cycle in a thread of its own, as on the real controller."""
+
+import threading
+import time
+from types import TracebackType
+from typing import Self
+
+from simbridge.simulated_robot import SimulatedRobot
+
+
+class RealtimeSimulation:
+    """Steps a robot on absolute monotonic deadlines. Cycles that were missed are skipped whole and counted.
+
+    An error in the thread ends it, shows in `error`, and is raised by `stop` (and so by leaving the with block).
+    """
+
+    def __init__(self, robot: SimulatedRobot, cycle_s: float = 0.01) -> None:
+        self._robot = robot
+        self._cycle_ns = round(cycle_s * 1e9)
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="simulated-robot", daemon=True)
+        self.missed_cycles = 0
+        self.error: Exception | None = None
+        """What ended the thread, if something did."""
+
+    def start(self) -> None:
+        """Begin; once only."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread, wait for it, and raise what ended it before, if something did."""
+        self._stopping.set()
+        if self._thread.ident is not None:
+            self._thread.join()
+        if self.error is not None:
+            raise self.error
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def _run(self) -> None:
+        try:
+            self._pace()
+        except Exception as error:  # noqa: BLE001  # kept whole and raised by stop, in the caller's thread
+            self.error = error
+
+    def _pace(self) -> None:
+        deadline_ns = time.monotonic_ns()
+        while True:
+            deadline_ns += self._cycle_ns
+            late_ns = time.monotonic_ns() - deadline_ns
+            if late_ns > self._cycle_ns:
+                missed = late_ns // self._cycle_ns
+                self.missed_cycles += missed
+                deadline_ns += missed * self._cycle_ns
+            if self._stopping.wait(max(0.0, (deadline_ns - time.monotonic_ns()) / 1e9)):
+                return
+            self._robot.step()

@@ -1,0 +1,126 @@
+"""The simulated KURT2: body, sensors and micro-controller on one end of a CAN bus, one cycle a step."""
+
+import hashlib
+import struct
+
+from hal.bus import CanBus
+from hal.robot_settings import RobotSettings
+from simbridge.body import Body
+from simbridge.bumpers import Bumpers, Collisions
+from simbridge.infrared import InfraredSensors
+from simbridge.instruments import Instruments
+from simbridge.laps import Laps
+from simbridge.microcontroller import MicroController
+from simbridge.noise import Noise
+from simbridge.pose import Pose
+from simbridge.wheels import Wheels
+from simbridge.world import World
+from simbridge.world_settings import WorldSettings
+
+_LAPS_EVERY_CYCLES = 10
+
+
+class SimulatedRobot:
+    """The other end of the bus. Its time advances only by `step`; the same seed and frames give the same run."""
+
+    def __init__(self, robot: RobotSettings, world: WorldSettings, bus: CanBus, seed: int) -> None:
+        """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down."""
+        cycle_s = robot.can.cycle_s
+        self.world = World(world)
+        self._cycle_s = cycle_s
+        self._cycles = 0
+        self._infrared_noise = Noise(seed, "infrared")
+        self._slip_noise = Noise(seed, "slip")
+        self._wheels = Wheels(robot)
+        self._body = Body(self.world, robot.geometry, cycle_s, self._slip_noise)
+        self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise)
+        self._bumpers = Bumpers(robot.bumpers, robot.geometry)
+        self._collisions = Collisions(cycle_s)
+        self._laps = Laps(world)
+        self._pressed = 0
+        self.controller = MicroController(robot, bus, Instruments(robot, self._body, self._wheels))
+        self.place(world.start_poses[0].pose)
+
+    def step(self) -> None:
+        """One cycle of 10 ms: CONTROL in, motors, physics, sensors, telemetry out. Raises hal.bus.BusError."""
+        self._cycles += 1
+        controller, wheels, body = self.controller, self._wheels, self._body
+        controller.receive()
+        wheels.turn(*controller.orders)
+        body.move(wheels.left_m_s, wheels.right_m_s)
+        pose = body.pose
+        self._collisions.note(body.touching)
+        self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
+        controller.note_readings(self._infrared.measure(pose), self._infrared.counts)
+        if self._cycles % _LAPS_EVERY_CYCLES == 0:
+            self._laps.follow((pose.x_m, pose.y_m))
+        controller.send(*wheels.take_ticks(), self._pressed)
+
+    def place(self, pose: Pose) -> None:
+        """Pick it up and put it down elsewhere: wheels still, sensors settled, no lap or collision counted for it."""
+        self._wheels.halt()
+        self._body.place(pose)
+        self._collisions.forget()
+        self._pressed = 0
+        self._laps.put((pose.x_m, pose.y_m))
+        self._infrared.measure_all(pose)
+        self.controller.note_readings(range(len(self._infrared.counts)), self._infrared.counts)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since it was switched on."""
+        return self._cycles * self._cycle_s
+
+    @property
+    def pose(self) -> Pose:
+        """Where it really is."""
+        return self._body.pose
+
+    @property
+    def collisions(self) -> int:
+        """Collisions so far; touches within 0.5 s of one another are one."""
+        return self._collisions.count
+
+    @property
+    def touching(self) -> bool:
+        """True while a wall touches the body anywhere."""
+        return self._body.touching
+
+    @property
+    def bumped(self) -> bool:
+        """True while a bumper is pressed."""
+        return self._pressed != 0
+
+    @property
+    def laps(self) -> float:
+        """Laps along the outer wall so far, positive with the wall on the left."""
+        return self._laps.count
+
+    @property
+    def infrared_counts(self) -> tuple[int, ...]:
+        """Present readings, in the order of the sensor table."""
+        return tuple(self._infrared.counts)
+
+    def state_hash(self) -> str:
+        """SHA-256 over everything that its future depends on, to the last bit."""
+        numbers = (
+            *self._body.pose,
+            *self._body.velocity,
+            *self._body.slip,
+            *self._wheels.state,
+            *self.controller.orders,
+            *self._infrared.due_s,
+            self.laps,
+        )
+        counters = (
+            *self._infrared.counts,
+            self._cycles,
+            self._pressed,
+            self._collisions.count,
+            self._infrared_noise.drawn,
+            self._slip_noise.drawn,
+            self.controller.junk_frames,
+            self.controller.dead,
+        )
+        layout = f"<{len(numbers)}d{len(counters)}q"
+        return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()

@@ -1,0 +1,61 @@
+"""The two sides' motors with their speed loops: set points in, wheel speeds and encoder ticks out."""
+
+import math
+
+from hal.robot_settings import RobotSettings
+
+REVERSAL_SPEED_M_S = 0.02
+"""Slower than this a side may be driven the other way (firmware's SLOW_SPEED, 120 ticks in 100 ms)."""
+
+
+class Wheels:
+    """Three coupled wheels a side behind one motor; first order with limits on speeding up and braking.
+
+    Wheel speeds are those of the rims: a robot that is blocked has turning, slipping wheels, and its encoders count.
+    """
+
+    def __init__(self, robot: RobotSettings) -> None:
+        motors, cycle_s = robot.motors, robot.can.cycle_s
+        self._loop_gain = 1.0 - math.exp(-cycle_s / motors.speed_loop_time_s)
+        self._speed_up_m_s = motors.acceleration_m_s2 * cycle_s
+        self._brake_m_s = motors.braking_m_s2 * cycle_s
+        self._maximum_m_s = motors.maximum_speed_m_s
+        self._ticks_per_speed = cycle_s / robot.geometry.metres_per_tick
+        self.left_m_s = 0.0
+        self.right_m_s = 0.0
+        self._left_carry = 0.0
+        self._right_carry = 0.0
+
+    def turn(
+        self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False
+    ) -> None:
+        """One cycle toward the targets; a braked side slows as hard as it can, whatever its target."""
+        self.left_m_s = self._next_speed(self.left_m_s, left_target_m_s, left_brake)
+        self.right_m_s = self._next_speed(self.right_m_s, right_target_m_s, right_brake)
+
+    def take_ticks(self) -> tuple[int, int]:
+        """Encoder ticks of this cycle, left and right; fractions are carried to the next."""
+        left = self._left_carry + self.left_m_s * self._ticks_per_speed
+        right = self._right_carry + self.right_m_s * self._ticks_per_speed
+        left_ticks, right_ticks = math.floor(left), math.floor(right)
+        self._left_carry, self._right_carry = left - left_ticks, right - right_ticks
+        return left_ticks, right_ticks
+
+    def halt(self) -> None:
+        """Wheels still at once, for a robot that was picked up and put elsewhere."""
+        self.left_m_s = self.right_m_s = self._left_carry = self._right_carry = 0.0
+
+    @property
+    def state(self) -> tuple[float, ...]:
+        """Everything that the next cycle depends on."""
+        return self.left_m_s, self.right_m_s, self._left_carry, self._right_carry
+
+    def _next_speed(self, speed: float, target: float, brake: bool) -> float:
+        if brake:
+            return 0.0 if abs(speed) <= self._brake_m_s else speed - math.copysign(self._brake_m_s, speed)
+        if speed * target < 0 and abs(speed) > REVERSAL_SPEED_M_S:
+            target = 0.0
+        change = (target - speed) * self._loop_gain
+        limit = self._speed_up_m_s if speed * change >= 0 else self._brake_m_s
+        change = min(limit, max(-limit, change))
+        return min(self._maximum_m_s, max(-self._maximum_m_s, speed + change))

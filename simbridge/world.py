@@ -1,0 +1,60 @@
+"""The walls of a world in the physics engine: what bodies bump into and what rays meet."""
+
+import pymunk
+
+from simbridge.geometry import Point, edges_of
+from simbridge.world_settings import WorldSettings
+
+ROBOT_KIND = 1
+WALL_KIND = 2
+ROBOT_GROUP = 1
+"""Shapes of one group ignore one another: rays start inside the robot's own body."""
+
+WALL_FRICTION = 0.3
+"""Wood on wood; our choice."""
+_CONTACT_SLOP_M = 0.0005
+"""How far a touching body sinks in, so that a contact lasts while it lasts. The default suits pixels."""
+
+
+class World:
+    """Walls and obstacles in a pymunk space without gravity; the robot's body joins it from outside."""
+
+    def __init__(self, settings: WorldSettings) -> None:
+        self.settings = settings
+        """As the world is now: walls that were moved stand where they were moved to."""
+        self.space = pymunk.Space()
+        self.space.collision_slop = _CONTACT_SLOP_M
+        self._ray_filter = pymunk.ShapeFilter(group=ROBOT_GROUP)
+        self._bodies: dict[str, pymunk.Body] = {}
+        # Radius 0: outline corners are the inner faces themselves.
+        for a, b in edges_of(settings.outline[:-1]):
+            self._add_shape(pymunk.Segment(self.space.static_body, a, b, 0.0))
+        for wall in settings.walls:
+            self._add_shape(pymunk.Poly(self._add_body(wall.name), wall.corners))
+        for box in settings.polygon_obstacles:
+            self._add_shape(pymunk.Poly(self._add_body(box.name), box.corners))
+        for post in settings.round_obstacles:
+            self._add_shape(pymunk.Circle(self._add_body(post.name), post.radius_m, (post.x_m, post.y_m)))
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        """Move a named wall or obstacle while all else goes on. Raises KeyError that lists the names."""
+        self.settings = self.settings.moved(name, dx_m, dy_m)
+        body = self._bodies[name]
+        body.position = (body.position.x + dx_m, body.position.y + dy_m)
+        self.space.reindex_shapes_for_body(body)
+
+    def free_share(self, start: Point, end: Point) -> float:
+        """Share of the way from start to end that is free of walls, 0 to 1; the robot itself is not in the way."""
+        hit = self.space.segment_query_first(start, end, 0.0, self._ray_filter)
+        return 1.0 if hit is None else hit.alpha
+
+    def _add_body(self, name: str) -> pymunk.Body:
+        body = pymunk.Body(body_type=pymunk.Body.STATIC)
+        self._bodies[name] = body
+        self.space.add(body)
+        return body
+
+    def _add_shape(self, shape: pymunk.Shape) -> None:
+        shape.friction = WALL_FRICTION
+        shape.collision_type = WALL_KIND
+        self.space.add(shape)
