@@ -1,7 +1,7 @@
 """The CAN bus: opening, draining without waiting, and the two ports through which frames go out."""
 
 import contextlib
-import socket
+from pathlib import Path
 
 import can
 
@@ -11,6 +11,9 @@ CONTROL_ID = 0x01
 _QUEUE_FRAMES = 4096
 """Frames that wait for a listener of the in-process bus, and the most that one drain takes: a bus that is full for
 10 ms carries about 200, so whatever waited when a drain began is taken by it."""
+
+_CAN_INTERFACE = "280"
+"""ARPHRD_CAN, the kind of network interface that Linux shows for CAN."""
 
 
 class BusError(OSError):
@@ -23,7 +26,7 @@ class CanBus:
     def __init__(self, spec: str) -> None:
         """Open `virtual:NAME` or a SocketCAN interface. Raises BusError."""
         self.name = spec
-        self._raw: can.BusABC | None = _open_raw(spec)
+        self._python_can_bus: can.BusABC | None = _open_raw(spec)
         self._control_taken = False
 
     def drain(self) -> list[can.Message]:
@@ -55,19 +58,19 @@ class CanBus:
     def reopen(self) -> None:
         """Open the same bus anew after it was lost; ports stay valid. Raises BusError while it is still gone."""
         self.shutdown()
-        self._raw = _open_raw(self.name)
+        self._python_can_bus = _open_raw(self.name)
 
     def shutdown(self) -> None:
         """Give the bus back; may be called twice."""
-        raw, self._raw = self._raw, None
+        raw, self._python_can_bus = self._python_can_bus, None
         if raw is not None:
             with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
                 raw.shutdown()
 
     def _usable(self) -> can.BusABC:
-        if self._raw is None:
+        if self._python_can_bus is None:
             raise BusError(f"bus {self.name}: is shut down; open it again")
-        return self._raw
+        return self._python_can_bus
 
     def _send(self, frame: can.Message) -> None:
         raw = self._usable()
@@ -108,13 +111,17 @@ def _open_raw(spec: str) -> can.BusABC:
             raise BusError(f"bus {spec!r}: no such kind; give virtual:NAME or a SocketCAN interface such as can0")
         return can.Bus(interface="virtual", channel=name, rx_queue_size=_QUEUE_FRAMES, ignore_config=True)
     try:
-        socket.if_nametoindex(spec)
-    except OSError as error:
+        kind = Path(f"/sys/class/net/{spec}/type").read_text(encoding="ascii").strip()
+    except (OSError, ValueError) as error:
         raise BusError(
             f"bus {spec!r}: no such network interface; plug in the adapter, or set it up: "
             f"ip link set {spec or 'can0'} up type can bitrate 1000000"
         ) from error
+    if kind != _CAN_INTERFACE:
+        raise BusError(f"bus {spec!r}: is a network interface, but not of CAN; give one such as can0")
     try:
         return can.Bus(interface="socketcan", channel=spec, ignore_config=True)
     except (can.CanError, OSError, AttributeError) as error:
-        raise BusError(f"bus {spec!r}: cannot be opened as CAN ({error}); is it a CAN interface, and up?") from error
+        raise BusError(
+            f"bus {spec!r}: cannot be opened ({error}); load the kernel's CAN modules: modprobe can_raw"
+        ) from error

@@ -4,6 +4,7 @@ import struct
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
+from typing import cast
 
 import cantools
 from cantools.database import Message, Signal
@@ -113,12 +114,9 @@ def load_database(database: str = "kurt2.dbc") -> Database:
     if not path.is_file():
         path = CONFIG_DIR / "can" / database
     try:
-        loaded = cantools.database.load_file(path)
+        return cast(Database, cantools.database.load_file(path, database_format="dbc"))
     except (OSError, UnicodeDecodeError, cantools.Error) as error:
         raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
-    if not isinstance(loaded, Database):
-        raise CodecError(f"{path}: is a diagnostics database, give a CAN database (DBC)")
-    return loaded
 
 
 def load_codec(database: str = "kurt2.dbc") -> Codec:

@@ -140,28 +140,30 @@ class Kurt2:
         )
 
     def _drain(self, now_s: float) -> list[can.Message]:
+        messages: list[can.Message] = []
         try:
             messages = self._bus.drain()
         except BusError as error:
             self._receive_failures += 1
-            self._receive_trouble = str(error)
             if not self._bus_lost:
                 self._bus_lost = True
+                self._receive_trouble = str(error)
                 self._reopen_at_s = now_s + REOPEN_PERIOD_S
                 self._guard.emergency_stop(BUS_LOST)
-            elif now_s >= self._reopen_at_s and not self._closed:
-                self._reopen(now_s)
-            return []
-        self._bus_lost = False
+        if self._bus_lost and now_s >= self._reopen_at_s and not self._closed:
+            self._reopen(now_s)
         self._frames += len(messages)
         return messages
 
     def _reopen(self, now_s: float) -> None:
+        """An adapter that was unplugged fails once and is silent then: only opening it anew shows that it is back."""
         self._reopen_at_s = now_s + REOPEN_PERIOD_S
         try:
             self._bus.reopen()
         except BusError as error:
             self._receive_trouble = str(error)
+        else:
+            self._bus_lost = False
 
     def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> None:
         raw = analog.codec.unpack(data)

@@ -1,0 +1,15 @@
+from collections.abc import Iterator
+
+import pytest
+
+from hal.bus import CanBus
+from tests.hal.helpers import bus_pair
+
+
+@pytest.fixture
+def ends() -> Iterator[tuple[CanBus, CanBus]]:
+    """The robot's end of a bus and the controller's."""
+    robot_end, far_end = bus_pair()
+    yield robot_end, far_end
+    robot_end.shutdown()
+    far_end.shutdown()

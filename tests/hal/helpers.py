@@ -1,0 +1,61 @@
+"""The far end of the bus, as the tests of hal see it."""
+
+import itertools
+from collections.abc import Iterable
+
+import can
+
+from hal.bus import CanBus, open_bus
+from hal.codec import Codec, load_codec
+from hal.control import Control, decode_control
+from hal.frame import Frame
+from hal.robot import Senses
+from hal.robot_settings import GuardSettings, RobotSettings, load_robot
+
+CODEC: Codec = load_codec()
+ROBOT: RobotSettings = load_robot()
+SENSORS = ROBOT.infrared.sensors
+INFRARED_FRAMES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07")
+TICK_S = ROBOT.can.cycle_s
+
+_numbers = itertools.count()
+
+
+def bus_pair() -> tuple[CanBus, CanBus]:
+    """Both ends of an in-process bus of its own: the robot's, and that of the controller."""
+    name = f"virtual:hal-test-{next(_numbers)}"
+    return open_bus(name), open_bus(name)
+
+
+def cycle(counts: int = 200, left_ticks: int = 0, right_ticks: int = 0, bumpers: int = 0) -> list[Frame]:
+    """One cycle of what the controller sends, the same count on every channel."""
+    frames = [CODEC.message(name).pack(counts, counts, counts, counts) for name in INFRARED_FRAMES]
+    encoder = CODEC.message("ENCODER").pack(left_ticks, right_ticks)
+    return [*frames, encoder, CODEC.message("BUMPERC").pack(bumpers, 0)]
+
+
+def send(bus: CanBus, frames: Iterable[can.Message]) -> None:
+    port = bus.telemetry_port()
+    for frame in frames:
+        port.send(frame)
+
+
+def controls(bus: CanBus) -> list[Control]:
+    """What the controller was told since the last look."""
+    return [decode_control(message.data) for message in bus.drain()]
+
+
+def fresh(time_s: float, bumpers: int = 0, infrared_age_s: float = 0.0, encoder_age_s: float = 0.0) -> Senses:
+    return Senses(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers)
+
+
+def robot_with(**limits: float) -> RobotSettings:
+    """The shipped robot with other guard settings."""
+    guard = GuardSettings(**{**ROBOT.guard.model_dump(), **limits})
+    return ROBOT.model_copy(update={"guard": guard})
+
+
+def pull_the_plug(bus: CanBus) -> None:
+    """The adapter goes away: python-can's bus fails from now on, and CanBus has not been told."""
+    assert bus._python_can_bus is not None
+    bus._python_can_bus.shutdown()

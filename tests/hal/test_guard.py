@@ -1,0 +1,313 @@
+"""Whatever is decided, only what is safe reaches the wheels."""
+
+import math
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal import guard as words
+from hal.bus import CanBus
+from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
+from hal.guard import Guard
+from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot_settings import RobotSettings, SpeedMode
+from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, robot_with, send
+
+Ends = tuple[CanBus, CanBus]
+BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
+FRONT, REAR = 0b000_010, 0b010_000
+LIMITS = ROBOT.guard
+
+
+class Driver:
+    """Somebody who drives tick by tick, and the controller that listens."""
+
+    def __init__(self, ends: Ends, robot: RobotSettings = ROBOT) -> None:
+        self.guard = Guard(robot, ends[0])
+        self._far_end = ends[1]
+        self.now_s = 50.0
+
+    def drive(self, left_m_s: float, right_m_s: float, bumpers: int = 0) -> Grant:
+        self.now_s += TICK_S
+        return self.tell(WheelSpeeds(left_m_s, right_m_s), fresh(self.now_s, bumpers))
+
+    def tell(self, wanted: WheelSpeeds, senses: Senses, decided_ago_s: float = 0.0) -> Grant:
+        return self.guard.drive(wanted, senses, self.now_s - decided_ago_s, self.now_s)
+
+    def drive_for(self, seconds: float, left_m_s: float, right_m_s: float) -> Grant:
+        for _ in range(round(seconds / TICK_S)):
+            grant = self.drive(left_m_s, right_m_s)
+        return grant
+
+    def sent(self) -> list[Control]:
+        return controls(self._far_end)
+
+    def last_sent(self) -> Control:
+        return self.sent()[-1]
+
+
+@pytest.fixture
+def driver(ends: Ends) -> Driver:
+    return Driver(ends)
+
+
+def test_a_safe_wish_is_granted_and_sent_once_a_tick(driver: Driver) -> None:
+    grant = driver.drive_for(1.0, 0.3, -0.2)
+    assert grant == Grant(WheelSpeeds(0.3, -0.2), (), latched=False)
+    sent = driver.sent()
+    assert len(sent) == 100
+    assert sent[-1] == SpeedControl(Mode.SPEED_CM, 30, -20)
+
+
+def test_the_robot_speeds_up_no_faster_than_allowed(driver: Driver) -> None:
+    driver.drive(0.0, 0.0)
+    speeds = [driver.drive(0.3, 0.3).wheel_speeds.left_m_s for _ in range(20)]
+    assert speeds[:4] == [0.01, 0.03, 0.04, 0.06]
+    assert speeds[-1] == 0.3
+    driver.sent()
+    assert words.SLEW_LIMIT in driver.drive(0.6, 0.6).reasons
+
+
+def test_slowing_down_has_its_own_limit_and_a_stop_has_none(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.5, 0.5)
+    assert driver.drive(0.1, 0.1) == Grant(WheelSpeeds(0.47, 0.47), (words.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.0, 0.2) == Grant(WheelSpeeds(0.0, 0.44), (words.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.0, 0.0) == Grant(STANDSTILL, (), latched=False)
+
+
+def test_turning_back_passes_through_zero(driver: Driver) -> None:
+    driver.drive_for(0.1, 0.05, -0.05)
+    speeds = [driver.drive(-0.05, 0.05).wheel_speeds for _ in range(6)]
+    assert speeds[:4] == [(0.02, -0.02), (0.0, 0.0), (-0.01, 0.01), (-0.03, 0.03)]
+    assert speeds[-1] == (-0.05, 0.05)
+
+
+def test_a_late_tick_does_not_turn_into_a_jump(driver: Driver) -> None:
+    driver.drive(0.0, 0.0)
+    driver.now_s += 10.0
+    assert driver.drive(0.6, 0.6).wheel_speeds == (0.03, 0.03)
+
+
+def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
+    grant = driver.drive_for(1.0, 1.2, 0.6)
+    assert grant == Grant(WheelSpeeds(0.6, 0.3), (words.SPEED_LIMIT,), latched=False)
+    assert driver.drive_for(1.0, -0.8, -1.2).wheel_speeds == (-0.4, -0.6)
+
+
+@pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
+def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    for wanted in ((odd, 0.3), (0.3, odd)):
+        assert driver.drive(*wanted) == Grant(STANDSTILL, (words.NOT_A_NUMBER,), latched=False)
+        assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
+
+
+@pytest.mark.parametrize(
+    ("infrared_age_s", "encoder_age_s", "reason"),
+    [
+        (LIMITS.stale_infrared_s + 1e-6, 0.0, words.INFRARED_STALE),
+        (math.inf, 0.0, words.INFRARED_STALE),
+        (math.nan, 0.0, words.INFRARED_STALE),
+        (0.0, LIMITS.stale_encoder_s + 1e-6, words.ENCODER_STALE),
+        (0.0, math.inf, words.ENCODER_STALE),
+        (0.0, math.nan, words.ENCODER_STALE),
+    ],
+)
+def test_a_blind_robot_stands(driver: Driver, infrared_age_s: float, encoder_age_s: float, reason: str) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.now_s += TICK_S
+    grant = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s, 0, infrared_age_s, encoder_age_s))
+    assert grant == Grant(STANDSTILL, (reason,), latched=False)
+    assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
+
+
+def test_ages_within_the_limits_are_good_enough(driver: Driver) -> None:
+    senses = fresh(driver.now_s, infrared_age_s=LIMITS.stale_infrared_s, encoder_age_s=LIMITS.stale_encoder_s)
+    assert driver.tell(WheelSpeeds(0.01, 0.01), senses, decided_ago_s=0.0).wheel_speeds == (0.01, 0.01)
+
+
+def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:
+    senses = fresh(driver.now_s)
+    driver.now_s += LIMITS.stale_infrared_s + 1e-6
+    assert driver.tell(WheelSpeeds(0.3, 0.3), senses).reasons == (words.INFRARED_STALE,)
+
+
+def test_an_old_command_stands(driver: Driver) -> None:
+    wanted = WheelSpeeds(0.01, 0.01)
+    assert driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s - 1e-6).reasons == ()
+    grant = driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s + 1e-6)
+    assert grant == Grant(STANDSTILL, (words.COMMAND_TOO_OLD,), latched=False)
+
+
+def test_a_clock_that_runs_backwards_stands_for_that_tick(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.now_s -= 0.5
+    backwards = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s))
+    assert backwards == Grant(STANDSTILL, (words.CLOCK_RAN_BACKWARDS,), latched=False)
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
+
+
+def test_senses_or_commands_from_the_future_stand(driver: Driver) -> None:
+    wanted = WheelSpeeds(0.3, 0.3)
+    assert driver.tell(wanted, fresh(driver.now_s + 1.0)).reasons == (words.CLOCK_RAN_BACKWARDS,)
+    assert driver.tell(wanted, fresh(driver.now_s), decided_ago_s=-1.0).reasons == (words.CLOCK_RAN_BACKWARDS,)
+
+
+@pytest.mark.parametrize("now_s", [math.nan, math.inf, -math.inf])
+def test_a_time_that_is_none_stands_and_is_forgotten(driver: Driver, now_s: float) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    grant = driver.guard.drive(WheelSpeeds(0.3, 0.3), fresh(driver.now_s), driver.now_s, now_s)
+    assert grant.wheel_speeds == STANDSTILL
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
+
+
+def test_a_front_bumper_lets_the_robot_back_off_only(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    assert driver.drive(0.3, 0.3, FRONT) == Grant(STANDSTILL, (words.FRONT_BUMPER,), latched=False)
+    assert driver.drive(-0.2, 0.2, FRONT).wheel_speeds == (-0.01, 0.0)
+    grant = driver.drive(-0.2, -0.2, FRONT)
+    assert grant == Grant(WheelSpeeds(-0.03, -0.01), (words.SLEW_LIMIT,), latched=False)
+
+
+def test_a_rear_bumper_lets_the_robot_drive_on_only(driver: Driver) -> None:
+    driver.drive_for(1.0, -0.3, -0.3)
+    assert driver.drive(-0.3, -0.3, REAR) == Grant(STANDSTILL, (words.REAR_BUMPER,), latched=False)
+    assert driver.drive(0.2, -0.2, REAR).wheel_speeds == (0.01, 0.0)
+    assert driver.drive(0.2, 0.2, REAR).reasons == (words.SLEW_LIMIT,)
+
+
+def test_a_bumper_does_not_wait_for_the_braking_ramp(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.5, 0.5)
+    assert driver.drive(-0.2, -0.2, FRONT).wheel_speeds == (-0.01, -0.01)
+    driver.drive_for(1.0, -0.5, -0.5)
+    assert driver.drive(0.2, 0.2, REAR).wheel_speeds == (0.01, 0.01)
+
+
+def test_between_two_bumpers_the_robot_stands(driver: Driver) -> None:
+    assert driver.drive(0.2, -0.2, FRONT | REAR).reasons == (words.FRONT_BUMPER, words.REAR_BUMPER)
+    assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
+
+
+def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.sent()
+    driver.guard.emergency_stop("teacher")
+    assert driver.sent() == [BRAKE]
+    driver.guard.emergency_stop("somebody else")
+    for _ in range(3):
+        assert driver.drive(0.3, 0.3) == Grant(STANDSTILL, ("teacher",), latched=True)
+    assert driver.sent() == [BRAKE] * 4
+    driver.guard.release()
+    assert driver.guard.latched is None
+    assert driver.sent() == []
+    assert driver.drive(0.3, 0.3).wheel_speeds.left_m_s <= LIMITS.acceleration_m_s2 * 2 * TICK_S
+
+
+def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) -> None:
+    class Interrupted(Senses):
+        """A signal handler of the same thread runs while the guard reads the senses."""
+
+        @property
+        def bumpers(self) -> int:
+            driver.guard.emergency_stop("signal")
+            return 0
+
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.sent()
+    driver.now_s += TICK_S
+    grant = driver.tell(WheelSpeeds(0.3, 0.3), Interrupted(*fresh(driver.now_s)))
+    assert grant == Grant(STANDSTILL, ("signal",), latched=True)
+    assert driver.last_sent() == BRAKE
+
+
+def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends: Ends) -> None:
+    robot_end, far_end = ends
+    driver.drive_for(1.0, 0.3, 0.3)
+    robot_end.shutdown()
+    assert driver.drive(0.3, 0.3) == Grant(STANDSTILL, (words.BUS_LOST,), latched=True)
+    driver.guard.emergency_stop("too late")
+    assert driver.guard.latched == words.BUS_LOST
+    assert driver.guard.send_failures == 3
+    assert "is shut down" in driver.guard.bus_trouble
+    robot_end.reopen()
+    far_end.drain()
+    assert driver.drive(0.3, 0.3).latched
+    assert driver.sent() == [BRAKE]
+    driver.guard.release()
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.03, 0.03)
+
+
+def test_a_full_queue_on_the_way_out_is_a_lost_bus(driver: Driver, ends: Ends) -> None:
+    driver.drive(0.1, 0.1)
+    send(ends[0], [cycle()[0]] * 4095)
+    assert driver.drive(0.1, 0.1).reasons == (words.BUS_LOST,)
+    assert driver.guard.send_failures == 2
+    assert len(ends[1].drain()) == 4096
+
+
+def test_one_bus_has_one_guard(ends: Ends) -> None:
+    Guard(ROBOT, ends[0])
+    with pytest.raises(OSError, match="one guard drives one robot"):
+        Guard(ROBOT, ends[0])
+
+
+@pytest.mark.parametrize(
+    ("mode", "sent", "granted_m_s"),
+    [
+        (SpeedMode.SPEED, SpeedControl(Mode.SPEED, 43, -43), 0.2967),
+        (SpeedMode.RAW, RawControl(RawSide(682), RawSide(682, backward=True)), 0.302),
+    ],
+)
+def test_other_modes_grant_what_their_frames_can_say(
+    ends: Ends, mode: SpeedMode, sent: Control, granted_m_s: float
+) -> None:
+    robot = ROBOT.model_copy(update={"can": ROBOT.can.model_copy(update={"speed_mode": mode})})
+    driver = Driver(ends, robot)
+    grant = driver.drive_for(1.0, 0.3025, -0.3025)
+    assert driver.last_sent() == sent
+    assert grant.wheel_speeds == pytest.approx((granted_m_s, -granted_m_s))
+    assert grant.reasons == ()
+
+
+def test_limits_come_from_the_settings(ends: Ends) -> None:
+    driver = Driver(ends, robot_with(maximum_speed_m_s=0.2, acceleration_m_s2=20.0))
+    driver.drive(0.0, 0.0)
+    driver.drive(0.5, 0.5)
+    assert driver.drive(0.5, 0.5) == Grant(WheelSpeeds(0.2, 0.2), (words.SPEED_LIMIT,), latched=False)
+
+
+ANY_FLOAT = st.floats(allow_nan=True, allow_infinity=True)
+LIKELY = st.one_of(st.floats(-1.0, 1.0), ANY_FLOAT)
+
+
+@st.composite
+def histories(draw: st.DrawFn) -> Iterator[tuple[float, float, int, float]]:
+    step = st.tuples(LIKELY, LIKELY, st.integers(0, 0xFF), st.one_of(st.floats(-0.02, 0.05), ANY_FLOAT))
+    return iter(draw(st.lists(step, max_size=30)))
+
+
+@given(histories())
+def test_no_history_of_wishes_breaks_a_limit(history: Iterator[tuple[float, float, int, float]]) -> None:
+    """After any wishes, bumpers and time steps: within speed, slew and bumper limits, and one frame a tick."""
+    ends = bus_pair()
+    guard = Guard(ROBOT, ends[0])
+    now_s, before = 0.0, STANDSTILL
+    for left, right, bumpers, step_s in history:
+        now_s += step_s if math.isfinite(step_s) and abs(step_s) < 1e6 else 0.0
+        grant = guard.drive(WheelSpeeds(left, right), fresh(now_s, bumpers), now_s, now_s)
+        (sent,) = controls(ends[1])
+        assert isinstance(sent, SpeedControl)
+        assert sent.wheel_speeds(ROBOT.motors) == grant.wheel_speeds
+        assert sent.keep
+        for was_m_s, is_m_s in zip(before, grant.wheel_speeds, strict=True):
+            assert abs(is_m_s) <= LIMITS.maximum_speed_m_s
+            assert was_m_s * is_m_s >= 0.0 or bumpers
+            assert abs(is_m_s) - abs(was_m_s) <= LIMITS.acceleration_m_s2 * 2 * TICK_S + 0.0101
+            assert not (is_m_s > 0.0 and bumpers & 0b000_111)
+            assert not (is_m_s < 0.0 and bumpers & 0b111_000)
+        before = grant.wheel_speeds
+    for end in ends:
+        end.shutdown()

@@ -1,0 +1,279 @@
+"""The KURT2 on its bus: what it senses, what it ignores, and how it stops."""
+
+import math
+from collections.abc import Iterator
+
+import can
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hal.bus import BusError, CanBus
+from hal.control import Mode, RawControl, RawSide, SpeedControl
+from hal.guard import BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
+from hal.kurt2 import CLOSED, Kurt2
+from hal.robot import STANDSTILL, Robot, WheelSpeeds
+from tests.hal.helpers import (
+    CODEC,
+    INFRARED_FRAMES,
+    ROBOT,
+    SENSORS,
+    TICK_S,
+    bus_pair,
+    controls,
+    cycle,
+    pull_the_plug,
+    send,
+)
+
+BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
+Ends = tuple[CanBus, CanBus]
+
+
+@pytest.fixture
+def robot(ends: Ends) -> Iterator[Kurt2]:
+    kurt2 = Kurt2(ROBOT, ends[0])
+    yield kurt2
+    kurt2.close()
+
+
+def test_it_is_a_robot(robot: Kurt2) -> None:
+    as_robot: Robot = robot
+    assert as_robot.sense(1.0).time_s == 1.0
+
+
+def test_before_the_first_frame_it_is_blind_and_stands(robot: Kurt2, ends: Ends) -> None:
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 0.0, 0.0).wheel_speeds == STANDSTILL
+    senses = robot.sense(1.0)
+    assert senses.infrared_counts == (0,) * 18
+    assert senses.infrared_age_s == senses.encoder_age_s == math.inf
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0).reasons == (INFRARED_STALE,)
+    assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 0, 0)
+
+
+def test_each_sensor_reads_its_own_channel(robot: Kurt2, ends: Ends) -> None:
+    counts_of = {sensor.channel: 100 + number for number, sensor in enumerate(SENSORS)}
+    for name in INFRARED_FRAMES:
+        message = CODEC.message(name)
+        send(ends[1], [message.pack(*(counts_of.get(channel, 0xFFFF) for channel in message.signals))])
+    assert robot.sense(1.0).infrared_counts == tuple(range(100, 118))
+    assert robot.health.junk == 0
+
+
+def test_the_newest_value_counts_and_ticks_add_up(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle(counts=100, left_ticks=500, right_ticks=-3, bumpers=0b1))
+    send(ends[1], cycle(counts=101, left_ticks=21, right_ticks=-4, bumpers=0b100))
+    senses = robot.sense(1.0)
+    assert senses.infrared_counts == (101,) * 18
+    assert (senses.encoder_left_ticks, senses.encoder_right_ticks) == (521, -7)
+    assert senses.bumpers == 0b100
+    later = robot.sense(1.01)
+    assert (later.encoder_left_ticks, later.encoder_right_ticks) == (0, 0)
+    assert later.bumpers == 0b100
+
+
+def test_bits_beyond_the_bumper_table_are_no_bumpers(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle(bumpers=0b1100_0010))
+    assert robot.sense(1.0).bumpers == 0b10
+
+
+def test_the_age_is_that_of_the_oldest_frame(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle())
+    assert robot.sense(1.0).infrared_age_s == 0.0
+    for tick in range(1, 5):
+        send(ends[1], cycle()[1:])
+        senses = robot.sense(1.0 + tick * TICK_S)
+        assert senses.infrared_age_s == pytest.approx(tick * TICK_S)
+        assert senses.encoder_age_s == 0.0
+    send(ends[1], cycle()[:1])
+    senses = robot.sense(1.05)
+    assert senses.infrared_age_s == pytest.approx(TICK_S)
+    assert senses.encoder_age_s == pytest.approx(TICK_S)
+
+
+def test_counts_of_no_10_bit_converter_keep_the_old_value_and_let_it_age(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle(counts=200))
+    robot.sense(1.0)
+    send(ends[1], [CODEC.message("ADC04_07").pack(300, 300, 1024, 300), *cycle(counts=200)[2:]])
+    senses = robot.sense(1.04)
+    assert senses.infrared_counts == (200,) * 18
+    assert senses.infrared_age_s == pytest.approx(0.04)
+    assert robot.health.junk == 1
+    send(ends[1], cycle(counts=1023))
+    assert robot.sense(1.05).infrared_counts == (1023,) * 18
+
+
+def test_what_is_not_read_is_ignored_and_what_is_not_known_is_counted(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], [CODEC.message("GYRO_MC1").pack(1, 2), CODEC.message("ADC12_15").pack(1, 2, 3, 4)])
+    send(ends[1], [can.Message(arbitration_id=0x02, is_extended_id=False, data=b"12345678")])
+    robot.sense(1.0)
+    health = robot.health
+    assert (health.frames, health.junk, health.unknown) == (3, 0, 1)
+
+
+def test_a_second_master_on_the_bus_is_noticed(robot: Kurt2, ends: Ends) -> None:
+    ends[1].control_port().send(can.Message(arbitration_id=0x01, is_extended_id=False, data=bytes(8)))
+    robot.sense(1.0)
+    assert robot.health.foreign_control == 1
+
+
+JUNK = st.one_of(
+    st.builds(
+        can.Message,
+        arbitration_id=st.integers(0, 0x1FFF_FFFF) | st.integers(0, 0x20),
+        is_extended_id=st.just(True),
+        data=st.binary(max_size=8),
+    ),
+    st.builds(
+        can.Message,
+        arbitration_id=st.integers(2, 0x20),
+        is_extended_id=st.just(False),
+        is_remote_frame=st.just(True),
+        dlc=st.integers(0, 8),
+    ),
+    st.builds(
+        can.Message,
+        arbitration_id=st.integers(2, 0x20),
+        is_extended_id=st.just(False),
+        is_error_frame=st.just(True),
+        data=st.binary(max_size=8),
+    ),
+    st.builds(
+        can.Message,
+        arbitration_id=st.sampled_from([0x05, 0x06, 0x15, 0x16]),
+        is_extended_id=st.just(False),
+        data=st.binary(max_size=7) | st.binary(min_size=6, max_size=6).map(lambda rest: b"\x04\x00" + rest),
+    ),
+    st.builds(can.Message, arbitration_id=st.just(0x09), is_extended_id=st.just(False), data=st.binary(max_size=3)),
+    st.builds(can.Message, arbitration_id=st.just(0x0A), is_extended_id=st.just(False), data=st.just(b"")),
+)
+STRANGERS = st.builds(
+    can.Message,
+    arbitration_id=st.integers(2, 0x7FF).filter(lambda frame_id: frame_id not in CODEC.by_id),
+    is_extended_id=st.just(False),
+    data=st.binary(max_size=8),
+)
+
+
+@settings(max_examples=40)
+@given(st.lists(JUNK, max_size=10), st.lists(STRANGERS, max_size=5))
+def test_junk_is_counted_and_changes_nothing(junk: list[can.Message], strangers: list[can.Message]) -> None:
+    ends = bus_pair()
+    robot = Kurt2(ROBOT, ends[0])
+    send(ends[1], cycle(counts=222, left_ticks=7, right_ticks=8, bumpers=0b101))
+    before = robot.sense(1.0)
+    send(ends[1], [*junk, *strangers])
+    after = robot.sense(1.02)
+    assert (after.infrared_counts, after.bumpers) == (before.infrared_counts, before.bumpers)
+    assert (after.encoder_left_ticks, after.encoder_right_ticks) == (0, 0)
+    assert after.infrared_age_s == after.encoder_age_s == pytest.approx(0.02)
+    assert (robot.health.junk, robot.health.unknown) == (len(junk), len(strangers))
+    robot.close()
+    ends[1].shutdown()
+
+
+@pytest.mark.deep
+@given(
+    st.lists(
+        st.builds(
+            can.Message,
+            arbitration_id=st.integers(2, 0x7FF) | st.integers(2, 0x20),
+            is_extended_id=st.booleans(),
+            is_remote_frame=st.booleans(),
+            is_error_frame=st.booleans(),
+            is_fd=st.booleans(),
+            data=st.binary(max_size=64),
+        ),
+        max_size=200,
+    )
+)
+def test_nothing_on_the_bus_brings_the_robot_down(messages: list[can.Message]) -> None:
+    ends = bus_pair()
+    robot = Kurt2(ROBOT, ends[0])
+    send(ends[1], messages)
+    senses = robot.sense(1.0)
+    assert all(0 <= counts <= 1023 for counts in senses.infrared_counts)
+    assert robot.health.frames == len(messages)
+    robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0)
+    assert len(ends[1].drain()) == 1
+    robot.close()
+    ends[1].shutdown()
+
+
+def test_it_drives_through_the_guard(robot: Kurt2, ends: Ends) -> None:
+    for tick in range(50):
+        now_s = 1.0 + tick * TICK_S
+        send(ends[1], cycle())
+        robot.sense(now_s)
+        grant = robot.drive(WheelSpeeds(0.3, 0.2), now_s, now_s)
+    assert grant.wheel_speeds == (0.3, 0.2)
+    assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 30, 20)
+    assert robot.drive(WheelSpeeds(0.3, 0.2), now_s - 1.0, now_s).reasons == (COMMAND_TOO_OLD,)
+    robot.emergency_stop("teacher")
+    assert robot.health.latched == "teacher"
+    assert robot.drive(WheelSpeeds(0.3, 0.2), now_s, now_s).latched
+    robot.release()
+    assert not robot.drive(STANDSTILL, now_s, now_s).latched
+
+
+def test_driving_is_the_beat_of_the_watchdog(robot: Kurt2) -> None:
+    assert not robot.watchdog.check(math.inf)
+    robot.drive(STANDSTILL, 0.0, 0.0)
+    assert robot.watchdog.check(math.inf)
+
+
+def test_a_bus_that_goes_away_stops_the_robot_until_released(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle())
+    robot.sense(1.0)
+    pull_the_plug(ends[0])
+    senses = robot.sense(1.01)
+    assert senses.infrared_age_s == pytest.approx(0.01)
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.01, 1.01) == (STANDSTILL, (BUS_LOST,), True)
+    assert robot.sense(1.02).infrared_age_s == pytest.approx(0.02)
+    health = robot.health
+    assert "receiving failed" in health.bus_trouble
+    assert (health.latched, health.receive_failures, health.send_failures) == (BUS_LOST, 2, 2)
+
+    robot.sense(2.02)  # a second later it opens the bus anew
+    send(ends[1], cycle(counts=300))
+    assert robot.sense(2.03).infrared_counts == (300,) * 18
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 2.03, 2.03).latched
+    assert controls(ends[1]) == [BRAKE]
+    robot.release()
+    assert not robot.drive(WheelSpeeds(0.3, 0.3), 2.03, 2.03).latched
+
+
+def test_an_adapter_that_stays_away_is_looked_for_once_a_second(robot: Kurt2, ends: Ends) -> None:
+    pull_the_plug(ends[0])
+    name, ends[0].name = ends[0].name, "gone0"
+    robot.sense(1.0)
+    robot.sense(1.5)
+    assert "receiving failed" in robot.health.bus_trouble
+    robot.sense(2.0)
+    robot.sense(2.5)
+    assert "bus 'gone0': no such network interface" in robot.health.bus_trouble
+    ends[0].name = name
+    robot.sense(3.0)
+    send(ends[1], cycle(counts=300))
+    assert robot.sense(3.01).infrared_counts == (300,) * 18
+    assert robot.health.receive_failures == 5
+
+
+def test_closing_brakes_and_gives_the_bus_back_for_good() -> None:
+    robot_end, far_end = bus_pair()
+    robot = Kurt2(ROBOT, robot_end)
+    robot.watchdog.start()
+    robot.close()
+    assert not robot.watchdog.running
+    assert controls(far_end) == [BRAKE]
+    assert robot.health.latched == CLOSED
+    for now_s in (1.0, 3.0, 5.0):
+        robot.sense(now_s)
+    assert robot.health.receive_failures == 3
+    far_end.shutdown()
+
+
+def test_one_bus_has_one_robot(robot: Kurt2, ends: Ends) -> None:
+    assert robot.health.latched is None
+    with pytest.raises(BusError, match="the CONTROL port is taken"):
+        Kurt2(ROBOT, ends[0])

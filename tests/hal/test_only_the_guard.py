@@ -1,0 +1,72 @@
+"""It cannot be overlooked: CONTROL leaves through the guard alone, and python-can's bus stays inside hal.bus."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("config", "hal", "behaviors", "kurt2rt", "simbridge")
+RAW_BUS = {"Bus", "BusABC", "ThreadSafeBus", "VirtualBus", "SocketcanBus", "interface", "interfaces"}
+INSIDES = {"_python_can_bus", "_open_raw"}
+ALLOWED = {
+    "control_port": {"hal/bus.py", "hal/guard.py"},
+    "encode_control": {"hal/control.py"},
+    "encode_brake": {"hal/control.py", "hal/guard.py"},
+    "control_frame": {"hal/control.py", "hal/guard.py"},
+}
+
+
+def names_in(source: str) -> Iterator[str]:
+    """Every name that code mentions: variables, attributes, imports, and strings that getattr could use."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Name):
+            yield node.id
+        elif isinstance(node, ast.Attribute):
+            yield node.attr
+        elif isinstance(node, ast.alias):
+            yield from node.name.split(".")
+        elif isinstance(node, ast.ImportFrom):
+            yield from (node.module or "").split(".")
+        elif isinstance(node, ast.FunctionDef):
+            yield node.name
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+
+
+def mentions(names: set[str]) -> dict[str, set[str]]:
+    found: dict[str, set[str]] = {}
+    for package in PACKAGES:
+        for path in sorted((ROOT / package).rglob("*.py")):
+            for name in names & set(names_in(path.read_text(encoding="utf-8"))):
+                found.setdefault(name, set()).add(path.relative_to(ROOT).as_posix())
+    return found
+
+
+def test_only_the_guard_makes_and_sends_control() -> None:
+    assert mentions(set(ALLOWED)) == ALLOWED, (
+        "CONTROL is made or sent outside the guard; ask Robot.drive or Guard.drive instead"
+    )
+
+
+def test_the_raw_bus_stays_inside_its_module() -> None:
+    assert mentions(INSIDES) == {name: {"hal/bus.py"} for name in INSIDES}
+    for file in mentions({"can"})["can"] - {"hal/bus.py"}:
+        used = RAW_BUS & set(names_in((ROOT / file).read_text(encoding="utf-8")))
+        assert not used, f"{file} touches {sorted(used)} of python-can's bus; use hal.bus.CanBus"
+
+
+@pytest.mark.parametrize(
+    ("source", "name"),
+    [
+        ("bus.control_port()", "control_port"),
+        ("from hal.control import encode_brake as harmless", "encode_brake"),
+        ("import hal.control as c\nc.encode_control", "encode_control"),
+        ("getattr(bus, 'control_port')()", "control_port"),
+        ("import can.interfaces.virtual", "interfaces"),
+        ("from can.interface import Bus", "Bus"),
+    ],
+)
+def test_the_search_would_find_it(source: str, name: str) -> None:
+    assert name in set(names_in(source))

@@ -1,0 +1,76 @@
+"""The second guard notices that ticks have ceased."""
+
+import threading
+
+import pytest
+
+from hal.bus import CanBus
+from hal.control import RawControl, RawSide
+from hal.guard import Guard
+from hal.watchdog import TICKS_CEASED, Watchdog
+from tests.hal.helpers import ROBOT, controls
+
+Ends = tuple[CanBus, CanBus]
+
+
+class VirtualClock:
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+def test_it_watches_from_the_first_beat_and_allows_the_given_silence(ends: Ends) -> None:
+    clock = VirtualClock()
+    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, clock)
+    assert not watchdog.check(1e9)
+    watchdog.beat()
+    assert not watchdog.check(100.1 - 1e-9)
+    assert watchdog.check(100.1 + 1e-9)
+    clock.now_s = 100.09
+    watchdog.beat()
+    assert not watchdog.check(100.15)
+    assert watchdog.check(float("nan"))
+
+
+def test_the_thread_brakes_again_and_again_while_no_tick_comes(ends: Ends) -> None:
+    robot_end, far_end = ends
+    guard = Guard(ROBOT, robot_end)
+    clock = VirtualClock()
+    looks = threading.Semaphore(0)
+
+    def observed_clock() -> float:
+        looks.release()
+        return clock()
+
+    with Watchdog(guard, 0.1, observed_clock) as watchdog:
+        assert watchdog.running
+        _wait_for(looks, 3)
+        assert controls(far_end) == []
+        watchdog.beat()
+        clock.now_s += 0.2
+        _wait_for(looks, 5)
+    assert not watchdog.running
+    assert guard.latched == TICKS_CEASED
+    brakes = controls(far_end)
+    assert len(brakes) >= 2
+    assert set(brakes) == {RawControl(RawSide(0, brake=True), RawSide(0, brake=True))}
+
+
+def test_a_restart_waits_for_a_beat_again(ends: Ends) -> None:
+    guard = Guard(ROBOT, ends[0])
+    watchdog = Watchdog(guard, 0.1)
+    watchdog.beat()
+    watchdog.start()
+    assert not watchdog.check(1e12)
+    with pytest.raises(RuntimeError, match="runs already"):
+        watchdog.start()
+    watchdog.stop()
+    watchdog.stop()
+    assert guard.latched is None
+
+
+def _wait_for(looks: threading.Semaphore, count: int) -> None:
+    for _ in range(count):
+        assert looks.acquire(timeout=60)
