@@ -24,7 +24,7 @@ def encode_event(event: TeachingEvent) -> str:
     try:
         _event(content)  # what would be refused on reading must never be written
         return json.dumps(content, allow_nan=False, separators=(",", ":"))
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         name = event.origin.command_id
         raise KnowledgeError(f"command {name!r}: cannot be written: {error}; teach it again") from error
 
@@ -33,7 +33,7 @@ def decode_event(text: str, where: str) -> TeachingEvent:
     """The event that a JSON text stands for. Raises KnowledgeError that begins with `where` (file and row)."""
     try:
         return _event(json.loads(text))
-    except (ValueError, RecursionError) as error:
+    except (ValueError, OverflowError, RecursionError) as error:
         problem = f"{where}: not a teaching event: {error}"
         raise KnowledgeError(f"{problem}; keep the file, and go on with a backup copy") from error
 

@@ -32,12 +32,12 @@ class Journal:
     @classmethod
     def open(cls, path: Path, binding: KnowledgeBinding) -> Self:
         """Open the journal at `path` as its only writer, or begin one there. An error leaves every file as it was."""
-        path = path.resolve()
-        if path.exists():
+        path = Path(os.path.realpath(path))
+        if journal_file.is_there(path):
             journal_file.require_ours(path)
         lock = journal_file.lock_for_writing(path)
         try:
-            if not path.exists():
+            if not journal_file.is_there(path):
                 journal_file.create(path, binding)
             connection = journal_file.connect(path, "mode=rw")
             try:
@@ -54,10 +54,10 @@ class Journal:
     @classmethod
     def read_only(cls, path: Path) -> Self:
         """Open to look at it, also while a robot writes it. What is read then may be a lesson behind."""
-        path = path.resolve()
+        path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
         # Beside a file in a folder that may not be written SQLite cannot put its log; without a log, none is needed.
-        quiet = not os.access(path.parent, os.W_OK) and not journal_file.log_of(path).exists()
+        quiet = not os.access(path.parent, os.W_OK) and not journal_file.is_there(journal_file.log_of(path))
         connection = journal_file.connect(path, "mode=ro&immutable=1" if quiet else "mode=ro")
         try:
             return cls(path, connection)

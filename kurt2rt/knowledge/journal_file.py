@@ -106,6 +106,17 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
         ) from error
 
 
+def is_there(path: Path) -> bool:
+    """Whether anything is at `path`; also true where that cannot be told, so that nothing is begun on top of it."""
+    try:
+        path.lstat()
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
 def require_ours(path: Path) -> None:
     """Look at the header, before SQLite may touch the file. Raises KnowledgeError if it is no knowledge file."""
     what_to_do = "give the path of a kurt2rt knowledge file, or of a new one"

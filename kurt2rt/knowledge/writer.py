@@ -34,6 +34,14 @@ class RetryDelays:
     longest_s: float = 2.0
 
 
+class _Flush:
+    """Queue token: somebody waits until what came before it is durable, or never will be."""
+
+    def __init__(self) -> None:
+        self.durable = False
+        self.settled = threading.Event()
+
+
 class _Stop:
     """Queue token: no more comes."""
 
@@ -57,15 +65,16 @@ class JournalWriter:
         self._now = now
         self._retry = retry or RetryDelays()
         # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
-        self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | threading.Event | _Stop] = queue.SimpleQueue()
+        self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
         self._acknowledged: queue.SimpleQueue[Acknowledgement] = queue.SimpleQueue()
         self._accepting = True
+        self._ended = False
         self._submitted = 0
         self._settled = 0
         # The worker's own, from here on.
         self._waiting: list[JournalEntry] = []
         self._statistics: Statistics | None = None
-        self._flushes: list[threading.Event] = []
+        self._flushes: list[_Flush] = []
         self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
         self._thread.start()
 
@@ -96,9 +105,12 @@ class JournalWriter:
 
     def flush(self, timeout_s: float) -> bool:
         """Wait until everything handed over before is durable; False when it is not after `timeout_s`."""
-        done = threading.Event()
-        self._inbox.put(done)
-        return self._thread.is_alive() and done.wait(timeout_s)
+        flush = _Flush()
+        self._inbox.put(flush)
+        # Put first, then look: a writer that ends after this look still finds it in the inbox.
+        if not self._ended:
+            flush.settled.wait(timeout_s)
+        return flush.durable
 
     def close(self, timeout_s: float = 10.0) -> None:
         """Flush, then close the journal. Raises KnowledgeError that says why and how many lessons were not written."""
@@ -126,13 +138,25 @@ class JournalWriter:
 
     def _run(self) -> None:
         try:
-            with self._journal:
-                self._work()
-        except KnowledgeError as error:  # closing failed; what was acknowledged is durable nevertheless
-            self.trouble = str(error)
+            self._work()
         except BaseException as error:
             self.trouble = f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
             raise
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        try:
+            self._journal.close()
+        except KnowledgeError as error:  # what was acknowledged is durable nevertheless
+            self.trouble = self.trouble or str(error)
+        self._ended = True
+        while not self._inbox.empty():
+            item = self._inbox.get()
+            if isinstance(item, _Flush):
+                self._flushes.append(item)
+        for flush in self._flushes:
+            flush.settled.set()
 
     def _work(self) -> None:
         pause_s = 0.0
@@ -157,7 +181,7 @@ class JournalWriter:
             match item:
                 case _Stop():
                     return True
-                case threading.Event():
+                case _Flush():
                     self._flushes.append(item)
                 case Statistics():
                     self._statistics = item
@@ -188,7 +212,8 @@ class JournalWriter:
             self._journal.checkpoint(self._statistics)
             self._statistics = None
         for flush in self._flushes:
-            flush.set()
+            flush.durable = True
+            flush.settled.set()
         self._flushes = []
 
     def _settle(self, acknowledgement: Acknowledgement) -> None:

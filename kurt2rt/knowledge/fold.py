@@ -1,0 +1,31 @@
+"""From the journal to the RLA system that it is the history of."""
+
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+
+
+def fold_journal(journal: Journal, radius: float) -> RlaSystem:
+    """The RLA system that all lessons together make. Raises KnowledgeError that names file and row of an unfit one."""
+    system = RlaSystem(len(journal.binding.feature_names), radius)
+    for entry in journal.entries():
+        try:
+            system.apply(entry.event)
+        except UnfitEventError as error:
+            raise KnowledgeError(
+                f"{journal.path}: row {entry.sequence}: does not fit the lessons before it: {error}; "
+                "keep the file, and go on with a backup copy"
+            ) from error
+    return system
+
+
+def check_knowledge(journal: Journal) -> list[str]:
+    """Everything that would keep a robot from using the file, one line each: damage, and lessons that do not fit."""
+    problems = journal.check()
+    if problems:
+        return problems
+    try:
+        fold_journal(journal, radius=0.0)
+    except KnowledgeError as error:
+        return [str(error)]
+    return []

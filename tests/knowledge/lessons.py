@@ -1,0 +1,54 @@
+"""Lessons for the tests of this folder. Light to import: the killed children of test_kill.py start with it."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted
+
+BINDING = KnowledgeBinding(
+    feature_hash="0123456789abcdef",
+    feature_names=("s1", "s2", "maximum front", "wheel speed left"),
+    system="wall following",
+    robot="kurt2",
+)
+
+STAMP = "2004-04-26T10:00:00.000+00:00"
+
+
+def origin(command_id: str, tick: int = 100, phase: Phase = Phase.SUPERVISED) -> Origin:
+    return Origin(command_id, "Hertha", phase, tick)
+
+
+def created(rla_id: int, command_id: str | None = None, action: str = "forward") -> RlaCreated:
+    condition = (rla_id / 3, 0.1 * rla_id, 80.0 + rla_id, -5.0)
+    return RlaCreated(Rla(rla_id, condition, action, None, origin(command_id or f"create-{rla_id}", tick=rla_id)))
+
+
+def replaced(rla_id: int, action: str, instead_of: str) -> ActionReplaced:
+    return ActionReplaced(rla_id, action, instead_of, origin(f"replace-{rla_id}-{action}", 200, Phase.CORRECTIONS))
+
+
+def deleted(rla_id: int) -> RlaDeleted:
+    return RlaDeleted(rla_id, origin(f"delete-{rla_id}", 300, Phase.CORRECTIONS))
+
+
+def entry(rla_id: int) -> JournalEntry:
+    return JournalEntry(created(rla_id), STAMP)
+
+
+def begun(path: Path, lessons: int = 3) -> Path:
+    """A knowledge file with some lessons, closed."""
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(number) for number in range(1, lessons + 1)])
+    return path
+
+
+def tamper(path: Path, *statements: str) -> None:
+    """What no kurt2rt does: change a knowledge file behind its back."""
+    with closing(sqlite3.connect(path)) as connection, connection:
+        for statement in statements:
+            connection.execute(statement)

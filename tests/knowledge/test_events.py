@@ -1,0 +1,98 @@
+import json
+import struct
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from tests.knowledge.lessons import created, deleted, replaced
+
+texts = st.text(st.characters(codec="utf-8"), max_size=20)
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+ids = st.integers(1, 2**62)
+origins = st.builds(Origin, texts, texts, st.sampled_from(Phase), st.integers(0, 2**62))
+conditions = st.lists(numbers, max_size=80).map(tuple)
+rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins)
+events = st.one_of(
+    st.builds(RlaCreated, rlas),
+    st.builds(ActionReplaced, ids, texts, texts, origins),
+    st.builds(RlaDeleted, ids, origins),
+)
+
+
+def bits(numbers: tuple[float, ...]) -> bytes:
+    return struct.pack(f"{len(numbers)}d", *numbers)
+
+
+@given(events)
+def test_an_event_comes_back_exactly_as_it_was(event: TeachingEvent) -> None:
+    text = encode_event(event)
+    again = decode_event(text, "here")
+
+    assert again == event
+    assert text.isascii()
+    assert "\n" not in text
+    if isinstance(event, RlaCreated) and isinstance(again, RlaCreated):
+        assert bits(again.rla.condition) == bits(event.rla.condition)  # also the sign of a zero
+
+
+def test_a_condition_straight_from_numpy_comes_back_too() -> None:
+    condition = tuple(np.array([0.1, 1 / 3, -0.0, 5e-324]))
+    event = RlaCreated(Rla(1, condition, "forward", None, Origin("c", "t", Phase.SUPERVISED, 0)))
+
+    assert decode_event(encode_event(event), "here") == event
+
+
+@given(st.text() | st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists).map(json.dumps))
+def test_foreign_text_is_refused_with_its_place(text: str) -> None:
+    with pytest.raises(KnowledgeError, match=r"^k\.db: row 7: not a teaching event: .*; keep the file"):
+        decode_event(text, "k.db: row 7")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "problem"),
+    [
+        ("version", 2, "its version 2 is of a newer kurt2rt"),
+        ("version", True, "version must be a whole number"),
+        ("kind", "dreamt", "kind is 'dreamt', known are created, replaced, deleted"),
+        ("rla_id", 0, "rla_id must be a whole number from 1"),
+        ("rla_id", 1.0, "rla_id must be a whole number"),
+        ("tick", -1, "tick must be a whole number from 0"),
+        ("phase", 6, "6 is not a valid Phase"),
+        ("action", None, "action must be a text"),
+        ("action", "\ud800", "surrogates not allowed"),
+        ("condition", "1, 2", "condition must be a list"),
+        ("condition", [1, "2"], "condition must be made of finite numbers"),
+        ("condition", [True], "condition must be made of finite numbers"),
+        ("condition", [float("nan")], "condition must be made of finite numbers"),
+        ("condition", [10**400], "too large"),
+        ("radius", "wide", "radius must be made of finite numbers"),
+        ("mood", "good", "created has no 'mood'"),
+    ],
+)
+def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
+    content = json.loads(encode_event(created(1))) | {key: value}
+
+    with pytest.raises(KnowledgeError, match=problem):
+        decode_event(json.dumps(content), "row 1")
+
+
+@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1)])
+def test_a_missing_field_is_named(event: TeachingEvent) -> None:
+    whole = json.loads(encode_event(event))
+    for key in whole:
+        part = {name: value for name, value in whole.items() if name != key}
+        with pytest.raises(KnowledgeError, match=f"{key} is missing"):
+            decode_event(json.dumps(part), "row 1")
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None])
+def test_what_could_not_be_read_back_is_never_written(value: float) -> None:
+    event = RlaCreated(Rla(1, (0.0, value), "forward", None, Origin("c-9", "t", Phase.SUPERVISED, 0)))
+
+    with pytest.raises(KnowledgeError, match=r"command 'c-9': cannot be written: condition .*; teach it again"):
+        encode_event(event)

@@ -1,0 +1,116 @@
+import sqlite3
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import TeachingEvent
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, entry, replaced, tamper
+
+
+def test_what_was_taught_is_there_after_closing(path: Path) -> None:
+    lessons: list[TeachingEvent] = [created(1), created(2), replaced(1, "left", instead_of="forward"), deleted(2)]
+    with Journal.open(path, BINDING) as journal:
+        receipts = journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
+        assert [(receipt.sequence, receipt.new) for receipt in receipts] == [(n, True) for n in (1, 2, 3, 4)]
+
+    with Journal.open(path, BINDING) as journal:
+        assert journal.events() == lessons
+        assert [stored.sequence for stored in journal.entries()] == [1, 2, 3, 4]
+        assert {stored.stamped_at for stored in journal.entries()} == {STAMP}
+        assert journal.check() == []
+        assert journal.binding == BINDING
+
+
+def test_a_command_that_comes_twice_is_written_once(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        again, fresh, twice = journal.append([entry(1), entry(2), entry(2)])
+
+        assert (again.sequence, again.new, again.agrees) == (1, False, True)
+        assert (fresh.sequence, fresh.new, fresh.agrees) == (2, True, True)
+        assert (twice.sequence, twice.new, twice.agrees) == (2, False, True)
+        assert journal.events() == [created(1), created(2)]
+
+
+def test_another_lesson_under_a_known_command_is_not_passed_off_as_written(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        (receipt,) = journal.append([JournalEntry(created(2, command_id="create-1"), STAMP)])
+
+        assert (receipt.sequence, receipt.new, receipt.agrees) == (1, False, False)
+        assert journal.events() == [created(1)]
+
+
+def test_a_batch_is_written_whole_or_not_at_all(path: Path) -> None:
+    unwritable = replace(created(2).rla, condition=(float("nan"),))
+    with Journal.open(path, BINDING) as journal:
+        with pytest.raises(KnowledgeError, match="finite"):
+            journal.append([entry(1), JournalEntry(replace(created(2), rla=unwritable), STAMP)])
+
+        assert journal.events() == []
+        journal.append([entry(1)])
+        assert journal.events() == [created(1)]
+
+
+def test_every_commit_is_synced_to_the_disk(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        assert journal._connection.execute("PRAGMA synchronous").fetchone() == (2,)
+        assert journal._connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def test_lessons_are_neither_changed_nor_deleted(path: Path) -> None:
+    begun(path)
+    for statement in ("DELETE FROM lesson", "UPDATE lesson SET stamped_at = ''"):
+        with pytest.raises(sqlite3.IntegrityError, match="lessons are never"):
+            tamper(path, statement)
+
+
+def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
+    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3})
+    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1})
+    with Journal.open(path, BINDING) as journal:
+        assert journal.statistics() == Statistics()
+        journal.checkpoint(first)
+        assert journal.statistics() == first
+        journal.checkpoint(second)
+        journal.checkpoint(second)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == second
+
+
+def test_a_look_at_the_file_while_the_robot_writes_it(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal, Journal.read_only(path) as look:
+        assert look.binding == BINDING
+        journal.append([entry(1)])
+        assert look.events() == [created(1)]
+        journal.append([entry(2)])
+        assert look.events() == [created(1), created(2)]
+        assert look.check() == []
+        with pytest.raises(KnowledgeError, match="may not be written"):
+            look.append([entry(3)])
+
+
+def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
+    # Not tmp_path: its parents let nobody else in. Root may write anywhere, so root looks as nobody.
+    look = """
+import os, sys
+from pathlib import Path
+from kurt2rt.knowledge.journal import Journal
+os.getuid() or os.setuid(65534)
+print(len(Journal.read_only(Path(sys.argv[1])).events()))
+"""
+    with TemporaryDirectory() as folder:
+        path = begun(Path(folder) / "knowledge.db")
+        Path(folder).chmod(0o555)
+        found = subprocess.run([sys.executable, "-c", look, str(path)], capture_output=True, check=False)
+        Path(folder).chmod(0o755)
+
+    assert (found.stdout, found.stderr) == (b"3\n", b"")

@@ -1,0 +1,71 @@
+from pathlib import Path
+
+import pytest
+from rich.console import Console, RenderableType
+
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.show import render_knowledge
+from kurt2rt.knowledge.statistics import Statistics, follow_ups
+from kurt2rt.rla.rla import TeachingEvent
+from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced
+
+
+def printed(what: RenderableType) -> list[str]:
+    console = Console(width=250, color_system=None)
+    with console.capture() as capture:
+        console.print(what)
+    return capture.get().splitlines()
+
+
+def test_every_rla_is_shown_with_who_taught_it_when_and_instead_of_what(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        lessons: list[TeachingEvent] = [
+            created(1),
+            created(2),
+            created(3),
+            replaced(2, "left", instead_of="forward"),
+            deleted(3),
+        ]
+        journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
+        journal.checkpoint(Statistics({1: 41, 2: 7}, {(1, 2): 3, (1, 1): 1}))
+        lines = printed(render_knowledge(journal))
+
+    assert "knowledge of wall following, first taught on kurt2, 4 features, definition 0123456789abcdef" in lines[0]
+    assert lines[1].startswith("2 RLAs from 5 lessons (1 corrections, 1 deletions) by Hertha")
+    first, second = (line.replace(" ", "").split("│")[1:-1] for line in lines if line.startswith("│"))
+    stamp = STAMP.replace(" ", "")
+    features = "maximumfront81,wheelspeedleft-5,s10"
+    assert first == ["1", "forward", "", "Hertha", "supervised", stamp, "1", "41", features, "2(75%),1(25%)"]
+    assert second[:8] == ["2", "left", "forward", "Hertha", "corrections", stamp, "200", "7"]
+
+
+def test_the_rest_is_counted_where_a_limit_is_given(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(number), STAMP) for number in range(1, 6)])
+        lines = printed(render_knowledge(journal, limit=2))
+
+    assert sum(line.startswith("│") for line in lines) == 2
+    assert lines[-1] == "and 3 more RLAs"
+
+
+def test_nothing_was_taught_yet(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        assert printed(render_knowledge(journal))[1] == "Nothing was taught yet."
+
+
+def test_names_cannot_command_the_terminal(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(1, action="\x1b[2J[red]forward[/]"), STAMP)])
+        text = "\n".join(printed(render_knowledge(journal)))
+
+    assert "\N{REPLACEMENT CHARACTER}[2J[red]forward[/]" in text
+    assert "\x1b" not in text
+
+
+def test_follow_ups_are_shares_of_the_transitions() -> None:
+    shares = follow_ups(Statistics({}, {(1, 2): 1, (1, 3): 3, (2, 2): 5, (4, 1): 0}))
+
+    assert shares == {1: {3: 75.0, 2: 25.0}, 2: {2: 100.0}}
+    assert list(shares[1]) == [3, 2]
+    assert sum(shares[1].values()) == pytest.approx(100)
