@@ -1,0 +1,38 @@
+"""`kurt2rt doctor`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from kurt2rt.doctor.examination import examine
+from kurt2rt.doctor.report import as_json, print_report
+
+
+def doctor(
+    folder: Annotated[Path, typer.Option(help="The folder where knowledge is kept.")] = Path("var"),
+    json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON, for programs.")] = False,
+    ticks: Annotated[
+        int, typer.Option(min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness.")
+    ] = 100,
+) -> None:
+    """Look at this machine: what it offers the robot, what is missing, what to do.
+
+    Measures how late the timer is beside asyncio.sleep, and how long the disk
+    takes to keep a lesson; looks at clock, real-time priority, memory lock, cores,
+    CAN, SQLite and the simulator's packages. Changes nothing, and needs neither a
+    robot nor a display.
+
+    Ends with code 1 only if something is missing that kurt2rt run cannot do
+    without: Python, the timer, or a disk to keep knowledge on. CAN is not among
+    them, for the simulated robot needs none.
+    """
+    with Console(stderr=True).status("looking at this machine ..."):
+        findings = examine(folder, ticks)
+    if json:
+        typer.echo(as_json(findings))
+    else:
+        print_report(findings, Console())
+    if any(finding.forbids_run for finding in findings):
+        raise typer.Exit(1)

@@ -1,0 +1,112 @@
+"""The timer that paces the ticks: is it there, and how late does it wake us?"""
+
+import asyncio
+import statistics
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.sysfs import attribute
+from kurt2rt.timing.clock import Clock
+from kurt2rt.timing.timerfd import TimerfdClock
+
+PERIOD_S = 0.01
+TOLERABLE_MEDIAN_S = 0.001
+"""A timer file descriptor is some 0.1 ms late, the event loop's own sleeping 1 ms: beyond that it is worth a look."""
+COARSE_RESOLUTION_S = 1e-6
+"""With high-resolution timers the kernel says 1 ns; without them one jiffy, 1 to 10 ms."""
+SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
+"""Reading these takes a system call of a microsecond or more."""
+CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
+
+
+class AsyncioClock:
+    """The event loop's own sleeping, to compare with."""
+
+    def now_s(self) -> float:
+        """Monotonic time in seconds."""
+        return time.monotonic()
+
+    async def wait_until(self, deadline_s: float) -> None:
+        """Return at the deadline, rounded up to the event loop's whole milliseconds."""
+        await asyncio.sleep(deadline_s - time.monotonic())
+
+
+@dataclass(frozen=True, slots=True)
+class Lateness:
+    """How late a clock woke us."""
+
+    median_s: float
+    worst_s: float
+
+
+async def measure_lateness(clock: Clock, ticks: int, period_s: float) -> Lateness:
+    """Wait for so many deadlines, a period apart, and see how late each wait returned."""
+    start_s = clock.now_s()
+    late_s = []
+    for number in range(1, ticks + 1):
+        deadline_s = start_s + number * period_s
+        await clock.wait_until(deadline_s)
+        late_s.append(clock.now_s() - deadline_s)
+    return Lateness(statistics.median(late_s), max(late_s))
+
+
+def check_timer(
+    ticks: int = 100,
+    period_s: float = PERIOD_S,
+    open_clock: Callable[[], AbstractContextManager[Clock]] = TimerfdClock,
+) -> Finding:
+    """Is there a timer file descriptor, and how late is it beside asyncio.sleep? Takes 2 x ticks x period_s."""
+
+    async def both() -> tuple[Lateness, Lateness]:
+        with open_clock() as clock:
+            ours = await measure_lateness(clock, ticks, period_s)
+        return ours, await measure_lateness(AsyncioClock(), ticks, period_s)
+
+    try:
+        ours, theirs = anyio.run(both)
+    except OSError as error:
+        return Finding(
+            "timer",
+            Status.MISSING,
+            f"no timerfd ({error})",
+            "run on Linux, outside of sandboxes that refuse timerfd_create",
+            needed=True,
+        )
+    found = (
+        f"{ticks} ticks of {period_s * 1000:g} ms: timerfd {_shown(ours)}; asyncio.sleep {_shown(theirs)}; "
+        f"ratio {theirs.median_s / max(ours.median_s, 1e-9):.1f}"
+    )
+    if ours.median_s > TOLERABLE_MEDIAN_S or ours.worst_s >= period_s:
+        return Finding(
+            "timer",
+            Status.WARNING,
+            f"{found}: ticks would come late or be missed",
+            "end other programs, see CPU governor and real-time priority here, then run kurt2rt doctor again",
+            needed=True,
+        )
+    return Finding("timer", Status.OK, found, needed=True)
+
+
+def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> Finding:
+    """Is the monotonic clock fine and quick to read?"""
+    if resolution_s is None:
+        resolution_s = time.get_clock_info("monotonic").resolution
+    name = attribute(source) or "unknown"
+    found = f"resolution {resolution_s * 1e9:.0f} ns, source {name}"
+    if resolution_s > COARSE_RESOLUTION_S:
+        what_to_do = "use a kernel with CONFIG_HIGH_RES_TIMERS, booted without highres=off"
+        return Finding("clock", Status.WARNING, f"{found}: ticks would follow the kernel's jiffies", what_to_do)
+    if name in SLOW_CLOCK_SOURCES:
+        what_to_do = "boot with clocksource=tsc, if dmesg does not call the TSC unstable"
+        return Finding("clock", Status.WARNING, f"{found}: slow to read", what_to_do)
+    return Finding("clock", Status.OK, found)
+
+
+def _shown(lateness: Lateness) -> str:
+    return f"median {lateness.median_s * 1000:.3f} ms late, worst {lateness.worst_s * 1000:.3f}"
