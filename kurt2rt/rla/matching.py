@@ -11,6 +11,16 @@ _DOUBT = 2 * float(np.finfo(np.float32).eps)
 round-off (eps / 2) of at most |c||s| + |c|^2 / 2. Two scores are compared, so twice; the rest is slack for this bound's
 own rounding."""
 
+_BRUTE_FORCE_DOUBT = 1e-8
+"""Very far from all conditions float64 itself sees ties where scores differ: its round-off is a share
+of the whole reach squared, 2e-16 where _DOUBT is 2e-7 of the smaller product."""
+
+_SMALLEST_NORM = 1e-15
+"""Norms count as at least this long in the doubt: products of shorter ones underflow in float32."""
+
+_FLOAT32_REACH = 1e18
+"""From here on the squares that make a score could leave float32's range: no rough look then."""
+
 
 class Nearest(NamedTuple):
     """The nearest condition and the one behind it."""
@@ -43,7 +53,7 @@ class ConditionIndex:
     def __init__(self, dimensions: int) -> None:
         self._dimensions = dimensions
         self._count = 0
-        self._largest_norm = 0.0
+        self._largest_norm = _SMALLEST_NORM
         self._exact = np.zeros((64, dimensions))
         self._rough = np.zeros((64, dimensions), dtype=np.float32)
         self._half_squares = np.zeros(64, dtype=np.float32)
@@ -62,8 +72,9 @@ class ConditionIndex:
         if self._count == len(self._exact):
             self._grow()
         self._exact[self._count] = row
-        self._rough[self._count] = row
-        self._half_squares[self._count] = 0.5 * float(row @ row)
+        with np.errstate(over="ignore"):  # beyond _FLOAT32_REACH nobody looks at these two
+            self._rough[self._count] = row
+            self._half_squares[self._count] = 0.5 * float(row @ row)
         self._count += 1
         self._largest_norm = max(self._largest_norm, float(np.sqrt(row @ row)))
         self._narrow_views()
@@ -79,26 +90,28 @@ class ConditionIndex:
         """Nearest condition to `situation` (d,) and the one behind it; None when there is none."""
         if self._count == 0:
             return None
+        if self._count == 1:
+            return Nearest(0, self._distance(0, situation), -1, math.inf)
+        square = float(situation.dot(situation))
+        reach = math.sqrt(square) + self._largest_norm
+        if not reach < _FLOAT32_REACH:  # true for NaN as well
+            return self._decide_exactly(situation, np.arange(self._count))
         scores = self._scores
         np.dot(self._rough_rows, situation.astype(np.float32), out=scores)
         np.subtract(self._half_squares_rows, scores, out=scores)
         best = int(scores.argmin())
-        if self._count == 1:
-            return Nearest(best, self._distance(best, situation), -1, math.inf)
         best_score = scores.item(best)
         scores[best] = math.inf
         second = int(scores.argmin())
         second_score = scores.item(second)
-        square = float(situation.dot(situation))
-        doubt = _DOUBT * (self._dimensions + 4) * self._largest_norm * (math.sqrt(square) + self._largest_norm)
+        doubt = _DOUBT * (self._dimensions + 4) * reach * (self._largest_norm + _BRUTE_FORCE_DOUBT * reach)
         if second_score - best_score > doubt:
             rough_distance = math.sqrt(max(0.0, 2.0 * second_score + square))
             return Nearest(best, self._distance(best, situation), second, rough_distance)
         scores[best] = best_score
-        return self._decide_exactly(situation, best_score + doubt)
+        return self._decide_exactly(situation, np.flatnonzero(scores <= best_score + doubt))
 
-    def _decide_exactly(self, situation: NDArray[np.float64], bound: float) -> Nearest:
-        candidates = np.flatnonzero(self._scores <= bound)
+    def _decide_exactly(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> Nearest:
         distances = exact_distances(self._exact[candidates], situation)
         first = int(distances.argmin())  # the first of equal ones: candidates are in order of age
         winner, distance = int(candidates[first]), float(distances[first])

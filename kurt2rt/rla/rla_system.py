@@ -104,7 +104,7 @@ class RlaSystem:
         digest = hashlib.sha256()
         for rla in self._rlas:
             digest.update(f"{rla.rla_id} {rla.action} {rla.radius!r} ".encode())
-            digest.update(np.array(rla.condition).tobytes())
+            digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
 
     def _living(self, rla_id: int) -> int:

@@ -1,0 +1,7 @@
+"""What all tests share: property tests that draw the same examples every time, on any machine."""
+
+from hypothesis import settings
+
+# No deadline per example: it would be a wall-clock assertion, and the machine that runs the tests is shared.
+settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True)
+settings.load_profile("repeatable")

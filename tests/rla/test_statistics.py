@@ -1,0 +1,29 @@
+"""Counts behind the RLA network."""
+
+from kurt2rt.rla.statistics import StatisticsCounter
+
+
+def drive(statistics: StatisticsCounter, ticks: list[int | None]) -> None:
+    for rla_id in ticks:
+        statistics.count(rla_id)
+
+
+def test_an_rla_is_used_once_however_many_ticks_it_drives() -> None:
+    statistics = StatisticsCounter()
+    drive(statistics, [1, 1, 1, 2, 2, 1])
+    assert statistics.uses == {1: 2, 2: 1}
+    assert statistics.transitions == {(1, 2): 1, (2, 1): 1}
+
+
+def test_standing_ends_a_chain_of_transitions() -> None:
+    statistics = StatisticsCounter()
+    drive(statistics, [1, None, None, 2, None, 2])
+    assert statistics.uses == {1: 1, 2: 2}
+    assert not statistics.transitions
+
+
+def test_counting_goes_on_from_what_was_kept() -> None:
+    statistics = StatisticsCounter({1: 10}, {(1, 2): 4})
+    drive(statistics, [1, 2])
+    assert statistics.uses == {1: 11, 2: 1}
+    assert statistics.transitions == {(1, 2): 5}
