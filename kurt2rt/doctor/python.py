@@ -20,18 +20,26 @@ def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> Finding:
     return Finding("Python", Status.OK, name, needed=True)
 
 
-def check_package(name: str, used_for: str) -> Finding:
+def check_package(name: str, used_for: str, python: str = sys.executable) -> Finding:
     """Can a package of the `simulation` extra be imported?
 
     It is tried in a process of its own: a broken native library may take the whole interpreter with it.
     """
-    trial = subprocess.run([sys.executable, "-c", f"import {name}"], capture_output=True, text=True, check=False)
+    fault = _import_fault(name, python)
+    if fault:
+        found = f"cannot be imported ({fault}), needed for {used_for}"
+        what_to_do = f"in the project's folder: {python} -m pip install -e '.[simulation]'"
+        return Finding(name, Status.MISSING, found, what_to_do)
+    return Finding(name, Status.OK, f"{version(name)}, for {used_for}")
+
+
+def _import_fault(name: str, python: str) -> str:
+    """Last line of what went wrong; empty when nothing did."""
+    try:
+        trial = subprocess.run([python, "-c", f"import {name}"], capture_output=True, text=True, check=False)
+    except OSError as error:
+        return f"Python could not be started: {error}"
     if trial.returncode == 0:
-        return Finding(name, Status.OK, f"{version(name)}, for {used_for}")
-    said = trial.stderr.strip().splitlines() or [f"the import ended with code {trial.returncode}"]
-    return Finding(
-        name,
-        Status.MISSING,
-        f"cannot be imported ({said[-1]}), needed for {used_for}",
-        f"{sys.executable} -m pip install 'kurt2rt[simulation]'",
-    )
+        return ""
+    said = trial.stderr.strip().splitlines()
+    return said[-1] if said else f"the import ended with code {trial.returncode}"
