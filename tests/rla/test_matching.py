@@ -71,6 +71,7 @@ def worlds(draw: st.DrawFn) -> tuple[list[Point | int], list[Point]]:
 @settings(max_examples=600)
 @example(([(1.5e19,), (2.7e19,)], [(1.3e19,)]))
 @example(([(0.3,), (0.6,)], [(1e16,)]))
+@example(([(2.1e-22,), (1.2e-22,)], [(1.7e-22,)]))
 @example(([(3e20, 0.0), (1.0, 0.0)], [(2.0, 0.0)]))
 def test_winner_is_that_of_a_brute_force_after_any_appends_and_removals(
     world: tuple[list[Point | int], list[Point]],
