@@ -135,6 +135,13 @@ def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:
     assert driver.tell(WheelSpeeds(0.3, 0.3), senses).reasons == (words.INFRARED_STALE,)
 
 
+def test_the_limits_themselves_are_allowed(driver: Driver) -> None:
+    driver.now_s = LIMITS.command_age_s
+    assert driver.tell(WheelSpeeds(0.01, 0.01), fresh(driver.now_s), decided_ago_s=LIMITS.command_age_s).reasons == ()
+    fastest_m_s = LIMITS.maximum_speed_m_s
+    assert driver.drive_for(1.0, fastest_m_s, -fastest_m_s) == Grant(WheelSpeeds(0.6, -0.6), (), latched=False)
+
+
 def test_an_old_command_stands(driver: Driver) -> None:
     wanted = WheelSpeeds(0.01, 0.01)
     assert driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s - 1e-6).reasons == ()
@@ -177,6 +184,16 @@ def test_a_rear_bumper_lets_the_robot_drive_on_only(driver: Driver) -> None:
     assert driver.drive(-0.3, -0.3, REAR) == Grant(STANDSTILL, (words.REAR_BUMPER,), latched=False)
     assert driver.drive(0.2, -0.2, REAR).wheel_speeds == (0.01, 0.0)
     assert driver.drive(0.2, 0.2, REAR).reasons == (words.SLEW_LIMIT,)
+
+
+@pytest.mark.parametrize(
+    ("bumper", "reason", "barred"), [(FRONT, words.FRONT_BUMPER, 1), (REAR, words.REAR_BUMPER, -1)]
+)
+def test_a_bumper_is_a_reason_only_for_a_wheel_it_bars(driver: Driver, bumper: int, reason: str, barred: int) -> None:
+    for left, right in ((0.2, -0.2), (-0.2, 0.2), (0.2, 0.0), (0.0, 0.2)):
+        assert reason in driver.drive(barred * left, barred * right, bumper).reasons
+    for left, right in ((-0.2, -0.2), (-0.2, 0.0), (0.0, -0.2), (0.0, 0.0)):
+        assert reason not in driver.drive(barred * left, barred * right, bumper).reasons
 
 
 def test_a_bumper_does_not_wait_for_the_braking_ramp(driver: Driver) -> None:
