@@ -12,7 +12,7 @@ from hal.bus import CanBus
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.guard import Guard
 from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode
+from hal.robot_settings import BumperEnd, RobotSettings, SpeedMode
 from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, robot_with, send
 
 Ends = tuple[CanBus, CanBus]
@@ -194,6 +194,15 @@ def test_a_bumper_is_a_reason_only_for_a_wheel_it_bars(driver: Driver, bumper: i
         assert reason in driver.drive(barred * left, barred * right, bumper).reasons
     for left, right in ((-0.2, -0.2), (-0.2, 0.0), (0.0, -0.2), (0.0, 0.0)):
         assert reason not in driver.drive(barred * left, barred * right, bumper).reasons
+
+
+@pytest.mark.parametrize("bit", range(8))
+def test_each_bit_is_the_bumper_of_the_robots_table(driver: Driver, bit: int) -> None:
+    ends = [bumper.end for bumper in ROBOT.bumpers]
+    driver.drive_for(1.0, 0.1, -0.1)
+    grant = driver.drive(0.1, -0.1, 1 << bit)
+    assert grant.wheel_speeds.left_m_s == (0.0 if ends[bit : bit + 1] == [BumperEnd.FRONT] else 0.1)
+    assert grant.wheel_speeds.right_m_s == (0.0 if ends[bit : bit + 1] == [BumperEnd.REAR] else -0.1)
 
 
 def test_a_bumper_does_not_wait_for_the_braking_ramp(driver: Driver) -> None:
