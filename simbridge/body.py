@@ -9,7 +9,7 @@ from hal.robot_settings import GeometrySettings
 from simbridge.geometry import rectangle
 from simbridge.noise import Noise
 from simbridge.pose import Pose
-from simbridge.world import ROBOT_GROUP, ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
+from simbridge.world import ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
 
 SLIP_SHARE = 0.03
 """Standard deviation of each side's slip."""
@@ -49,27 +49,29 @@ class Body:
         self._left_slip = 0.0
         self._right_slip = 0.0
         self._points: list[pymunk.ContactPointSet] = []
+        self.pose = Pose(0.0, 0.0, 0.0)
+        """Where it is after the last cycle."""
         self._body = pymunk.Body(geometry.mass_kg, geometry.yaw_inertia_kg_m2)
         corners = rectangle((0.0, 0.0), geometry.outline_length_m, geometry.outline_width_m, 0.0)
         self._shape = pymunk.Poly(self._body, corners)
         self._shape.friction = WALL_FRICTION
         self._shape.collision_type = ROBOT_KIND
-        self._shape.filter = pymunk.ShapeFilter(group=ROBOT_GROUP)
         self._space.add(self._body, self._shape)
         self._space.on_collision(ROBOT_KIND, WALL_KIND, post_solve=self._note_contact)
 
     def move(self, left_m_s: float, right_m_s: float) -> None:
         """One cycle with the wheels' rims at these speeds."""
-        self._left_slip = self._slip_keep * self._left_slip + self._slip_gain * self._noise.normal()
-        self._right_slip = self._slip_keep * self._right_slip + self._slip_gain * self._noise.normal()
-        left_m_s *= 1.0 + self._left_slip
-        right_m_s *= 1.0 + self._right_slip
+        keep, gain, normal = self._slip_keep, self._slip_gain, self._noise.normal
+        self._left_slip = left_slip = keep * self._left_slip + gain * normal()
+        self._right_slip = right_slip = keep * self._right_slip + gain * normal()
+        left_m_s *= 1.0 + left_slip
+        right_m_s *= 1.0 + right_slip
         forward_m_s = (left_m_s + right_m_s) / 2
         yaw_rad_s = (right_m_s - left_m_s) / self._track_m
         body, cycle_s = self._body, self._cycle_s
         turning_rad_s = body.angular_velocity
         # The force acts on the way of the next cycle: aim along the heading of its middle.
-        heading_rad = body.angle + (turning_rad_s + yaw_rad_s / 2) * cycle_s
+        heading_rad = self.pose.heading_rad + (turning_rad_s + yaw_rad_s / 2) * cycle_s
         velocity_x, velocity_y = body.velocity
         force_x = (forward_m_s * math.cos(heading_rad) - velocity_x) * self._mass_kg / cycle_s
         force_y = (forward_m_s * math.sin(heading_rad) - velocity_y) * self._mass_kg / cycle_s
@@ -78,11 +80,15 @@ class Body:
             force_x *= self._force_limit_n / force_n
             force_y *= self._force_limit_n / force_n
         torque_n_m = (yaw_rad_s - turning_rad_s) * self._inertia_kg_m2 / cycle_s
+        if abs(torque_n_m) > self._torque_limit_n_m:
+            torque_n_m = math.copysign(self._torque_limit_n_m, torque_n_m)
         body.force = (force_x, force_y)
-        body.torque = min(self._torque_limit_n_m, max(-self._torque_limit_n_m, torque_n_m))
+        body.torque = torque_n_m
         if self._points:
             self._points.clear()
         self._space.step(cycle_s)
+        x_m, y_m = body.position
+        self.pose = Pose(x_m, y_m, body.angle)
 
     def place(self, pose: Pose) -> None:
         """Put it down somewhere else, standing."""
@@ -91,14 +97,9 @@ class Body:
         body.angle = pose.heading_rad
         body.velocity = (0.0, 0.0)
         body.angular_velocity = 0.0
+        self.pose = pose
         self._points.clear()
         self._space.reindex_shapes_for_body(body)
-
-    @property
-    def pose(self) -> Pose:
-        """Where it is after the last cycle."""
-        x_m, y_m = self._body.position
-        return Pose(x_m, y_m, self._body.angle)
 
     @property
     def velocity(self) -> tuple[float, float, float]:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import JunkFrameError, load_codec
-from hal.control import Control, Mode, RawControl, SystemControl, decode_control
+from hal.control import Mode, RawControl, SystemControl, decode_control
 from hal.robot_settings import RobotSettings
 from simbridge.instruments import Instruments
 from simbridge.telemetry import Telemetry
@@ -43,8 +43,9 @@ class MicroController:
         self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.can.cycle_s)
         self._silent_cycles = self._watchdog_cycles
         self._actuators_on = True
-        self._last_payload = b""
-        self._last_control: Control = SystemControl(Mode.ACTUATOR_ON)
+        self._last_payload: bytes | bytearray | None = None
+        self._last_command: SystemControl | None = None
+        self._last_orders = _BRAKED
         self.orders = _BRAKED
         self.dead = False
         """True after a crash, until MC_RESET."""
@@ -61,24 +62,19 @@ class MicroController:
             if message.is_remote_frame or message.is_error_frame:
                 self.junk_frames += 1
                 continue
-            try:
-                control = self._decoded(message.data)
-            except JunkFrameError:
-                self.junk_frames += 1
-                continue
+            if message.data != self._last_payload:
+                try:
+                    self._decode(message.data)
+                except JunkFrameError:
+                    self.junk_frames += 1
+                    continue
             self._silent_cycles = 0
-            if isinstance(control, SystemControl):
-                newest = self._obey(control, newest)
-            else:
-                left_m_s, right_m_s = control.wheel_speeds(self._motors)
-                brakes = (
-                    (control.left.brake, control.right.brake) if isinstance(control, RawControl) else (False, False)
-                )
-                newest = Orders(left_m_s, right_m_s, *brakes)
+            newest = self._obey(self._last_command, newest) if self._last_command else self._last_orders
         if self.dead:
             return
         if newest is not None and self._actuators_on:
-            self._take(newest)
+            if newest is not self.orders:
+                self._take(newest)
         elif self._silent_cycles >= self._watchdog_cycles:
             self.orders = _BRAKED
 
@@ -92,12 +88,15 @@ class MicroController:
         if not self.dead:
             self._telemetry.send(left_ticks, right_ticks, bumpers)
 
-    def _decoded(self, data: bytes | bytearray) -> Control:
-        # Most cycles repeat the last set point.
-        if data != self._last_payload:
-            self._last_control = decode_control(data)
-            self._last_payload = bytes(data)
-        return self._last_control
+    def _decode(self, data: bytes | bytearray) -> None:
+        """Understand a payload; most cycles repeat the last one, so its meaning is kept."""
+        control = decode_control(data)
+        self._last_payload = bytes(data)
+        self._last_command = control if isinstance(control, SystemControl) else None
+        if not isinstance(control, SystemControl):
+            left_m_s, right_m_s = control.wheel_speeds(self._motors)
+            brakes = (control.left.brake, control.right.brake) if isinstance(control, RawControl) else (False, False)
+            self._last_orders = Orders(left_m_s, right_m_s, *brakes)
 
     def _take(self, wanted: Orders) -> None:
         old = self.orders

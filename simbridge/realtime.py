@@ -35,6 +35,11 @@ class RealtimeSimulation:
         if self.error is not None:
             raise self.error
 
+    def wait(self, timeout_s: float) -> bool:
+        """Wait until the thread has ended, by `stop` or by an error; False when it still runs."""
+        self._thread.join(timeout_s)
+        return not self._thread.is_alive()
+
     def __enter__(self) -> Self:
         self.start()
         return self

@@ -36,7 +36,7 @@ class SimulatedRobot:
         self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise)
         self._bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = Collisions(cycle_s)
-        self._laps = Laps(world)
+        self._laps = Laps(self.world)
         self._pressed = 0
         self.controller = MicroController(robot, bus, Instruments(robot, self._body, self._wheels))
         self.place(world.start_poses[0].pose)

@@ -1,14 +1,12 @@
-"""The walls of a world in the physics engine: what bodies bump into and what rays meet."""
+"""The walls of a world in the physics engine: what the robot bumps into."""
 
 import pymunk
 
-from simbridge.geometry import Point, edges_of
+from simbridge.geometry import edges_of
 from simbridge.world_settings import WorldSettings
 
 ROBOT_KIND = 1
 WALL_KIND = 2
-ROBOT_GROUP = 1
-"""Shapes of one group ignore one another: rays start inside the robot's own body."""
 
 WALL_FRICTION = 0.3
 """Wood on wood; our choice."""
@@ -24,7 +22,6 @@ class World:
         """As the world is now: walls that were moved stand where they were moved to."""
         self.space = pymunk.Space()
         self.space.collision_slop = _CONTACT_SLOP_M
-        self._ray_filter = pymunk.ShapeFilter(group=ROBOT_GROUP)
         self._bodies: dict[str, pymunk.Body] = {}
         # Radius 0: outline corners are the inner faces themselves.
         for a, b in edges_of(settings.outline[:-1]):
@@ -42,11 +39,6 @@ class World:
         body = self._bodies[name]
         body.position = (body.position.x + dx_m, body.position.y + dy_m)
         self.space.reindex_shapes_for_body(body)
-
-    def free_share(self, start: Point, end: Point) -> float:
-        """Share of the way from start to end that is free of walls, 0 to 1; the robot itself is not in the way."""
-        hit = self.space.segment_query_first(start, end, 0.0, self._ray_filter)
-        return 1.0 if hit is None else hit.alpha
 
     def _add_body(self, name: str) -> pymunk.Body:
         body = pymunk.Body(body_type=pymunk.Body.STATIC)

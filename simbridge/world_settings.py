@@ -28,6 +28,7 @@ from simbridge.pose import Pose
 START_CLEARANCE_M = 0.05
 """A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
 
+_TOUCHING_M = 1e-9
 Size = Annotated[float, Field(gt=0, le=50)]
 
 
@@ -62,9 +63,13 @@ class WorldSettings(Settings):
         if outline[0] != outline[-1]:
             raise ValueError(f"not closed: the last corner {outline[-1]} must repeat the first {outline[0]}")
         edges = edges_of(outline[:-1])
-        for i, edge in enumerate(edges):
+        for edge in edges:
             if edge[0] == edge[1]:
                 raise ValueError(f"corner {edge[0]} stands twice in a row")
+        for edge, following in zip(edges, (*edges[1:], edges[0]), strict=True):
+            if min(point_distance_m(following[1], edge), point_distance_m(edge[0], following)) < _TOUCHING_M:
+                raise ValueError(f"intersects itself: it turns back on itself at {edge[1]}")
+        for i, edge in enumerate(edges):
             for j in range(i + 2, len(edges)):
                 if (i, j) != (0, len(edges) - 1) and edges_cross(edge, edges[j]):
                     raise ValueError(f"intersects itself: {edge[0]} to {edge[1]} meets {edges[j][0]} to {edges[j][1]}")

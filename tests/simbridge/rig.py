@@ -1,0 +1,138 @@
+"""A simulated robot and the notebook's end of its bus, for stories that drive it directly."""
+
+import itertools
+import math
+from collections.abc import Iterable
+from typing import Self
+
+from hal.bus import open_bus
+from hal.codec import Codec, load_codec
+from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, SystemControl, control_frame
+from hal.robot_settings import RobotSettings, load_robot
+from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from simbridge.pose import Pose
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world_settings import StartPoseSettings, WorldSettings
+
+CODEC: Codec = load_codec()
+ROBOT: RobotSettings = load_robot()
+STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
+BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
+
+_numbers = itertools.count()
+
+
+def room(
+    side_m: float = 4.0,
+    walls: Iterable[WallSettings] = (),
+    posts: Iterable[RoundObstacleSettings] = (),
+    boxes: Iterable[PolygonObstacleSettings] = (),
+    rays: int = 1,
+) -> WorldSettings:
+    """A square room with the robot in the middle, looking along x."""
+    return WorldSettings(
+        name="room",
+        size_m=(side_m, side_m),
+        infrared_rays=3 if rays == 3 else 1,
+        outline=((0.0, 0.0), (side_m, 0.0), (side_m, side_m), (0.0, side_m), (0.0, 0.0)),
+        walls=tuple(walls),
+        round_obstacles=tuple(posts),
+        polygon_obstacles=tuple(boxes),
+        start_poses=(StartPoseSettings(x_m=side_m / 2, y_m=side_m / 2, heading_deg=0.0),),
+    )
+
+
+class Rig:
+    """Robot and notebook; what the robot sent is kept in `heard`, newest frame of each message."""
+
+    def __init__(self, world: WorldSettings | None = None, seed: int = 1, robot: RobotSettings = ROBOT) -> None:
+        name = f"virtual:simbridge-test-{next(_numbers)}"
+        self.robot_end, self.notebook = open_bus(name), open_bus(name)
+        self._control_port = self.notebook.control_port()
+        self.robot = SimulatedRobot(robot, world or room(), self.robot_end, seed)
+        self.heard: dict[str, tuple[int, ...]] = {}
+        self.frames = 0
+        self.ticks = [0, 0]
+        self._speeds_cm_s = (0, 0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.robot_end.shutdown()
+        self.notebook.shutdown()
+
+    def tell(self, control: Control) -> None:
+        self._control_port.send(control_frame(control))
+
+    def step(self, control: Control | None = None) -> None:
+        """One cycle, after at most one CONTROL frame."""
+        if control is not None:
+            self.tell(control)
+        self.robot.step()
+        self.listen()
+
+    def run(self, seconds: float, control: Control | None = None) -> None:
+        for _ in range(round(seconds / 0.01)):
+            self.step(control)
+
+    def drive(self, left_cm_s: int, right_cm_s: int, seconds: float) -> None:
+        """As a careful notebook does: set points change by at most 3 cm/s from cycle to cycle."""
+        for _ in range(round(seconds / 0.01)):
+            left, right = self._speeds_cm_s
+            self._speeds_cm_s = (
+                left + max(-3, min(3, left_cm_s - left)),
+                right + max(-3, min(3, right_cm_s - right)),
+            )
+            self.step(SpeedControl(Mode.SPEED_CM, *self._speeds_cm_s))
+
+    def listen(self) -> None:
+        messages = self.notebook.drain()
+        self.frames = len(messages)
+        for message in messages:
+            codec = CODEC.by_id[message.arbitration_id]
+            self.heard[codec.name] = codec.unpack(message.data)
+            if codec.name == "ENCODER":
+                self.ticks[0] += self.heard["ENCODER"][0]
+                self.ticks[1] += self.heard["ENCODER"][1]
+
+    @property
+    def speed_m_s(self) -> float:
+        """Speed of the wheels by the encoders, mean of both sides."""
+        left, right = self.heard["ENCODER"]
+        return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+
+    def reading(self, sensor: str) -> int:
+        """Newest count of a sensor as the bus told it."""
+        channel = next(each.channel for each in ROBOT.infrared.sensors if each.name == sensor)
+        for name, values in self.heard.items():
+            signals = CODEC.message(name).signals
+            if channel in signals:
+                return values[signals.index(channel)]
+        raise LookupError(f"{channel} was never heard")
+
+    def mean_reading(self, sensor: str, seconds: float = 2.0) -> float:
+        total = 0
+        for _ in range(round(seconds / 0.01)):
+            self.step(STAND)
+            total += self.reading(sensor)
+        return total / round(seconds / 0.01)
+
+
+def facing_wall(distance_m: float, side_m: float = 4.0) -> Pose:
+    """In the square room, looking at the wall at x = side with the front sensors so far from it."""
+    return Pose(side_m - distance_m - ROBOT.geometry.outline_length_m / 2, side_m / 2, 0.0)
+
+
+def quiet_robot(**infrared: float) -> RobotSettings:
+    """The shipped robot with sensors without noise and spread, and other settings of the infra-red law."""
+    update = {"noise_share": 0.0, "noise_least_counts": 0.0, "gain_spread_share": 0.0, **infrared}
+    return ROBOT.model_copy(update={"infrared": ROBOT.infrared.model_copy(update=update)})
+
+
+def reset() -> SystemControl:
+    return SystemControl(Mode.MC_RESET)
+
+
+def half_turn(pose: Pose) -> Pose:
+    return Pose(pose.x_m, pose.y_m, pose.heading_rad + math.pi)

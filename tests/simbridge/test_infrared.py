@@ -1,0 +1,166 @@
+import math
+
+import pymunk
+import pytest
+
+from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from simbridge.pose import Pose
+from simbridge.sight import Sight
+from simbridge.world import World
+from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, quiet_robot, room
+
+
+@pytest.mark.parametrize(("distance_m", "counts"), [(0.10, 550), (0.15, 388), (0.30, 189), (0.50, 95), (0.60, 70)])
+def test_the_law_of_the_reference(distance_m: float, counts: int) -> None:
+    with Rig(robot=quiet_robot()) as rig:
+        rig.robot.place(facing_wall(distance_m))
+        rig.run(0.1, STAND)
+        assert [rig.reading(sensor) for sensor in ("s9", "s10", "s11")] == pytest.approx([counts] * 3, abs=1)
+
+
+def test_thirty_centimetres_read_189_give_or_take_gain_and_noise() -> None:
+    gains = []
+    for seed in range(6):
+        with Rig(seed=seed) as rig:
+            rig.robot.place(facing_wall(0.30))
+            gains.append(rig.mean_reading("s11", 1.0) / 189)
+    assert all(0.94 <= gain <= 1.06 for gain in gains)
+    assert max(gains) - min(gains) > 0.01
+
+
+def test_a_touching_wall_looks_far_because_readings_fold_back() -> None:
+    with Rig(robot=quiet_robot()) as rig:
+        readings = {}
+        for distance_m in (0.08, 0.05, 0.03, 0.005):
+            rig.robot.place(facing_wall(distance_m))
+            rig.run(0.1, STAND)
+            readings[distance_m] = rig.reading("s11")
+        assert readings == pytest.approx({0.08: 550, 0.05: 425, 0.03: 300, 0.005: 144}, abs=2)
+
+
+def test_pressed_against_a_wall_it_still_sees_the_wall() -> None:
+    with Rig(robot=quiet_robot()) as rig:
+        rig.robot.place(facing_wall(0.1))
+        rig.drive(30, 30, 2.0)
+        assert rig.robot.touching
+        assert rig.reading("s11") == pytest.approx(144, abs=10)
+
+
+def test_nothing_in_view_reads_the_floor() -> None:
+    with Rig(robot=quiet_robot()) as rig:
+        rig.run(0.1, STAND)
+        assert {rig.reading(sensor.name) for sensor in ROBOT.infrared.sensors} == {70}
+
+
+def test_every_sensor_looks_where_the_table_says() -> None:
+    for sensor in ROBOT.infrared.sensors:
+        ahead_rad = math.radians(sensor.heading_deg)
+        # A thin post 0.2 m in front of this sensor's face.
+        post = RoundObstacleSettings(
+            name="post",
+            x_m=2.0 + sensor.x_m + 0.22 * math.cos(ahead_rad),
+            y_m=2.0 + sensor.y_m + 0.22 * math.sin(ahead_rad),
+            radius_m=0.02,
+        )
+        with Rig(room(posts=[post]), robot=quiet_robot()) as rig:
+            rig.run(0.1, STAND)
+            seeing = {each.name for each in ROBOT.infrared.sensors if rig.reading(each.name) > 71}
+            assert seeing == {sensor.name}
+            assert rig.reading(sensor.name) == pytest.approx(294, abs=1)
+
+
+def test_readings_repeat_for_about_four_cycles_and_each_sensor_has_its_own_rhythm() -> None:
+    with Rig() as rig:
+        rig.robot.place(facing_wall(0.15))
+        changes = {"s9": 0, "s10": 0, "s11": 0}
+        before = dict.fromkeys(changes, 0)
+        for _ in range(400):
+            rig.step(STAND)
+            for sensor in changes:
+                changes[sensor] += rig.reading(sensor) != before[sensor]
+                before[sensor] = rig.reading(sensor)
+        # 4 s at 28.7 to 47.9 ms, less the few new measurements that happen to equal the last.
+        assert all(70 <= count <= 140 for count in changes.values())
+        assert len(set(changes.values())) > 1
+
+
+def test_noise_has_the_size_of_the_reference() -> None:
+    with Rig(robot=quiet_robot(noise_share=0.02, noise_least_counts=1.5)) as rig:
+        rig.robot.place(facing_wall(0.30))
+        readings = []
+        for _ in range(1200):
+            rig.step(STAND)
+            readings.append(rig.reading("s11"))
+        mean = sum(readings) / len(readings)
+        deviation = math.sqrt(sum((reading - mean) ** 2 for reading in readings) / len(readings))
+        assert mean == pytest.approx(189, abs=2)
+        assert deviation == pytest.approx(0.02 * 189, rel=0.25)
+
+
+def test_three_rays_see_what_slips_past_one() -> None:
+    post = RoundObstacleSettings(name="wire", x_m=2.0 + 0.217 + 0.4, y_m=2.0 + 0.012, radius_m=0.004)
+    for rays, sees in ((1, False), (3, True)):
+        with Rig(room(posts=[post], rays=rays), robot=quiet_robot()) as rig:
+            rig.run(0.1, STAND)
+            assert (rig.reading("s11") > 71) is sees
+
+
+def test_a_moved_wall_is_seen_where_it_stands_now() -> None:
+    board = WallSettings(name="board", from_m=(3.0, 1.5), to_m=(3.0, 2.5), thickness_m=0.04)
+    with Rig(room(walls=[board]), robot=quiet_robot()) as rig:
+        rig.run(0.1, STAND)
+        assert rig.reading("s11") == 70
+        rig.robot.world.move_wall("board", -0.463, 0.0)  # its face comes to 0.30 m
+        rig.run(0.1, STAND)
+        assert rig.reading("s11") == pytest.approx(189, abs=1)
+        rig.drive(20, 20, 4.0)
+        assert rig.robot.collisions == 1
+        assert rig.robot.pose.x_m == pytest.approx(2.3, abs=0.006)
+        rig.robot.world.move_wall("board", 0.463, 0.0)
+        rig.drive(20, 20, 1.5)
+        assert rig.robot.pose.x_m > 2.4
+
+
+def test_moving_an_unknown_wall_names_those_there_are() -> None:
+    board = WallSettings(name="board", from_m=(3.0, 1.5), to_m=(3.0, 2.5), thickness_m=0.04)
+    with Rig(room(walls=[board])) as rig, pytest.raises(KeyError, match=r"'shelf'; there are: board"):
+        rig.robot.world.move_wall("shelf", 0.1, 0.0)
+
+
+def test_sight_agrees_with_the_physics_engine_in_every_direction() -> None:
+    settings = room(
+        walls=[WallSettings(name="board", from_m=(1.0, 1.0), to_m=(1.6, 1.4), thickness_m=0.05)],
+        posts=[RoundObstacleSettings(name="post", x_m=2.4, y_m=2.7, radius_m=0.2)],
+        boxes=[PolygonObstacleSettings(name="box", corners=((2.6, 1.0), (3.1, 1.2), (2.7, 1.6)))],
+    )
+    world = World(settings)
+    sight = Sight(world, 1.0)
+    for step in range(360):
+        angle_rad = math.radians(step) + 1e-4
+        x_m, y_m = 2.0 + 0.9 * math.cos(step), 2.0 + 0.9 * math.sin(step)
+        if world.space.point_query_nearest((x_m, y_m), 0.0, pymunk.ShapeFilter()):
+            continue  # within an obstacle
+        sight.look_from(x_m, y_m)
+        along = (math.cos(angle_rad), math.sin(angle_rad))
+        end = (x_m + 0.8 * along[0], y_m + 0.8 * along[1])
+        hit = world.space.segment_query_first((x_m, y_m), end, 0.0, pymunk.ShapeFilter())
+        assert sight.distance_m(x_m, y_m, *along, 0.8) == pytest.approx(0.8 * (hit.alpha if hit else 1.0), abs=1e-6)
+
+
+def test_rays_do_not_slip_through_corners() -> None:
+    sight = Sight(World(room()), 6.0)
+    sight.look_from(2.0, 2.0)
+    for corner in ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)):
+        dx, dy = corner[0] - 2.0, corner[1] - 2.0
+        length_m = math.hypot(dx, dy)
+        assert sight.distance_m(2.0, 2.0, dx / length_m, dy / length_m, 6.0) == pytest.approx(length_m)
+
+
+def test_place_gives_fresh_readings_at_once() -> None:
+    with Rig(robot=quiet_robot()) as rig:
+        rig.robot.place(half_turn(facing_wall(0.30)))
+        rig.step(STAND)
+        assert rig.reading("s14") == pytest.approx(189, abs=1)
+        rig.robot.place(Pose(2.0, 2.0, 0.0))
+        rig.step(STAND)
+        assert rig.reading("s14") == 70

@@ -1,0 +1,63 @@
+import threading
+
+import pytest
+
+from hal.bus import BusError
+from simbridge.realtime import RealtimeSimulation
+from tests.simbridge.rig import Rig
+
+
+class Steps:
+    """Counts the steps of a simulation and tells when enough were made."""
+
+    def __init__(self, rig: Rig, wanted: int) -> None:
+        self.made = 0
+        self.enough = threading.Event()
+        self._step = rig.robot.step
+        self._wanted = wanted
+
+    def __call__(self) -> None:
+        self._step()
+        self.made += 1
+        if self.made >= self._wanted:
+            self.enough.set()
+
+
+def test_it_steps_by_itself_and_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Rig() as rig:
+        steps = Steps(rig, 5)
+        monkeypatch.setattr(rig.robot, "step", steps)
+        with RealtimeSimulation(rig.robot) as simulation:
+            assert steps.enough.wait(30.0)
+        made = steps.made
+        assert rig.robot.time_s == pytest.approx(made * 0.01)
+        assert simulation.error is None
+        rig.listen()
+        assert rig.heard["ENCODER"] == (0, 0)
+
+
+def test_an_error_in_the_thread_shows_and_comes_out_of_stop() -> None:
+    with Rig() as rig:
+        simulation = RealtimeSimulation(rig.robot)
+        rig.robot_end.shutdown()
+        simulation.start()
+        simulation.wait(30.0)
+        assert isinstance(simulation.error, BusError)
+        with pytest.raises(BusError, match="is shut down"):
+            simulation.stop()
+
+
+def test_stopping_what_never_started_is_fine() -> None:
+    with Rig() as rig:
+        RealtimeSimulation(rig.robot).stop()
+
+
+def test_missed_cycles_are_skipped_whole_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Rig() as rig:
+        steps = Steps(rig, 3)
+        monkeypatch.setattr(rig.robot, "step", steps)
+        simulation = RealtimeSimulation(rig.robot, cycle_s=1e-6)  # no processor keeps this pace
+        simulation.start()
+        assert steps.enough.wait(30.0)
+        simulation.stop()
+        assert simulation.missed_cycles > 0
