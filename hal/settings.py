@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -24,21 +24,30 @@ class Settings(BaseModel):
 SettingsT = TypeVar("SettingsT", bound=Settings)
 
 
-class _UniqueKeyLoader(yaml.SafeLoader):
+class _StrictLoader(yaml.SafeLoader):
     """YAML keeps the last of two equal keys without a word; a settings file with two is a mistake."""
 
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
+        """As YAML does it, but a date of month 99 is named with its line."""
+        try:
+            return super().construct_object(node, deep)
+        except ValueError as error:
+            raise yaml.constructor.ConstructorError(None, None, str(error), node.start_mark) from error
 
-def _construct_mapping(loader: _UniqueKeyLoader, node: yaml.MappingNode) -> dict[Any, Any]:
-    seen: set[Any] = set()
+
+def _construct_mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[Any, Any]:
+    seen: set[str] = set()
     for key_node, _ in node.value:
-        key = loader.construct_object(key_node)
+        key = loader.construct_object(key_node, deep=True)
+        if not isinstance(key, str):
+            raise yaml.constructor.ConstructorError(None, None, f"key {key!r} is not a text", key_node.start_mark)
         if key in seen:
             raise yaml.constructor.ConstructorError(None, None, f"key {key!r} stands twice", key_node.start_mark)
         seen.add(key)
     return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
 
 
-_UniqueKeyLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _construct_mapping)
+_StrictLoader.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _construct_mapping)
 
 
 def find_config(kind: str, name_or_path: str) -> Path:
@@ -66,20 +75,22 @@ def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error
     try:
-        content = yaml.load(text, Loader=_UniqueKeyLoader)
-    except yaml.YAMLError as error:
+        content = yaml.load(text, Loader=_StrictLoader)
+        # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
+        as_json = json.dumps(content, default=str)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict):
         allowed = ", ".join(schema.model_fields)
         raise SettingsError(f"{path}: holds {type(content).__name__}, allowed is a mapping with the keys: {allowed}")
     try:
-        # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
-        return schema.model_validate_json(json.dumps(content, default=str))
+        return schema.model_validate_json(as_json)
     except ValidationError as error:
         # A misspelled key also leaves the right one missing: name the misspelling, it is what to mend.
         problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise SettingsError(f"{path}: {_explain(problems[0], schema)}{more}") from error
+        explained = " ".join(_explain(problems[0], schema).split())  # a key may hold a line break
+        raise SettingsError(f"{path}: {explained}{more}") from error
 
 
 def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
@@ -88,28 +99,29 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
         return f"{key}: no such key; allowed here: {', '.join(_keys_at(schema, problem['loc'][:-1]))}"
     if problem["type"] == "missing":
         return f"{key}: this key is missing"
+    if problem["type"] == "union_tag_not_found":
+        return f"{key}: the key {problem['ctx']['discriminator']} is missing"
     shown = repr(problem["input"])
     return f"{key}: {problem['msg']} (found {shown if len(shown) <= 60 else shown[:57] + '...'})"
 
 
 def _keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:
     """Names of the keys that a nested place allows, as far as the schema's annotations tell."""
-    here: Any = schema
+    here: list[type[BaseModel]] = [schema]
     for part in location:
-        if isinstance(part, int) or not (isinstance(here, type) and issubclass(here, BaseModel)):
-            continue
-        field = here.model_fields.get(part)
-        if field is None:  # a tag of a union, not a key
-            continue
-        here = _model_within(field.annotation) or here
-    return list(here.model_fields)
+        within = [model.model_fields[part].annotation for model in here if part in model.model_fields]
+        if within:
+            here = [model for annotation in within for model in _models_within(annotation)] or here
+        else:  # the position in a list, which all of these share, or the tag of one model of a union
+            here = [model for model in here if _carries_tag(model, part)] or here
+    return list(here[0].model_fields)
 
 
-def _model_within(annotation: Any) -> type[BaseModel] | None:
+def _models_within(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return annotation
-    for argument in getattr(annotation, "__args__", ()):
-        found = _model_within(argument)
-        if found is not None:
-            return found
-    return None
+        return [annotation]
+    return [model for argument in get_args(annotation) for model in _models_within(argument)]
+
+
+def _carries_tag(model: type[BaseModel], tag: int | str) -> bool:
+    return any(tag in get_args(field.annotation) for field in model.model_fields.values())

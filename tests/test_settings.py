@@ -1,0 +1,291 @@
+"""Settings files: every shipped one loads, and whatever is wrong with one is told in one line."""
+
+import copy
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+import yaml
+
+from behaviors.repertoire import load_repertoire
+from behaviors.repertoire_settings import RepertoireSettings
+from config import CONFIG_DIR
+from hal.robot_settings import RobotSettings, SpeedMode, load_robot
+from hal.settings import Settings, SettingsError, find_config, load_settings
+from kurt2rt.perception.definition import SituationDefinition, load_situation
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from simbridge.world_settings import WorldSettings, load_world
+
+SCHEMAS: dict[str, type[Settings]] = {
+    "robots": RobotSettings,
+    "tasks": TaskSettings,
+    "situations": SituationDefinition,
+    "repertoires": RepertoireSettings,
+    "worlds": WorldSettings,
+}
+ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
+REPERTOIRE = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
+
+
+def refusal(path: Path, schema: type[Settings]) -> str:
+    """What is said about a file that cannot be used: one line that begins with its name, given without the name."""
+    with pytest.raises(SettingsError) as caught:
+        load_settings(path, schema)
+    line = str(caught.value)
+    assert len(line.splitlines()) == 1
+    assert line.startswith(f"{path}: ")
+    return line.removeprefix(f"{path}: ")
+
+
+# What is shipped
+
+
+@pytest.mark.parametrize("kind", SCHEMAS)
+def test_every_shipped_file_loads(kind: str) -> None:
+    paths = sorted((CONFIG_DIR / kind).glob("*.yaml"))
+    assert paths
+    for path in paths:
+        load_settings(path, SCHEMAS[kind])
+
+
+def test_shipped_files_are_found_by_name_and_fit_together() -> None:
+    robot = load_robot("kurt2")
+    task = load_task("wall_following")
+    assert robot.can.speed_mode is SpeedMode.SPEED_CM
+    assert load_situation(task.situation, robot.infrared.names).dimensions == 72
+    assert "forward" in load_repertoire(task.repertoire, robot)
+    assert {load_world(world, robot).name for world in task.exam.worlds} == {"A", "B", "C"}
+
+
+def test_a_path_goes_before_a_name_and_an_unknown_name_lists_the_known_ones(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(ROBOT.replace("kurt2-indoor", "mine", 1))
+    assert load_robot(str(mine)).name == "mine"
+    for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
+        with pytest.raises(
+            SettingsError, match=r"no such file in robots; give a path to a \.yaml file or one of: kurt2$"
+        ):
+            find_config("robots", missing)
+
+
+# Every key, one at a time
+
+
+class Place(NamedTuple):
+    """A key somewhere inside a file."""
+
+    kind: str
+    path: tuple[str | int, ...]
+
+
+def shortened(content: Any) -> Any:
+    """A file's content with one item of each kind in a list of mappings: the others have the same keys."""
+    if isinstance(content, dict):
+        return {key: shortened(value) for key, value in content.items()}
+    if isinstance(content, list) and all(isinstance(item, dict) for item in content):
+        return list({item.get("kind"): shortened(item) for item in reversed(content)}.values())
+    return content
+
+
+def places(content: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    """Paths of all keys inside."""
+    pairs: Any = content.items() if isinstance(content, dict) else enumerate(content)
+    for key, value in pairs:
+        if isinstance(content, dict):
+            yield (*path, key)
+        if isinstance(value, (dict, list)):
+            yield from places(value, (*path, key))
+
+
+CONTENTS: dict[str, Any] = {
+    "robots": shortened(yaml.safe_load(ROBOT)),
+    "tasks": shortened(yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text())),
+    "situations": shortened(yaml.safe_load((CONFIG_DIR / "situations" / "basic.yaml").read_text())),
+    "repertoires": shortened(yaml.safe_load(REPERTOIRE)),
+}
+PLACES = [Place(kind, path) for kind, content in CONTENTS.items() for path in places(content)]
+
+
+def changed(place: Place, folder: Path, *, key: str | None = None, **value: object) -> Path:
+    """A file with one key renamed, or with another value for it."""
+    content = copy.deepcopy(CONTENTS[place.kind])
+    inside, last = content, place.path[-1]
+    for part in place.path[:-1]:
+        inside = inside[part]
+    if key is not None:
+        inside[key] = inside.pop(last)
+    else:
+        inside[last] = value["value"]
+    path = folder / "changed.yaml"
+    path.write_text(json.dumps(content))  # JSON is YAML
+    return path
+
+
+def named(line: str) -> list[str]:
+    """Parts of the key that a refusal begins with."""
+    return line.split(": ", 1)[0].split(".")
+
+
+def test_the_files_to_be_spoilt_are_right_before(tmp_path: Path) -> None:
+    for kind, content in CONTENTS.items():
+        path = tmp_path / f"{kind}.yaml"
+        path.write_text(json.dumps(content))
+        load_settings(path, SCHEMAS[kind])
+    assert len(PLACES) > 100
+
+
+@pytest.mark.parametrize("place", PLACES, ids=lambda place: ".".join(map(str, (place.kind, *place.path))))
+def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(place: Place, tmp_path: Path) -> None:
+    right = str(place.path[-1])
+    line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
+    if right == "kind" and isinstance(place.path[-2], int):  # it says which schema the item has
+        assert line.startswith(f"{place.path[0]}.{place.path[1]}: the key 'kind' is missing")
+        return
+    assert named(line)[-1] == f"{right}x"
+    assert set(map(str, place.path[:-1])) <= set(named(line))
+    allowed = line.split("no such key; allowed here: ")[1].split(" (and ")[0].split(", ")
+    assert right in allowed
+    inside = CONTENTS[place.kind]
+    for part in place.path[:-1]:
+        inside = inside[part]
+    assert set(inside) <= set(allowed)
+
+
+@pytest.mark.parametrize("place", PLACES, ids=lambda place: ".".join(map(str, (place.kind, *place.path))))
+def test_a_key_without_a_value_is_named(place: Place, tmp_path: Path) -> None:
+    line = refusal(changed(place, tmp_path, value=None), SCHEMAS[place.kind])
+    assert place.path[-1] == "kind" or named(line)[-1] == place.path[-1]
+
+
+# Values
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("cycle_s: 0.01 ", "cycle_s: .nan ", "can.cycle_s: Input should be a finite number (found nan)"),
+        ("cycle_s: 0.01 ", "cycle_s: .inf ", "can.cycle_s: Input should be a finite number (found inf)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", "can.cycle_s: Input should be a valid number (found '10 ms')"),
+        ("cycle_s: 0.01 ", "cycle_s: '0.01' ", "can.cycle_s: Input should be a valid number (found '0.01')"),
+        ("cycle_s: 0.01 ", "cycle_s: true ", "can.cycle_s: Input should be a valid number (found True)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10.1 ", "can.cycle_s: Input should be less than or equal to 10 (found 10.1)"),
+        ("cycle_s: 0.01 ", "cycle_s: 0 ", "can.cycle_s: Input should be greater than 0 (found 0)"),
+        (
+            "floor_counts: 70",
+            "floor_counts: 70.5",
+            "infrared.floor_counts: Input should be a valid integer (found 70.5)",
+        ),
+        (
+            "floor_counts: 70",
+            "floor_counts: .nan",
+            "infrared.floor_counts: Input should be a valid integer (found nan)",
+        ),
+        ("floor_counts: 70", "floor_counts: 1024", "infrared.floor_counts: Input should be less than or equal to 1023"),
+        ("mode: SPEED_CM", "mode: FAST", "can.speed_mode: Input should be 'RAW', 'SPEED' or 'SPEED_CM' (found 'FAST')"),
+        ("channel: ADC07", "channel: ADC15", "infrared.sensors.0.channel: Value error, channel must be ADC00 to ADC14"),
+        ("channel: ADC07", "channel: ADC08", "infrared: Value error, two sensors share the channel ADC08"),
+        ("name: s1,", "name: s2,", "infrared: Value error, two sensors share the name s2"),
+        ("far_m: 0.60", "far_m: 0.05", "must hold: fold_back_to_m < fold_back_from_m <= near_m < far_m"),
+        ("raw_drive: [0, 400", "raw_drive: [400, 0", "motors: Value error, raw_drive must rise"),
+        (
+            "raw_drive: [0, 400",
+            "raw_drive: [400",
+            "motors: Value error, raw_drive and raw_speed_m_s must be of the same",
+        ),
+        ("  maximum_speed_m_s: 0.6", "  maximum_speed_m_s: 1.0", "allowed is at most motors.maximum_speed_m_s (0.9)"),
+        (
+            "  - {name: front left, end: front}",
+            "  - front left",
+            "bumpers.0: Input should be an object (found 'front left'",
+        ),
+        ("end: front}", "end: side}", "bumpers.0.end: Input should be 'front' or 'rear' (found 'side')"),
+        ("  cycle_s: 0.01 ", "  #", "can.cycle_s: this key is missing"),
+    ],
+)
+def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: str, told: str, tmp_path: Path) -> None:
+    assert old in ROBOT
+    path = tmp_path / "robot.yaml"
+    path.write_text(ROBOT.replace(old, new, 1))
+    assert told in refusal(path, RobotSettings)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (
+            "gain_per_m",
+            "gian_per_m",
+            "no such key; allowed here: kind, name, front_sensor, back_sensor, distance_m, speed_m_s",
+        ),
+        ("angle_deg", "angle", "no such key; allowed here: kind, name, angle_deg, speed_m_s"),
+        (
+            "kind: motor",
+            "kind: motr",
+            "actions.0: Input tag 'motr' found using 'kind' does not match any of the expected",
+        ),
+        ("kind: motor", "knd: motor", "actions.0: the key 'kind' is missing"),
+        ("name: back,", "name: forward,", "two actions share the name forward"),
+        ("name: back,", "name: go back,", "actions.7.motor.name: String should match pattern"),
+    ],
+)
+def test_a_wrong_action_is_explained_by_its_own_kind(old: str, new: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "repertoire.yaml"
+    path.write_text(REPERTOIRE.replace(old, new, 1))
+    assert told in refusal(path, RepertoireSettings)
+
+
+def test_several_mistakes_are_counted(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(ROBOT.replace("cycle_s: 0.01 ", "cycle_s: x ").replace("far_m: 0.60", "far_m: x"))
+    assert refusal(path, RobotSettings).endswith("(found 'x') (and 1 more)")
+
+
+# Whole files
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "holds NoneType, allowed is a mapping with the keys: name, can, geometry"),
+        (b"- 1\n- 2\n", "holds list, allowed is a mapping with the keys: name, can, geometry"),
+        (b"hello\n", "holds str, allowed is a mapping"),
+        (b"a: 1\nb: 2\na: 3\n", "not valid YAML: key 'a' stands twice"),
+        (b"b: {a: 1, c: {d: 1, d: 1}}\n", "key 'd' stands twice"),
+        (b"1: x\n", "key 1 is not a text"),
+        (b"2020-01-01: x\n", "is not a text"),
+        (b"? [a, b]\n: x\n", "key ['a', 'b'] is not a text"),
+        (b"? !!binary aGk=\n: x\n", "key b'hi' is not a text"),
+        (b'"a\\nb": 1\n', "a b: no such key"),
+        (b"name: 2020-99-99\n", 'month must be in 1..12 in "<unicode string>", line 1'),
+        (b"name: !!int one\n", "line 1, column 7"),
+        (b"name: " + b"1" * 5000, "line 1, column 7"),
+        (b"name: 0x" + b"f" * 5000, "not valid YAML: "),
+        (b"[" * 1500, "not valid YAML: "),
+        (b"name: &x [*x]\n", "found unconstructable recursive node"),
+        (b"name: [1\n", "not valid YAML: while parsing a flow sequence"),
+        (b"\tname: x\n", "not valid YAML: while scanning"),
+        (b"name: x\n---\nname: y\n", "expected a single document"),
+        (b"name: !!python/object:os.system x\n", "could not determine a constructor"),
+        (b'name: "\\ud800"\n', "Invalid JSON"),
+        (b"\xff\xfe\x00\x01", "cannot be read ('utf-8' codec can't decode byte 0xff"),
+        (b"\x7fELF\x02\x01\x01\x00\x00", "special characters are not allowed"),
+        (bytes(range(256)), "cannot be read"),
+    ],
+)
+def test_a_file_that_holds_something_else_is_refused_in_one_line(content: bytes, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_bytes(content)
+    assert told in refusal(path, RobotSettings)
+
+
+def test_a_file_that_cannot_be_read_is_refused_in_one_line(tmp_path: Path) -> None:
+    assert "Is a directory" in refusal(tmp_path, RobotSettings)
+    assert "No such file" in refusal(tmp_path / "gone.yaml", RobotSettings)
+
+
+def test_settings_are_frozen() -> None:
+    robot = load_robot()
+    with pytest.raises(ValueError, match="frozen"):
+        robot.name = "other"
