@@ -119,8 +119,6 @@ class Body:
 
     def contacts(self) -> list[Contact]:
         """Where walls touch it in this cycle."""
-        if not self._points:
-            return []
         x_m, y_m, heading_rad = self.pose
         cos, sin = math.cos(heading_rad), math.sin(heading_rad)
         found = []

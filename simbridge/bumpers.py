@@ -27,8 +27,6 @@ class Bumpers:
 
     def pressed(self, contacts: Sequence[Contact]) -> int:
         """Bits of the bumpers that are pressed; a wall that meets the face at two points presses all between them."""
-        if not contacts:
-            return 0
         return self._at(BumperEnd.FRONT, 1.0, contacts) | self._at(BumperEnd.REAR, -1.0, contacts)
 
     def _at(self, end: BumperEnd, sign: float, contacts: Sequence[Contact]) -> int:

@@ -78,6 +78,11 @@ class MicroController:
         elif self._silent_cycles >= self._watchdog_cycles:
             self.orders = _BRAKED
 
+    @property
+    def state(self) -> tuple[int, ...]:
+        """What the next cycle's orders depend on, besides the present ones."""
+        return self._silent_cycles, self._actuators_on, self.dead, self.junk_frames
+
     def note_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
         """Converter results of the sensors that measured anew."""
         self._telemetry.note_readings(fresh, counts)

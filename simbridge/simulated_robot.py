@@ -102,7 +102,7 @@ class SimulatedRobot:
         return tuple(self._infrared.counts)
 
     def state_hash(self) -> str:
-        """SHA-256 over everything that its future depends on, to the last bit."""
+        """SHA-256, to the last bit, over everything that its motion and readings depend on; walls excepted."""
         numbers = (
             *self._body.pose,
             *self._body.velocity,
@@ -119,8 +119,7 @@ class SimulatedRobot:
             self._collisions.count,
             self._infrared_noise.drawn,
             self._slip_noise.drawn,
-            self.controller.junk_frames,
-            self.controller.dead,
+            *self.controller.state,
         )
         layout = f"<{len(numbers)}d{len(counters)}q"
         return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()

@@ -57,5 +57,5 @@ class Wheels:
             target = 0.0
         change = (target - speed) * self._loop_gain
         limit = self._speed_up_m_s if speed * change >= 0 else self._brake_m_s
-        change = min(limit, max(-limit, change))
-        return min(self._maximum_m_s, max(-self._maximum_m_s, speed + change))
+        speed += change if -limit <= change <= limit else math.copysign(limit, change)
+        return speed if abs(speed) <= self._maximum_m_s else math.copysign(self._maximum_m_s, speed)

@@ -121,6 +121,16 @@ def test_a_moved_wall_is_seen_where_it_stands_now() -> None:
         assert rig.robot.pose.x_m > 2.4
 
 
+def test_posts_and_boxes_can_be_moved_too() -> None:
+    post = RoundObstacleSettings(name="post", x_m=2.9, y_m=2.0, radius_m=0.05)
+    box = PolygonObstacleSettings(name="box", corners=((1.0, 1.9), (1.1, 1.9), (1.1, 2.1), (1.0, 2.1)))
+    with Rig(room(posts=[post], boxes=[box]), robot=quiet_robot()) as rig:
+        rig.robot.world.move_wall("post", -0.333, 0.0)
+        rig.robot.world.move_wall("box", 0.383, 0.0)
+        rig.run(0.1, STAND)
+        assert [rig.reading("s11"), rig.reading("s14")] == pytest.approx([189, 189], abs=1)
+
+
 def test_moving_an_unknown_wall_names_those_there_are() -> None:
     board = WallSettings(name="board", from_m=(3.0, 1.5), to_m=(3.0, 2.5), thickness_m=0.04)
     with Rig(room(walls=[board])) as rig, pytest.raises(KeyError, match=r"'shelf'; there are: board"):

@@ -96,6 +96,7 @@ def test_a_step_from_zero_to_full_kills_it_until_reset(control: SpeedControl | R
         assert rig.robot.controller.dead
         assert rig.frames == 0
         assert rig.robot.pose == Pose(2.0, 2.0, 0.0)
+        rig.tell(SystemControl(Mode.ACTUATOR_ON))
         rig.run(0.5, FORWARD)
         assert rig.frames == 0
         rig.step(reset())

@@ -1,0 +1,71 @@
+"""The simulated robot behind the code that drives the real one."""
+
+import itertools
+from collections.abc import Iterator
+
+import pytest
+
+from hal.bus import open_bus
+from hal.kurt2 import Kurt2
+from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from hal.robot_settings import SpeedMode, load_robot
+from simbridge.simulated_robot import SimulatedRobot
+from tests.simbridge.rig import facing_wall, room
+
+_numbers = itertools.count()
+Pair = tuple[Kurt2, SimulatedRobot]
+
+
+@pytest.fixture(params=list(SpeedMode))
+def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
+    """Driver and simulated robot on one bus, in each speed mode."""
+    settings = load_robot()
+    settings = settings.model_copy(update={"can": settings.can.model_copy(update={"speed_mode": request.param})})
+    name = f"virtual:simbridge-driver-{next(_numbers)}"
+    far_end = open_bus(name)
+    kurt2 = Kurt2(settings, open_bus(name))
+    yield kurt2, SimulatedRobot(settings, room(), far_end, seed=3)
+    kurt2.close()
+    far_end.shutdown()
+
+
+def drive(pair: Pair, wanted: WheelSpeeds, seconds: float) -> Senses:
+    kurt2, simulated = pair
+    for _ in range(round(seconds / 0.01)):
+        simulated.step()
+        now_s = simulated.time_s
+        senses = kurt2.sense(now_s)
+        kurt2.drive(wanted, now_s, now_s)
+    return senses
+
+
+def test_a_jump_in_the_wanted_speed_never_crashes_the_controller(pair: Pair) -> None:
+    kurt2, simulated = pair
+    for wanted in (WheelSpeeds(0.6, 0.6), STANDSTILL, WheelSpeeds(-0.6, -0.6), WheelSpeeds(0.6, -0.6), STANDSTILL):
+        drive(pair, wanted, 0.8)
+        assert not simulated.controller.dead
+    assert kurt2.health.junk == 0
+
+
+def test_the_wanted_speed_is_driven_and_sensed(pair: Pair) -> None:
+    drive(pair, WheelSpeeds(0.3, 0.3), 1.5)
+    before = pair[1].pose
+    senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
+    assert pair[1].pose.x_m - before.x_m == pytest.approx(0.3, rel=0.08)
+    assert senses.encoder_left_ticks == pytest.approx(174, rel=0.05)
+    assert senses.infrared_counts == pair[1].infrared_counts
+
+
+def test_a_pressed_bumper_stops_the_robot_at_the_wall(pair: Pair) -> None:
+    pair[1].place(facing_wall(0.3))
+    senses = drive(pair, WheelSpeeds(0.3, 0.3), 3.0)
+    assert senses.bumpers == 0b000111
+    assert senses.encoder_left_ticks == 0
+    assert pair[1].collisions == 1
+
+
+def test_an_emergency_stop_brakes_and_holds(pair: Pair) -> None:
+    drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
+    pair[0].emergency_stop("story")
+    senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
+    assert (senses.encoder_left_ticks, senses.encoder_right_ticks) == (0, 0)
