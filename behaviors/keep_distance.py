@@ -18,10 +18,17 @@ class KeepDistance:
         gain_per_m: float,
     ) -> None:
         self._infrared = infrared
+        for name in (front_sensor, back_sensor):
+            if name not in infrared.names:
+                raise ValueError(f"there is no sensor {name}")
         self._front = infrared.names.index(front_sensor)
         self._back = infrared.names.index(back_sensor)
         front, back = infrared.sensors[self._front], infrared.sensors[self._back]
         self._baseline_m = front.x_m - back.x_m
+        if front.heading_deg != back.heading_deg or self._baseline_m <= 0:
+            raise ValueError(
+                f"{front_sensor} and {back_sensor} must look to the same side, the first before the second"
+            )
         self._towards_left = 1.0 if front.heading_deg > 0 else -1.0
         self._distance_m = distance_m
         self._speed_m_s = speed_m_s

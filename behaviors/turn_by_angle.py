@@ -13,7 +13,7 @@ class TurnByAngle:
         # Each side travels the arc of half the effective track.
         self._wanted_m = math.radians(abs(angle_deg)) * geometry.effective_track_m / 2
         self._metres_per_tick = geometry.metres_per_tick
-        sign = 1.0 if angle_deg > 0 else -1.0
+        self._sign = sign = 1.0 if angle_deg > 0 else -1.0
         self._turning = WheelSpeeds(-sign * speed_m_s, sign * speed_m_s)
         self._turned_m = 0.0
 
@@ -23,6 +23,7 @@ class TurnByAngle:
 
     def step(self, senses: Senses) -> WheelSpeeds:
         """Turn until the wheels have run the arc."""
-        difference = abs(senses.encoder_right_ticks - senses.encoder_left_ticks)
+        # Signed: a robot that still swings the other way has more to turn, not less.
+        difference = self._sign * (senses.encoder_right_ticks - senses.encoder_left_ticks)
         self._turned_m += 0.5 * difference * self._metres_per_tick
         return self._turning if self._turned_m < self._wanted_m else STANDSTILL

@@ -1,0 +1,82 @@
+"""Keeping distance to a wall: it steers the right way, on either side."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from behaviors.keep_distance import KeepDistance
+from hal.robot import WheelSpeeds
+from tests.behaviors.helpers import ROBOT, counts, sensed
+
+SIDES = {"left": ("s1", "s2"), "right": ("s5", "s6")}
+
+
+def along(side: str, *, front: str | None = None, back: str | None = None) -> KeepDistance:
+    front_sensor, back_sensor = SIDES[side]
+    return KeepDistance(
+        ROBOT.infrared,
+        front_sensor=front or front_sensor,
+        back_sensor=back or back_sensor,
+        distance_m=0.22,
+        speed_m_s=0.30,
+        gain_per_m=4.0,
+    )
+
+
+def driven(side: str, front_m: float, back_m: float) -> WheelSpeeds:
+    front, back = SIDES[side]
+    return along(side).step(sensed(counts(**{front: front_m, back: back_m})))
+
+
+def turn_towards_wall_m_s(side: str, front_m: float, back_m: float) -> float:
+    """How much faster the wheels on the far side run: positive turns the robot to the wall."""
+    speeds = driven(side, front_m, back_m)
+    left_turn = speeds.right_m_s - speeds.left_m_s
+    return left_turn if side == "left" else -left_turn
+
+
+@pytest.mark.parametrize("side", SIDES)
+class TestEitherSide:
+    def test_drives_straight_on_at_the_wanted_distance(self, side: str) -> None:
+        assert abs(turn_towards_wall_m_s(side, 0.22, 0.22)) < 0.01
+
+    def test_steers_to_a_wall_that_is_too_far(self, side: str) -> None:
+        assert turn_towards_wall_m_s(side, 0.30, 0.30) > 0.1
+
+    def test_steers_off_a_wall_that_is_too_near(self, side: str) -> None:
+        assert turn_towards_wall_m_s(side, 0.14, 0.14) < -0.1
+
+    def test_steers_back_to_a_wall_that_it_is_turned_away_from(self, side: str) -> None:
+        assert turn_towards_wall_m_s(side, 0.25, 0.19) > 0.1
+
+    def test_steers_off_a_wall_that_it_is_turned_to(self, side: str) -> None:
+        assert turn_towards_wall_m_s(side, 0.19, 0.25) < -0.1
+
+    def test_a_lost_wall_is_looked_for_on_its_side(self, side: str) -> None:
+        assert turn_towards_wall_m_s(side, 0.6, 0.6) == pytest.approx(0.6)
+
+
+def test_left_and_right_are_mirror_images() -> None:
+    for front_m, back_m in ((0.12, 0.3), (0.25, 0.2), (0.4, 0.6)):
+        left, right = driven("left", front_m, back_m), driven("right", front_m, back_m)
+        assert right == pytest.approx(WheelSpeeds(left.right_m_s, left.left_m_s))
+
+
+@given(st.tuples(*[st.integers(0, 1023)] * 18), st.sampled_from(sorted(SIDES)))
+def test_whatever_the_sensors_show_no_wheel_runs_backwards_or_faster_than_twice(
+    infrared_counts: tuple[int, ...], side: str
+) -> None:
+    speeds = along(side).step(sensed(infrared_counts))
+    assert all(math.isfinite(speed) and -1e-12 <= speed <= 0.6 + 1e-12 for speed in speeds)
+    assert sum(speeds) == pytest.approx(2 * 0.30)
+
+
+@pytest.mark.parametrize(
+    ("front", "back"),
+    [("s1", "s1"), ("s2", "s1"), ("s1", "s6"), ("s9", "s12"), ("s9", "s10")],
+)
+def test_two_sensors_that_do_not_see_one_wall_beside_the_robot_are_refused(front: str, back: str) -> None:
+    with pytest.raises(ValueError, match=f"{front} and {back} must look to the same side, the first before the second"):
+        along("left", front=front, back=back)

@@ -1,0 +1,50 @@
+"""The repertoire: built by name from its file, for one robot."""
+
+from pathlib import Path
+
+import pytest
+
+from behaviors.keep_distance import KeepDistance
+from behaviors.motor_primitive import MotorPrimitive
+from behaviors.repertoire import load_repertoire
+from behaviors.turn_by_angle import TurnByAngle
+from config import CONFIG_DIR
+from hal.robot import WheelSpeeds
+from hal.settings import SettingsError
+from tests.behaviors.helpers import ROBOT, counts, sensed
+
+BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
+
+
+def test_each_kind_of_action_is_built_in_the_order_of_the_file() -> None:
+    repertoire = load_repertoire("basic", ROBOT)
+    assert list(repertoire)[:3] == ["forward", "bear_left", "bear_right"]
+    assert type(repertoire["spin_left"]) is MotorPrimitive
+    assert type(repertoire["along_right_wall"]) is KeepDistance
+    assert type(repertoire["quarter_turn_left"]) is TurnByAngle
+
+
+def test_a_motor_primitive_drives_the_same_whatever_it_senses_and_however_long() -> None:
+    curve = load_repertoire("basic", ROBOT)["curve_left"]
+    for infrared_counts in (counts(), counts(s9=0.1), (0,) * 18, (1023,) * 18):
+        curve.start()
+        for _ in range(3):
+            assert curve.step(sensed(infrared_counts, left_ticks=500)) == WheelSpeeds(0.12, 0.32)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("front_sensor: s1,", "front_sensor: s19,", "actions.9 (along_left_wall): there is no sensor s19"),
+        ("back_sensor: s2,", "back_sensor: s1,", "actions.9 (along_left_wall): s1 and s1 must look to the same side"),
+    ],
+)
+def test_an_action_that_the_robot_cannot_do_is_refused_with_its_place(
+    old: str, new: str, told: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "repertoire.yaml"
+    path.write_text(BASIC.replace(old, new, 1))
+    with pytest.raises(SettingsError) as caught:
+        load_repertoire(str(path), ROBOT)
+    assert str(caught.value).startswith(f"{path}: {told}")
+    assert "the robot's sensors are s1, s2, s3" in str(caught.value)

@@ -1,0 +1,66 @@
+"""Turning on the spot by an angle, with wheels that do at once what they are told."""
+
+import math
+
+import pytest
+
+from behaviors.turn_by_angle import TurnByAngle
+from hal.robot import STANDSTILL, WheelSpeeds
+from tests.behaviors.helpers import ROBOT, sensed
+
+TRACK_M, METRES_PER_TICK = ROBOT.geometry.effective_track_m, ROBOT.geometry.metres_per_tick
+PERIOD_S = 0.01
+
+
+def turn(angle_deg: float) -> TurnByAngle:
+    behaviour = TurnByAngle(ROBOT.geometry, angle_deg=angle_deg, speed_m_s=0.20)
+    behaviour.start()
+    return behaviour
+
+
+def drive(behaviour: TurnByAngle, ticks: int, first: WheelSpeeds = STANDSTILL) -> tuple[float, WheelSpeeds]:
+    """Angle in degrees by which the robot has turned left, and its last set points; it comes in moving at `first`."""
+    moving, turned_m = first, 0.0
+    for _ in range(ticks):
+        left_ticks, right_ticks = (round(speed * PERIOD_S / METRES_PER_TICK) for speed in moving)
+        turned_m += (right_ticks - left_ticks) * METRES_PER_TICK
+        moving = behaviour.step(sensed(left_ticks=left_ticks, right_ticks=right_ticks))
+    return math.degrees(turned_m / TRACK_M), moving
+
+
+@pytest.mark.parametrize("angle_deg", [90.0, -90.0, 30.0, -360.0, 5.0])
+def test_turns_by_the_angle_and_then_stands(angle_deg: float) -> None:
+    degrees_per_tick = math.degrees(2 * 0.20 * PERIOD_S / TRACK_M)
+    turned_deg, last = drive(turn(angle_deg), 2000)
+    assert turned_deg == pytest.approx(angle_deg, abs=degrees_per_tick)
+    assert last == STANDSTILL
+
+
+def test_a_positive_angle_turns_left() -> None:
+    assert turn(90.0).step(sensed()) == WheelSpeeds(-0.20, 0.20)
+    assert turn(-90.0).step(sensed()) == WheelSpeeds(0.20, -0.20)
+
+
+def test_no_angle_is_no_turn() -> None:
+    assert turn(0.0).step(sensed()) == STANDSTILL
+
+
+def test_driving_straight_on_is_no_turn() -> None:
+    behaviour = turn(90.0)
+    for _ in range(1000):
+        assert behaviour.step(sensed(left_ticks=300, right_ticks=300)) == WheelSpeeds(-0.20, 0.20)
+
+
+def test_each_start_is_a_turn_of_the_whole_angle() -> None:
+    behaviour = turn(90.0)
+    for _ in range(3):
+        behaviour.start()
+        assert drive(behaviour, 2000)[0] == pytest.approx(90.0, abs=0.6)
+
+
+def test_swinging_the_other_way_at_first_does_not_shorten_the_turn() -> None:
+    behaviour = turn(90.0)
+    for _ in range(20):  # wheels that still turn right from the action before
+        assert behaviour.step(sensed(left_ticks=100, right_ticks=-100)) == WheelSpeeds(-0.20, 0.20)
+    swung_deg = math.degrees(20 * 200 * METRES_PER_TICK / TRACK_M)
+    assert drive(behaviour, 2000)[0] == pytest.approx(90.0 + swung_deg, abs=0.6)
