@@ -1,0 +1,140 @@
+"""The basic level: the winner drives, at least for its minimum time, and an unknown situation stops at once."""
+
+import itertools
+
+import pytest
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError
+from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.rla_system import RlaSystem
+from tests.layers.helpers import MINIMUM_TICKS, Counted, SmallLevel
+from tests.rla.helpers import created, deleted, replaced
+
+A_AT_0 = created(1, (0.0,), "a")
+B_AT_8 = created(2, (8.0,), "b")
+
+
+def test_untaught_it_stands_and_asks() -> None:
+    decision = SmallLevel().at(0.0)
+    assert decision.asking
+    assert not decision.driving
+    assert decision == (STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+
+def test_the_winner_drives_and_is_named_with_distance_and_runner_up() -> None:
+    decision = SmallLevel(A_AT_0, B_AT_8).at(3.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "a", 1)
+    assert decision.wheel_speeds == WheelSpeeds(0.001, 0.001)
+    assert decision.driving
+    assert decision.match is not None
+    assert decision.match.distance == 3.0
+    assert decision.match.runner_up is not None
+    assert decision.match.runner_up.rla_id == 2
+
+
+def test_an_action_goes_on_without_a_new_start_while_it_wins() -> None:
+    small = SmallLevel(A_AT_0)
+    speeds = [small.at(place).wheel_speeds.left_m_s for place in (0.0, 1.0, 2.0)]
+    assert speeds == pytest.approx([0.001, 0.002, 0.003])
+    assert small.actions["a"].starts == 1
+
+
+def test_an_action_holds_for_its_minimum_time_and_then_gives_way() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    held = [small.at(8.0) for _ in range(MINIMUM_TICKS - 1)]
+    after = small.at(8.0)
+    assert [(each.cause, each.action, each.rla_id) for each in held] == [(Cause.HELD, "a", 1)] * (MINIMUM_TICKS - 1)
+    assert {each.match.rla.rla_id for each in held if each.match is not None} == {2}  # who has won is told meanwhile
+    assert (after.cause, after.action, after.rla_id) == (Cause.RLA, "b", 2)
+
+
+def test_a_robot_between_two_neighbours_does_not_dither() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    actions = [small.at(3.9 + 0.2 * (tick % 2)).action for tick in range(60)]
+    changes = sum(now != before for before, now in itertools.pairwise(actions))
+    assert 0 < changes <= 60 / MINIMUM_TICKS
+
+
+def test_an_unknown_situation_stops_in_the_same_tick_also_while_an_action_is_held() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    assert small.at(8.0).cause is Cause.HELD
+    assert small.at(18.0).driving  # the border itself is known
+    decision = small.at(18.000001)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 2
+
+
+def test_after_standing_the_next_action_begins_at_once_and_anew() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.at(0.0)
+    small.at(100.0)
+    again = small.at(0.0)
+    assert again.wheel_speeds == WheelSpeeds(0.001, 0.001)
+    assert small.actions["a"].starts == 2
+    small.at(100.0)
+    assert small.at(8.0).action == "b"  # nothing is held over a stop
+
+
+@pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.UNSAVED])
+def test_with_a_reason_to_stand_it_stands_and_still_tells_what_it_knows(cause: Cause) -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    decision = small.at(0.0, cause)
+    assert (decision.wheel_speeds, decision.cause, decision.action, decision.rla_id) == (STANDSTILL, cause, None, None)
+    assert decision.match is not None
+    assert decision.match.known
+    assert not decision.asking
+    assert small.at(0.0).action == "a"
+    assert small.actions["a"].starts == 2
+
+
+def test_a_correction_acts_in_the_next_decision_also_while_the_action_is_in_its_minimum_time() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.level.apply(replaced(1, "c", "a"))
+    decision = small.at(0.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "c", 1)
+    assert small.at(8.0).cause is Cause.HELD  # the corrected action has a minimum time of its own
+
+
+def test_a_correction_elsewhere_does_not_interrupt_the_action() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.level.apply(replaced(2, "c", "b"))
+    assert small.at(0.0).action == "a"
+    assert small.actions["a"].starts == 1
+
+
+def test_deleting_the_rla_that_drives_stops_the_robot_in_the_next_decision() -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    small.level.apply(deleted(1))
+    decision = small.at(0.0)
+    assert (decision.wheel_speeds, decision.cause) == (STANDSTILL, Cause.UNKNOWN)
+
+
+def test_deleting_the_held_rla_hands_over_to_the_winner_at_once() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    assert small.at(7.0).cause is Cause.HELD
+    small.level.apply(deleted(1))
+    assert small.at(7.0).action == "b"
+
+
+def test_a_neighbour_with_the_same_action_takes_over_without_a_break() -> None:
+    small = SmallLevel(A_AT_0, created(2, (8.0,), "a"))
+    small.at(0.0)
+    decision = small.at(8.0)
+    assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (Cause.RLA, 2, 0.002)
+
+
+def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
+    system = RlaSystem(1, 10.0)
+    system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
+    with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
+        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5)

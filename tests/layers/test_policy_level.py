@@ -1,0 +1,37 @@
+"""The teacher's own drive: the policy decides, with the same minimum time per action."""
+
+from hal.robot import STANDSTILL, Senses
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.policy_level import PolicyLevel
+from tests.layers.helpers import MINIMUM_TICKS, Counted, sensed, situation
+
+
+class NearIsB:
+    """Says b where the first count is high."""
+
+    def choose(self, infrared_counts: tuple[int, ...]) -> str:
+        return "b" if infrared_counts[0] > 300 else "a"
+
+
+FAR, NEAR = sensed(100), sensed(500)
+
+
+def driven(level: PolicyLevel, senses: Senses, stand_because: Cause | None = None) -> Decision:
+    return level.decide(situation(0.0), senses, stand_because)
+
+
+def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS)
+    assert driven(level, FAR)[1:] == (Cause.TEACHER, "a", None, None)
+    assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
+
+
+def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
+    actions = {"a": Counted(), "b": Counted()}
+    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS)
+    driven(level, FAR)
+    assert driven(level, FAR, Cause.STOPPED) == (STANDSTILL, Cause.STOPPED, None, None, None)
+    assert driven(level, NEAR).action == "b"
+    driven(level, FAR, Cause.STOPPED)
+    driven(level, NEAR)
+    assert (actions["a"].starts, actions["b"].starts) == (1, 2)
