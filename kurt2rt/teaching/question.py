@@ -46,5 +46,9 @@ def ask(match: Match | None, situation: NDArray[np.float64], feature_names: tupl
         return Question(None, None, float("inf"), 0.0, ())
     condition = np.array(match.rla.condition)
     order = np.argsort(-np.abs(situation - condition), kind="stable")[:most]
-    differing = tuple(FeatureDifference(feature_names[i], float(situation[i]), float(condition[i])) for i in order)
+    differing = tuple(
+        FeatureDifference(feature_names[i], float(situation[i]), float(condition[i]))
+        for i in order
+        if situation[i] != condition[i]
+    )
     return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing)

@@ -29,9 +29,13 @@ class School:
         self.stopped = False
         self.corrections = 0
 
+    def has_taken(self, command_id: str) -> bool:
+        """Whether a command of this id was carried out already."""
+        return command_id in self._taken
+
     def attend(self, command: Command, situation: Situation, tick: int) -> tuple[CommandResult, TeachingEvent | None]:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
-        if command.command_id in self._taken:
+        if self.has_taken(command.command_id):
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
         result, event = self._carry_out(command, situation, tick)
         if result.accepted:
@@ -67,18 +71,20 @@ class School:
         self, command: Teach | Correct | ReplaceAction, situation: Situation, tick: int
     ) -> tuple[CommandResult, TeachingEvent | None]:
         match command:
-            case Teach():
-                return self._create(command, situation, tick)
             case ReplaceAction():
                 return self._replace(command, command.rla_id, tick)
+            case Teach():
+                # On the very condition of an RLA a second one would never win: the older one does.
+                replace_within_share = 0.0
             case Correct():
                 self.corrections += 1
-                nearest = self._level.system.match(situation.vector)
-                if nearest is None or nearest.distance > self._insert_beyond_share * nearest.radius:
-                    return self._create(command, situation, tick)
-                if nearest.rla.action == command.action:
-                    return _done(command, f"RLA {nearest.rla.rla_id} says {command.action} already"), None
-                return self._replace(command, nearest.rla.rla_id, tick)
+                replace_within_share = self._insert_beyond_share
+        nearest = self._level.system.match(situation.vector)
+        if nearest is None or nearest.distance > replace_within_share * nearest.radius:
+            return self._create(command, situation, tick)
+        if nearest.rla.action == command.action:
+            return _done(command, f"RLA {nearest.rla.rla_id} says {command.action} already"), None
+        return self._replace(command, nearest.rla.rla_id, tick)
 
     def _create(
         self, command: Teach | Correct, situation: Situation, tick: int
@@ -93,7 +99,7 @@ class School:
         return _done(command, f"RLA {rla.rla_id} taught: {rla.action}"), RlaCreated(rla)
 
     def _replace(
-        self, command: Correct | ReplaceAction, rla_id: int, tick: int
+        self, command: Teach | Correct | ReplaceAction, rla_id: int, tick: int
     ) -> tuple[CommandResult, TeachingEvent | None]:
         rla = self._level.system.get(rla_id)
         if rla is None:

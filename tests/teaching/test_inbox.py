@@ -1,0 +1,26 @@
+"""Where commands wait for the next tick."""
+
+import pytest
+
+from kurt2rt.teaching.inbox import InboxFullError, TeacherInbox
+from tests.teaching.helpers import resume, stop, teach
+
+
+def test_commands_are_taken_once_and_in_the_order_they_came() -> None:
+    inbox = TeacherInbox()
+    commands = (teach("a"), stop(), resume())
+    for command in commands:
+        inbox.put(command)
+    assert inbox.take() == commands
+    assert inbox.take() == ()
+
+
+def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
+    inbox = TeacherInbox(capacity=2)
+    inbox.put(teach("a"))
+    inbox.put(stop())
+    with pytest.raises(InboxFullError, match="2 commands wait already"):
+        inbox.put(resume())
+    assert inbox.take() == (teach("a"), stop())
+    inbox.put(resume())
+    assert inbox.take() == (resume(),)

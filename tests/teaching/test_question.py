@@ -1,0 +1,48 @@
+"""The robot's question."""
+
+import math
+
+import numpy as np
+
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.teaching.question import Question, ask
+from tests.rla.helpers import created
+
+NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
+
+
+def asked(condition: tuple[float, ...], here: tuple[float, ...], radius: float | None = None) -> Question:
+    system = RlaSystem(len(here), 300.0)
+    system.apply(created(1, condition, "curve_left", radius))
+    situation = np.array(here)
+    return ask(system.match(situation), situation, NAMES)
+
+
+def test_it_names_the_nearest_rla_its_action_distance_radius_and_what_differs_most() -> None:
+    question = asked((100, 100, 100, 100, 100, 100, 100), (400, 90, 105, 100, 500, 101, 98))
+    assert (question.nearest_rla, question.action, question.radius) == (1, "curve_left", 300.0)
+    assert question.distance == math.sqrt(300**2 + 10**2 + 5**2 + 400**2 + 1 + 4)
+    assert [each.name for each in question.differing] == ["s2 (10 s average)", "s1", "s2", "s3", "maximum left"]
+    assert str(question) == (
+        "I don't know this situation, teach me: nearest is RLA 1 (curve_left) at 500 of 300; "
+        "s2 (10 s average) 500 not 100, s1 400 not 100, s2 90 not 100, s3 105 not 100, maximum left 98 not 100"
+    )
+
+
+def test_it_names_an_own_radius() -> None:
+    assert asked((0,) * 7, (100,) * 7, radius=50.0).radius == 50.0
+
+
+def test_features_that_do_not_differ_are_not_named() -> None:
+    assert str(asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0))).endswith("at 400 of 300; s3 400 not 0")
+
+
+def test_of_features_that_differ_alike_the_first_come_first() -> None:
+    names = [each.name for each in asked((0,) * 7, (9, -9, 9, 9, 9, 9, 9)).differing]
+    assert names == ["s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)"]
+
+
+def test_before_the_first_lesson_it_asks_without_comparison() -> None:
+    question = ask(None, np.zeros(7), NAMES)
+    assert (question.nearest_rla, question.action, question.differing) == (None, None, ())
+    assert str(question) == "I know nothing yet, teach me"
