@@ -81,12 +81,12 @@ class Tick:
         results: tuple[CommandResult, ...] = ()
         events: list[TeachingEvent] = []
         for command in commands:
+            if isinstance(command, Resume) and not self._school.has_taken(command.command_id):
+                self._robot.release()  # a late copy of an old command must not end a new emergency stop
             result, event = self._school.attend(command, situation, tick)
             results += (result,)
             if event is not None:
                 events.append(event)
-            if isinstance(command, Resume):
-                self._robot.release()
         decision = self._level.decide(situation, senses, self._reason_to_stand())
         mark(Stage.DECIDE)
 
