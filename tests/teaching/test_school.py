@@ -177,7 +177,7 @@ def test_a_refused_command_may_come_again() -> None:
     lesson = Lesson()
     assert not lesson.say(delete(1, "x")).accepted
     lesson.say(teach("a"))
-    assert lesson.say(delete(1, "x")).accepted
+    assert lesson.say(delete(1, "x")).text == "RLA 1 deleted"
 
 
 def test_the_events_of_a_lesson_fold_to_the_same_knowledge() -> None:
