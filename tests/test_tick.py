@@ -262,11 +262,11 @@ def test_every_tick_is_in_the_ledger(driving: Corridor) -> None:
 
 
 def journey(seed: int) -> tuple[list[TickRecord], str, Sequence[TeachingEvent]]:
-    """2000 ticks through changing counts with lessons, corrections, stops and deletions thrown in by chance."""
+    """1000 ticks through changing counts with lessons, corrections, stops and deletions thrown in by chance."""
     chance = np.random.default_rng(seed)
     corridor = Corridor()
     records = []
-    for number in range(2000):
+    for number in range(1000):
         commands: list[Command] = []
         if number % 7 == 0:
             name, action = f"{seed}-{number}", ("forward", "back")[int(chance.integers(2))]

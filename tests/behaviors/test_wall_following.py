@@ -24,7 +24,7 @@ def wall_on_the_left(front_m: float, back_m: float | None = None) -> dict[str, f
 
 
 @given(st.tuples(*[st.one_of(st.integers(0, 1023), st.sampled_from((0, 70, 71, 549, 550, 551, 1023)))] * 18))
-@settings(max_examples=500)
+@settings(max_examples=300)
 def test_it_names_an_action_of_the_repertoire_whatever_the_sensors_show(infrared_counts: tuple[int, ...]) -> None:
     assert POLICY.choose(infrared_counts) in ACTIONS
 

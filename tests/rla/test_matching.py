@@ -68,7 +68,7 @@ def worlds(draw: st.DrawFn) -> tuple[list[Point | int], list[Point]]:
 
 
 @given(worlds())
-@settings(max_examples=600)
+@settings(max_examples=400)
 @example(([(1.5e19,), (2.7e19,)], [(1.3e19,)]))
 @example(([(0.3,), (0.6,)], [(1e16,)]))
 @example(([(2.1e-22,), (1.2e-22,)], [(1.7e-22,)]))
