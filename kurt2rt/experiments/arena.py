@@ -1,6 +1,5 @@
 """What an experiment needs of the place where the robot drives; the composition root knows who provides it."""
 
-from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from matplotlib.axes import Axes
@@ -51,14 +50,18 @@ class Arena(Protocol):
         """Lift the robot and set it down, standing, at the nearest start pose."""
         ...
 
-    def draw(self, axes: Axes) -> None:
-        """Draw the world from above."""
-        ...
-
     def close(self) -> None:
         """Stop the robot and give its bus back."""
         ...
 
 
-OpenArena = Callable[[str, int], Arena]
-"""Opens a world by name with a seed: seed decides start pose and all chance in it."""
+class Stage(Protocol):
+    """Opens arenas and draws their worlds."""
+
+    def open(self, world: str, seed: int) -> Arena:
+        """The robot in a world, by name; the seed decides start pose and all chance in it."""
+        ...
+
+    def draw(self, axes: Axes, world: str) -> None:
+        """Draw a world from above."""
+        ...

@@ -34,6 +34,12 @@ class History:
         if self._filled < len(self._ring):
             self._filled += 1
 
+    def fill(self, values: NDArray[np.int64]) -> None:
+        """Hold `values` in every step, as if the robot had been here all the time."""
+        self._ring[:] = values
+        self._sums[:] = len(self._ring) * values
+        self._filled = len(self._ring)
+
     def average_into(self, out: NDArray[np.float64]) -> None:
         """Write the average of the steps held into `out`, shape (width,); zeros before the first step."""
         np.divide(self._sums, max(self._filled, 1), out=out)

@@ -1,5 +1,6 @@
 """Perception: senses in, situation out, once per tick."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,9 @@ class Perception:
     def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
         """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
         recent = self._extract(senses.infrared_counts, self._driven)
+        if self._history.filled == 0 and senses.infrared_age_s < math.inf:
+            # A robot that was just switched on has no past; where it stands is the best guess of it.
+            self._history.fill(recent)
         if not history_frozen:
             self._history.push(recent)
         vector = np.empty(2 * self._width)

@@ -49,14 +49,14 @@ class ScriptedTeacher:
 
     def watch(self, record: TickRecord) -> Command | None:
         """See one tick; what the teacher says to it, if anything."""
-        if record.decision.asking:
+        if record.decision.asking or self._ticks_asked > 0:
+            # Once asked the teacher answers, also when noise has meanwhile let the robot drive on for a moment.
             self._ticks_otherwise = 0
             self._ticks_asked += 1
             if self._ticks_asked < self._reaction_ticks:
                 return None
             self._ticks_asked = 0
             return Teach(self._next_id(), _NAME, self._choose(record))
-        self._ticks_asked = 0
         if self.phase is Phase.SUPERVISED or not record.decision.driving:
             return None
         return self._correct(record)

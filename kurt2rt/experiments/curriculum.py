@@ -1,0 +1,114 @@
+"""A lesson and its exams, for one seed: what a demonstration shows once and a study repeats."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.lesson import LessonResult, teach
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.tasks.settings import TaskSettings
+
+Report = Callable[[str, float, float], None]
+"""Progress of a long job: what, simulated seconds done, simulated seconds in all."""
+
+
+class LessonLostError(RuntimeError):
+    """Lessons could not be saved; the message says why and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldResult:
+    """One world's exam beside the teacher's own drive there."""
+
+    learned: ExamResult
+    teacher: ExamResult
+    succeeded: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CurriculumResult:
+    """A lesson and its exams."""
+
+    lesson: LessonResult
+    exams: tuple[WorldResult, ...]
+
+
+async def run_lesson(
+    stage: Stage, settings: RobotSettings, task: TaskSettings, knowledge: Path, *, seed: int, report: Report
+) -> tuple[LessonResult, list[TeachingEvent]]:
+    """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
+
+    Goes on from what the file holds already. Raises KnowledgeError, SettingsError, LessonLostError.
+    """
+    world, whole_s = task.teaching.world, task.teaching.duration_s
+    with open_knowledge(knowledge, settings, task) as journal:
+        events = journal.events()
+        arena = stage.open(world, seed)
+        try:
+            with JournalWriter(journal, utc_now) as writer:
+                lesson = await teach(
+                    arena,
+                    settings,
+                    task,
+                    writer,
+                    events,
+                    seed=seed,
+                    on_progress=lambda done_s: report(f"teaching in world {world}", done_s, whole_s),
+                )
+                writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))
+                if not writer.flush(timeout_s=30.0):
+                    raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
+        finally:
+            arena.close()
+        return lesson, journal.events()
+
+
+def read_lessons(knowledge: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:
+    """All teaching events of a knowledge file, for a robot and task it was taught with. Raises KnowledgeError."""
+    with open_knowledge(knowledge, settings, task) as journal:
+        return journal.events()
+
+
+async def run_exams(
+    stage: Stage,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    worlds: Sequence[str],
+    *,
+    seed: int,
+    report: Report,
+) -> tuple[WorldResult, ...]:
+    """Examine in each world, and let the teacher's policy drive there for comparison, from the same start."""
+    results = []
+    for world in worlds:
+        drives = []
+        for by_teacher in (False, True):
+            who = "the teacher's own drive" if by_teacher else "exam without teacher"
+            arena = stage.open(world, seed)
+            try:
+                drives.append(
+                    await examine(
+                        arena,
+                        settings,
+                        task,
+                        world,
+                        events,
+                        seed=seed,
+                        on_progress=lambda done_s, what=f"{who}, world {world}": report(
+                            what, done_s, task.exam.duration_s
+                        ),
+                        by_teacher=by_teacher,
+                    )
+                )
+            finally:
+                arena.close()
+        learned, teacher = drives
+        results.append(WorldResult(learned, teacher, learned.succeeded(teacher.laps, task.exam.laps_share)))
+    return tuple(results)
