@@ -13,6 +13,7 @@ COMMAND_TOO_OLD = "command too old"
 CLOCK_RAN_BACKWARDS = "clock ran backwards"
 INFRARED_STALE = "infra-red stale"
 ENCODER_STALE = "encoder stale"
+BUMPER_STALE = "bumper stale"
 FRONT_BUMPER = "front bumper"
 REAR_BUMPER = "rear bumper"
 SPEED_LIMIT = "speed limit"
@@ -40,6 +41,8 @@ class Guard:
         self._command_age_s = limits.command_age_s
         self._stale_infrared_s = limits.stale_infrared_s
         self._stale_encoder_s = limits.stale_encoder_s
+        # A robot without bumpers need not report them.
+        self._stale_bumper_s = limits.stale_bumper_s if robot.bumpers else math.inf
         self._cycle_s = robot.can.cycle_s
         self._front_bits = _bumper_bits(robot, BumperEnd.FRONT)
         self._rear_bits = _bumper_bits(robot, BumperEnd.REAR)
@@ -120,6 +123,8 @@ class Guard:
             return INFRARED_STALE
         if not sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
             return ENCODER_STALE
+        if not sensed_ago_s + senses.bumper_age_s <= self._stale_bumper_s:
+            return BUMPER_STALE
         return None
 
     def _approach(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[str, ...]:

@@ -51,8 +51,8 @@ class Kurt2:
         self._bumper_mask = (1 << len(settings.bumpers)) - 1
         self._counts = [0] * len(settings.infrared.sensors)
         self._bumpers = 0
-        self._encoder_at_s = -math.inf
-        self._senses = Senses(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0)
+        self._encoder_at_s = self._bumpers_at_s = -math.inf
+        self._senses = Senses(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._unknown = self._foreign_control = self._receive_failures = 0
@@ -86,6 +86,7 @@ class Kurt2:
                     self._encoder_at_s = now_s
                 elif frame_id == self._bumperc.frame_id:
                     self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
+                    self._bumpers_at_s = now_s
                 elif frame_id == CONTROL_ID:
                     self._foreign_control += 1
                 elif frame_id not in self._known_ids:
@@ -101,6 +102,7 @@ class Kurt2:
             right_ticks,
             now_s - self._encoder_at_s,
             self._bumpers,
+            now_s - self._bumpers_at_s,
         )
         return self._senses
 

@@ -32,6 +32,8 @@ class Senses(NamedTuple):
     """Age of the newest ENCODER frame; infinite before the first."""
     bumpers: int
     """Bit n set: bumper n of the robot's table is pressed."""
+    bumper_age_s: float
+    """Age of the newest BUMPERC frame; infinite before the first."""
 
 
 class Grant(NamedTuple):

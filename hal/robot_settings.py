@@ -77,6 +77,7 @@ class GuardSettings(Settings):
     braking_m_s2: MetresPerSecondSquared
     stale_infrared_s: Seconds
     stale_encoder_s: Seconds
+    stale_bumper_s: Seconds
     command_age_s: Seconds
     ticks_ceased_s: Seconds
 

@@ -37,7 +37,7 @@ class CorridorRobot:
         self.closed = False
 
     def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (self.counts,) * 4, 0.0, 0, 0, 0.0, 0)
+        return Senses(now_s, (self.counts,) * 4, 0.0, 0, 0, 0.0, 0, 0.0)
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         assert decided_at_s == now_s

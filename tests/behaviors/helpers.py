@@ -15,4 +15,4 @@ def counts(nothing_nearer_than_m: float = 0.6, **distances_m: float) -> tuple[in
 def sensed(
     infrared_counts: tuple[int, ...] = (70,) * len(SENSORS), *, left_ticks: int = 0, right_ticks: int = 0
 ) -> Senses:
-    return Senses(0.0, infrared_counts, 0.0, left_ticks, right_ticks, 0.0, 0)
+    return Senses(0.0, infrared_counts, 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)

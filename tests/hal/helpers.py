@@ -45,8 +45,14 @@ def controls(bus: CanBus) -> list[Control]:
     return [decode_control(message.data) for message in bus.drain()]
 
 
-def fresh(time_s: float, bumpers: int = 0, infrared_age_s: float = 0.0, encoder_age_s: float = 0.0) -> Senses:
-    return Senses(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers)
+def fresh(
+    time_s: float,
+    bumpers: int = 0,
+    infrared_age_s: float = 0.0,
+    encoder_age_s: float = 0.0,
+    bumper_age_s: float = 0.0,
+) -> Senses:
+    return Senses(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers, bumper_age_s)
 
 
 def robot_with(**limits: float) -> RobotSettings:

@@ -106,27 +106,36 @@ def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("infrared_age_s", "encoder_age_s", "reason"),
+    ("ages_s", "reason"),
     [
-        (LIMITS.stale_infrared_s + 1e-6, 0.0, words.INFRARED_STALE),
-        (math.inf, 0.0, words.INFRARED_STALE),
-        (math.nan, 0.0, words.INFRARED_STALE),
-        (0.0, LIMITS.stale_encoder_s + 1e-6, words.ENCODER_STALE),
-        (0.0, math.inf, words.ENCODER_STALE),
-        (0.0, math.nan, words.ENCODER_STALE),
+        ((LIMITS.stale_infrared_s + 1e-6, 0.0, 0.0), words.INFRARED_STALE),
+        ((math.inf, 0.0, 0.0), words.INFRARED_STALE),
+        ((math.nan, 0.0, 0.0), words.INFRARED_STALE),
+        ((0.0, LIMITS.stale_encoder_s + 1e-6, 0.0), words.ENCODER_STALE),
+        ((0.0, math.inf, 0.0), words.ENCODER_STALE),
+        ((0.0, math.nan, 0.0), words.ENCODER_STALE),
+        ((0.0, 0.0, LIMITS.stale_bumper_s + 1e-6), words.BUMPER_STALE),
+        ((0.0, 0.0, math.inf), words.BUMPER_STALE),
+        ((0.0, 0.0, math.nan), words.BUMPER_STALE),
     ],
 )
-def test_a_blind_robot_stands(driver: Driver, infrared_age_s: float, encoder_age_s: float, reason: str) -> None:
+def test_a_robot_without_feeling_stands(driver: Driver, ages_s: tuple[float, float, float], reason: str) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.now_s += TICK_S
-    grant = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s, 0, infrared_age_s, encoder_age_s))
+    grant = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s, 0, *ages_s))
     assert grant == Grant(STANDSTILL, (reason,), latched=False)
     assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
 
 
 def test_ages_within_the_limits_are_good_enough(driver: Driver) -> None:
-    senses = fresh(driver.now_s, infrared_age_s=LIMITS.stale_infrared_s, encoder_age_s=LIMITS.stale_encoder_s)
+    senses = fresh(driver.now_s, 0, LIMITS.stale_infrared_s, LIMITS.stale_encoder_s, LIMITS.stale_bumper_s)
     assert driver.tell(WheelSpeeds(0.01, 0.01), senses, decided_ago_s=0.0).wheel_speeds == (0.01, 0.01)
+
+
+def test_a_robot_without_bumpers_does_not_wait_for_them(ends: Ends) -> None:
+    driver = Driver(ends, ROBOT.model_copy(update={"bumpers": ()}))
+    grant = driver.tell(WheelSpeeds(0.01, 0.01), fresh(driver.now_s, bumper_age_s=math.inf))
+    assert grant == Grant(WheelSpeeds(0.01, 0.01), (), latched=False)
 
 
 def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:

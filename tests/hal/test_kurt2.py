@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hal.bus import BusError, CanBus
 from hal.control import Mode, RawControl, RawSide, SpeedControl
-from hal.guard import BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
+from hal.guard import BUMPER_STALE, BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
 from hal.kurt2 import CLOSED, Kurt2
 from hal.robot import STANDSTILL, Robot, WheelSpeeds
 from tests.hal.helpers import (
@@ -46,7 +46,7 @@ def test_before_the_first_frame_it_is_blind_and_stands(robot: Kurt2, ends: Ends)
     assert robot.drive(WheelSpeeds(0.3, 0.3), 0.0, 0.0).wheel_speeds == STANDSTILL
     senses = robot.sense(1.0)
     assert senses.infrared_counts == (0,) * 18
-    assert senses.infrared_age_s == senses.encoder_age_s == math.inf
+    assert senses.infrared_age_s == senses.encoder_age_s == senses.bumper_age_s == math.inf
     assert robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0).reasons == (INFRARED_STALE,)
     assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 0, 0)
 
@@ -89,6 +89,23 @@ def test_the_age_is_that_of_the_oldest_frame(robot: Kurt2, ends: Ends) -> None:
     senses = robot.sense(1.05)
     assert senses.infrared_age_s == pytest.approx(TICK_S)
     assert senses.encoder_age_s == pytest.approx(TICK_S)
+
+
+def test_bumpers_that_fall_silent_age_until_the_robot_stands(robot: Kurt2, ends: Ends) -> None:
+    send(ends[1], cycle(bumpers=0b10))
+    robot.sense(1.0)
+    reasons = []
+    for tick in range(1, 13):
+        now_s = 1.0 + tick * TICK_S
+        send(ends[1], cycle()[:-1])
+        senses = robot.sense(now_s)
+        assert senses.bumper_age_s == pytest.approx(tick * TICK_S)
+        assert senses.bumpers == 0b10  # what is not told is what was told last
+        reasons.append(robot.drive(WheelSpeeds(-0.01, -0.01), now_s, now_s).reasons)
+    assert reasons[:9] == [()] * 9
+    assert reasons[-1] == (BUMPER_STALE,)
+    send(ends[1], cycle())
+    assert robot.sense(now_s).bumper_age_s == 0.0
 
 
 def test_counts_of_no_10_bit_converter_keep_the_old_value_and_let_it_age(robot: Kurt2, ends: Ends) -> None:
@@ -166,7 +183,7 @@ def test_junk_is_counted_and_changes_nothing(junk: list[can.Message], strangers:
     after = robot.sense(1.02)
     assert (after.infrared_counts, after.bumpers) == (before.infrared_counts, before.bumpers)
     assert (after.encoder_left_ticks, after.encoder_right_ticks) == (0, 0)
-    assert after.infrared_age_s == after.encoder_age_s == pytest.approx(0.02)
+    assert after.infrared_age_s == after.encoder_age_s == after.bumper_age_s == pytest.approx(0.02)
     assert (robot.health.junk, robot.health.unknown) == (len(junk), len(strangers))
     robot.close()
     ends[1].shutdown()

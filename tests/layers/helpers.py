@@ -47,4 +47,4 @@ def situation(place: float) -> Situation:
 
 
 def sensed(*infrared_counts: int) -> Senses:
-    return Senses(0.0, infrared_counts, 0.0, 0, 0, 0.0, 0)
+    return Senses(0.0, infrared_counts, 0.0, 0, 0, 0.0, 0, 0.0)

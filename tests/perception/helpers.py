@@ -48,4 +48,4 @@ def definition(
 
 
 def sensed(*counts: int) -> Senses:
-    return Senses(0.0, counts, 0.0, 0, 0, 0.0, 0)
+    return Senses(0.0, counts, 0.0, 0, 0, 0.0, 0, 0.0)

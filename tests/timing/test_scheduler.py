@@ -42,7 +42,7 @@ class StandingRobot:
     """Senses the time and stands."""
 
     def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (100,) * len(SENSORS), 0.0, 0, 0, 0.0, 0)
+        return Senses(now_s, (100,) * len(SENSORS), 0.0, 0, 0, 0.0, 0, 0.0)
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002 - it stands
         return Grant(STANDSTILL, (), latched=False)
