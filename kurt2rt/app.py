@@ -1,84 +1,31 @@
 """The composition root: the one place that knows which robot is there, the simulated or the real one."""
 
-import random
-import uuid
-from dataclasses import dataclass
-
-from matplotlib.axes import Axes
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Position
-from simbridge.drawing import draw_world
-from simbridge.pose import Pose
-from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_settings import load_world
+
+SIMULATED = "sim"
 
 
-class SimulatedArena:
-    """The simulated KURT2 in one world, on an in-process CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
+@contextmanager
+def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iterator[Kurt2]:
+    """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
-        self._world = load_world(world, settings)
-        # Two arenas in one process must not hear each other.
-        spec = f"virtual:{uuid.uuid4()}"
-        self._far_end = open_bus(spec)
-        self.simulation = SimulatedRobot(settings, self._world, self._far_end, seed)
-        self.robot = Kurt2(settings, open_bus(spec))
-        self._starts = [start.pose for start in self._world.start_poses]
-        self.simulation.place(random.Random(f"start {world} {seed}").choice(self._starts))
+    Raises BusError, SettingsError, and on leaving whatever ended the simulation.
+    """
+    if bus == SIMULATED:
+        # Here, because a robot carries no simulator: the packages it needs are an extra.
+        from kurt2rt.simulated import simulated_robot
 
-    @property
-    def position(self) -> Position:
-        """True position."""
-        pose = self.simulation.pose
-        return Position(pose.x_m, pose.y_m)
-
-    @property
-    def collisions(self) -> int:
-        """Contacts so far."""
-        return self.simulation.collisions
-
-    @property
-    def touching(self) -> bool:
-        """Whether the robot touches something now."""
-        return self.simulation.touching
-
-    @property
-    def laps(self) -> float:
-        """Rounds made with the wall on the left."""
-        return self.simulation.laps
-
-    def step(self) -> None:
-        """One cycle of 10 ms."""
-        self.simulation.step()
-
-    def rescue(self) -> None:
-        """Set the robot down at the nearest start pose."""
-        here = self.simulation.pose
-
-        def squared_distance(pose: Pose) -> float:
-            return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
-
-        self.simulation.place(min(self._starts, key=squared_distance))
-
-    def close(self) -> None:
-        """Stop the robot and shut both ends of the bus."""
-        self.robot.close()
-        self._far_end.shutdown()
-
-
-@dataclass(frozen=True, slots=True)
-class SimulatedStage:
-    """Opens simulated arenas (kurt2rt.experiments.arena.Stage); can be sent to another process."""
-
-    settings: RobotSettings
-
-    def open(self, world: str, seed: int) -> SimulatedArena:
-        """The simulated robot in a world."""
-        return SimulatedArena(self.settings, world, seed)
-
-    def draw(self, axes: Axes, world: str) -> None:
-        """Draw a world from above."""
-        draw_world(axes, load_world(world, self.settings))
+        with simulated_robot(settings, world, seed) as robot:
+            yield robot
+        return
+    robot = Kurt2(settings, open_bus(bus))
+    try:
+        with robot.watchdog:
+            yield robot
+    finally:
+        robot.close()

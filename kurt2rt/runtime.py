@@ -46,12 +46,13 @@ def build_runtime(
     keeper: LessonKeeper,
     clock: Clock,
     *,
+    statistics: StatisticsCounter | None = None,
     level_override: Level | None = None,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
-    `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
-    own policy, for instance, to see what it would reach itself.
+    `statistics` goes on from what was counted before. `level_override` puts another layer at the wheels, with
+    knowledge and teaching unchanged behind it: the teacher's own policy, for instance, to see what it would reach.
     Raises hal.settings.SettingsError, and UnknownActionError for knowledge that the repertoire cannot act out.
     """
     sensors = settings.infrared.names
@@ -69,7 +70,7 @@ def build_runtime(
         taken_command_ids=(event.origin.command_id for event in events),
     )
     inbox = TeacherInbox()
-    statistics = StatisticsCounter()
+    statistics = statistics or StatisticsCounter()
     ledger = Ledger()
     tick = Tick(
         robot, Perception(definition, sensors), level_override or level, school, inbox, keeper, statistics, ledger

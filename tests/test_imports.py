@@ -37,7 +37,7 @@ def roots_imported(path: Path) -> set[str]:
 def may_know_the_simulator(path: Path) -> bool:
     """The composition root and the command line alone know both the runtime and the simulator."""
     parts = path.relative_to(ROOT).parts
-    return parts == ("kurt2rt", "app.py") or parts[:2] == ("kurt2rt", "cli")
+    return parts in (("kurt2rt", "app.py"), ("kurt2rt", "simulated.py")) or parts[:2] == ("kurt2rt", "cli")
 
 
 @pytest.mark.parametrize("package", sorted(PACKAGES))

@@ -5,7 +5,7 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
+from threadpoolctl import threadpool_info
 
 from kurt2rt.doctor.finding import Finding, Status
 from kurt2rt.doctor.sysfs import attribute

@@ -1,10 +1,11 @@
 """What an experiment needs of the place where the robot drives; the composition root knows who provides it."""
 
-from typing import NamedTuple, Protocol
-
-from matplotlib.axes import Axes
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from hal.robot import Robot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 class Position(NamedTuple):
@@ -62,6 +63,6 @@ class Stage(Protocol):
         """The robot in a world, by name; the seed decides start pose and all chance in it."""
         ...
 
-    def draw(self, axes: Axes, world: str) -> None:
+    def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
         ...

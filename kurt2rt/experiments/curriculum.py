@@ -86,29 +86,27 @@ async def run_exams(
     report: Report,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start."""
+
+    async def drive(world: str, *, by_teacher: bool) -> ExamResult:
+        who = "the teacher's own drive" if by_teacher else "exam without teacher"
+        arena = stage.open(world, seed)
+        try:
+            return await examine(
+                arena,
+                settings,
+                task,
+                world,
+                events,
+                seed=seed,
+                on_progress=lambda done_s: report(f"{who}, world {world}", done_s, task.exam.duration_s),
+                by_teacher=by_teacher,
+            )
+        finally:
+            arena.close()
+
     results = []
     for world in worlds:
-        drives = []
-        for by_teacher in (False, True):
-            who = "the teacher's own drive" if by_teacher else "exam without teacher"
-            arena = stage.open(world, seed)
-            try:
-                drives.append(
-                    await examine(
-                        arena,
-                        settings,
-                        task,
-                        world,
-                        events,
-                        seed=seed,
-                        on_progress=lambda done_s, what=f"{who}, world {world}": report(
-                            what, done_s, task.exam.duration_s
-                        ),
-                        by_teacher=by_teacher,
-                    )
-                )
-            finally:
-                arena.close()
-        learned, teacher = drives
+        learned = await drive(world, by_teacher=False)
+        teacher = await drive(world, by_teacher=True)
         results.append(WorldResult(learned, teacher, learned.succeeded(teacher.laps, task.exam.laps_share)))
     return tuple(results)

@@ -1,14 +1,15 @@
 """Whether the robot makes way."""
 
+import math
 from collections import deque
 
 from kurt2rt.experiments.arena import Position
 
 
 class WayMade:
-    """Tells a robot that stays where it is from one that travels."""
+    """Tells a robot that stays about where it is, standing or going round in circles, from one that travels."""
 
-    def __init__(self, window_s: float, period_s: float, *, least_m: float = 0.1) -> None:
+    def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:
         self._stride = round(0.5 / period_s)
         self._positions: deque[Position] = deque(maxlen=max(2, round(window_s / 0.5) + 1))
         self._least_m = least_m
@@ -21,7 +22,7 @@ class WayMade:
         self._ticks += 1
         full = len(self._positions) == self._positions.maxlen
         return full and all(
-            abs(position.x_m - old.x_m) + abs(position.y_m - old.y_m) < self._least_m for old in self._positions
+            math.hypot(position.x_m - old.x_m, position.y_m - old.y_m) < self._least_m for old in self._positions
         )
 
     def restart(self) -> None:

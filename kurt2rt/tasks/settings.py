@@ -42,7 +42,7 @@ class TeachingSettings(Settings):
     corrections_s: Seconds
     """Phase 2, after it: the teacher corrects while the robot drives, and still answers."""
     rescue_after_s: Annotated[float, Field(gt=0, le=1000)]
-    """A robot that touches a wall or makes no way for so long, without a question, is set free by hand."""
+    """A robot that makes no way for so long, without a question, is set down elsewhere by hand."""
     teacher: TeacherSettings
 
     @property

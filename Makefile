@@ -1,0 +1,40 @@
+# make run    teach a simulated robot, examine it, show what came of it
+# make test   all that CI runs: lint, types, tests
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/installed
+
+.PHONY: run test test-deep bench lint types clean
+
+run: $(INSTALLED)
+	$(BIN)/kurt2rt demo
+
+test: lint types
+	$(BIN)/pytest -n 2 -q
+
+test-deep: $(INSTALLED)
+	$(BIN)/pytest -n 2 -q -m deep
+
+bench: $(INSTALLED)
+	$(BIN)/kurt2rt bench
+
+lint: $(INSTALLED)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(INSTALLED)
+	$(BIN)/mypy
+
+# One environment for both commands: what is tested is what runs.
+$(INSTALLED): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "kurt2rt needs Python 3.11 or newer; give one with: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' \
+		|| { echo "Python's venv is missing; on Debian: apt-get install python3-venv"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[test]'
+	touch $@
+
+clean:
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build *.egg-info

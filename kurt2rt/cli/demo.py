@@ -1,0 +1,64 @@
+"""`kurt2rt demo`."""
+
+from pathlib import Path
+
+import anyio
+from rich.console import Console
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName
+from kurt2rt.cli.progress import job_bars
+from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
+from kurt2rt.experiments.report import render_curriculum
+from kurt2rt.tasks.settings import load_task
+
+
+def demo(
+    task: TaskName = "wall_following",
+    seed: Seed = 1,
+    out: OutFolder = Path("results/demo"),
+    robot_settings: RobotName = "kurt2",
+) -> None:
+    """Teach a simulated robot from nothing, examine it without its teacher, show what came of it.
+
+    A scripted teacher teaches over the same commands that a person uses, in
+    simulated time and as fast as this machine allows: the robot asks where it knows
+    nothing (phase 1), then is also corrected while it drives (phase 2). Then it
+    drives without a teacher in each world of the task; in all but the first one it
+    has never been.
+
+    Leaves a picture and the knowledge file in the output folder. Look at the file
+    with kurt2rt knowledge show.
+    """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.experiments.drawing import draw_curriculum
+    from kurt2rt.simulated import SimulatedStage
+
+    settings = load_robot(robot_settings)
+    taught = load_task(task)
+    stage = SimulatedStage(settings)
+    out.mkdir(parents=True, exist_ok=True)
+    knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"
+    set_aside(knowledge)
+
+    async def run(report: Report) -> CurriculumResult:
+        lesson, events = await run_lesson(stage, settings, taught, knowledge, seed=seed, report=report)
+        exams = await run_exams(stage, settings, taught, events, taught.exam.worlds, seed=seed, report=report)
+        return CurriculumResult(lesson, exams)
+
+    with job_bars() as report:
+        result = anyio.run(run, report)
+    draw_curriculum(result, taught, stage, picture)
+    console = Console()
+    console.print(render_curriculum(result, taught))
+    console.print(f"picture    {picture}", f"knowledge  {knowledge}", sep="\n", highlight=False)
+
+
+def set_aside(knowledge: Path) -> None:
+    """A job that teaches from nothing leaves earlier knowledge of the same name in place, under a number of its own."""
+    if not knowledge.exists():
+        return
+    number = 1
+    while (kept := knowledge.with_name(f"{knowledge.name}.{number}")).exists():
+        number += 1
+    knowledge.rename(kept)

@@ -1,0 +1,49 @@
+"""`kurt2rt exam`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import anyio
+import typer
+from rich.console import Console
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.options import RobotName, Seed, TaskName
+from kurt2rt.cli.progress import job_bars
+from kurt2rt.experiments.curriculum import Report, WorldResult, read_lessons, run_exams
+from kurt2rt.experiments.report import render_exams
+from kurt2rt.tasks.settings import load_task
+
+
+def exam(
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")],
+    task: TaskName = "wall_following",
+    seed: Seed = 1,
+    world: Annotated[
+        list[str] | None,
+        typer.Option(help="World by name (config/worlds) or path; repeat for several. Default: those of the task."),
+    ] = None,
+    robot_settings: RobotName = "kurt2",
+) -> None:
+    """Let the simulated robot drive without its teacher, and its teacher's policy for comparison.
+
+    Where the robot does not know a situation it stands, as it would in earnest; a
+    robot that makes no way for long is stuck, and the exam of that world ends.
+    """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.simulated import SimulatedStage
+
+    settings = load_robot(robot_settings)
+    taught = load_task(task)
+    if not knowledge.is_file():
+        raise typer.BadParameter(f"{knowledge}: no such file; teach one with kurt2rt lesson", param_hint="KNOWLEDGE")
+    events = read_lessons(knowledge, settings, taught)
+    stage = SimulatedStage(settings)
+
+    async def run(report: Report) -> tuple[WorldResult, ...]:
+        worlds = tuple(world) if world else taught.exam.worlds
+        return await run_exams(stage, settings, taught, events, worlds, seed=seed, report=report)
+
+    with job_bars() as report:
+        results = anyio.run(run, report)
+    Console().print(render_exams(results, taught))

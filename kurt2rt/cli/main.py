@@ -1,0 +1,62 @@
+"""`kurt2rt`: the command line."""
+
+import sys
+from typing import NoReturn
+
+import typer
+from rich.console import Console
+from threadpoolctl import threadpool_limits
+
+from hal.bus import BusError
+from hal.settings import SettingsError
+from kurt2rt.cli.bench import bench
+from kurt2rt.cli.demo import demo
+from kurt2rt.cli.doctor import doctor
+from kurt2rt.cli.exam import exam
+from kurt2rt.cli.knowledge import knowledge
+from kurt2rt.cli.lesson import lesson
+from kurt2rt.cli.run import run
+from kurt2rt.experiments.curriculum import LessonLostError
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.layers.basic_level import UnknownActionError
+
+_SIMULATION_PACKAGES = ("pymunk", "matplotlib", "shapely")
+
+app = typer.Typer(
+    help="Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
+    "Begin with `kurt2rt demo`: a simulated robot is taught wall following and examined, in a minute. "
+    "`kurt2rt doctor` says what this machine offers for the real one.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command()(demo)
+app.command()(run)
+app.command()(lesson)
+app.command()(exam)
+app.add_typer(knowledge, name="knowledge")
+app.command()(bench)
+app.command()(doctor)
+
+
+def main() -> None:
+    """Run the command line; what a user can mend is said in one line, exit code 2."""
+    # One thread: a product with some hundred rows is over before a second one wakes, and the loop needs its core.
+    with threadpool_limits(limits=1):
+        try:
+            app()
+        except ModuleNotFoundError as error:
+            if error.name not in _SIMULATION_PACKAGES:
+                raise
+            _complain(f"{error.name} is not installed; the simulator needs it: pip install 'kurt2rt[simulation]'")
+        except (SettingsError, KnowledgeError, UnknownActionError, BusError, LessonLostError) as error:
+            _complain(str(error))
+
+
+def _complain(text: str) -> NoReturn:
+    Console(stderr=True, highlight=False).print(f"kurt2rt: {text}", style="red", markup=False, soft_wrap=True)
+    sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,15 @@
+"""Options that several commands share."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+TaskName = Annotated[str, typer.Option("--task", help="Task by name (config/tasks) or a path to its YAML file.")]
+RobotName = Annotated[
+    str, typer.Option("--robot-settings", help="Robot by name (config/robots) or a path to its YAML file.")
+]
+Seed = Annotated[
+    int, typer.Option(min=0, help="Decides start poses and all chance; the same seed gives the same run, bit for bit.")
+]
+OutFolder = Annotated[Path, typer.Option("--out", help="Folder for what is made; created when absent.")]

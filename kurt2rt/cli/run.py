@@ -1,0 +1,144 @@
+"""`kurt2rt run`."""
+
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Literal
+
+import anyio
+import typer
+from rich.console import Console
+
+from behaviors.policies.build import build_policy
+from behaviors.repertoire import load_repertoire
+from hal.robot_settings import RobotSettings, load_robot
+from kurt2rt.app import open_robot
+from kurt2rt.cli.options import Seed
+from kurt2rt.rla.rla import Phase
+from kurt2rt.service import Screen, Status, serve
+from kurt2rt.service_settings import load_service
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching.commands import Command
+from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.priority import take_real_time_priority
+
+
+def run(
+    robot: Annotated[
+        str, typer.Option(help="sim: the simulated robot; else the SocketCAN interface of a real one, such as can0.")
+    ] = "sim",
+    settings: Annotated[
+        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+    ] = "default",
+    knowledge: Annotated[
+        Path | None, typer.Option(help="Knowledge file; made when absent. Default: as the settings say.")
+    ] = None,
+    world: Annotated[
+        str | None, typer.Option(help="World of the simulated robot. Default: as the settings say.")
+    ] = None,
+    teacher: Annotated[
+        Literal["none", "scripted"],
+        typer.Option(help="scripted: the task's reference policy answers and corrects, for the simulated robot only."),
+    ] = "none",
+    seconds: Annotated[
+        float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
+    ] = None,
+    seed: Seed = 1,
+) -> None:
+    """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
+
+    The robot drives where it was taught to and stands where it was not: then it
+    asks. Each lesson is in the knowledge file before it is acknowledged. A status
+    line tells once a second what drives the wheels, which rule says so, and how
+    punctual the loop is.
+
+    With --robot can0 set the interface up first:
+
+        sudo ip link set can0 up type can bitrate 1000000
+    """
+    service = load_service(settings)
+    changes: dict[str, str] = {}
+    if knowledge is not None:
+        changes["knowledge"] = str(knowledge)
+    if world is not None:
+        changes["world"] = world
+    service = service.model_copy(update=changes)
+    robot_settings, task = load_robot(service.robot), load_task(service.task)
+    if teacher == "scripted" and robot != "sim":
+        raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--teacher")
+    console = Console()
+    console.print(f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends", highlight=False)
+    if service.real_time_priority:
+        console.print(take_real_time_priority(service.real_time_priority), highlight=False)
+    screen = Screen(
+        status=lambda status: console.print(status_line(status), highlight=False),
+        question=lambda question: console.print(str(question), style="yellow", highlight=False),
+    )
+    watch = scripted_watch(task, robot_settings, seed) if teacher == "scripted" else None
+    with open_robot(robot_settings, robot, service.world, seed) as opened:
+
+        async def serve_it() -> Status | None:
+            return await serve(opened, robot_settings, service, task, screen, teacher=watch, duration_s=seconds)
+
+        last = anyio.run(serve_it)
+    console.print("the robot stands; every lesson is saved" if last is None else closing_line(last), highlight=False)
+
+
+def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Callable[[TickRecord], Command | None]:
+    """The scripted teacher for a run in real time: answers, and corrects after the task's time of phase 1."""
+    period_s = robot.can.cycle_s
+    teacher = ScriptedTeacher(
+        build_policy(task.policy, robot.infrared),
+        tuple(load_repertoire(task.repertoire, robot)),
+        task.teaching.teacher,
+        period_s=period_s,
+        seed=seed,
+        session=new_session(),
+    )
+    corrections_from = round(task.teaching.supervised_s / period_s)
+
+    def watch(record: TickRecord) -> Command | None:
+        if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:
+            return teacher.enter(Phase.CORRECTIONS)
+        return teacher.watch(record)
+
+    return watch
+
+
+def status_line(status: Status) -> str:
+    """One line: what drives the wheels and why, lessons, punctuality, and what is wrong."""
+    record, runtime = status.record, status.runtime
+    decision, match = record.decision, record.decision.match
+    near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
+    if decision.driving:
+        doing = f"{decision.action} by RLA {decision.rla_id}{near}"
+    elif decision.asking:
+        doing = "stands and asks" + ("" if match is None else f", nearest RLA {match.rla.rla_id}{near}")
+    else:
+        doing = f"stands: {decision.cause.value}"
+    lateness = runtime.ledger.lateness()
+    parts = [
+        f"{record.now_s:10.1f} s",
+        f"{doing:<48}",
+        f"{len(runtime.level.system):3d} RLAs",
+        f"late {lateness.median_us / 1000:.2f} ms, p99 {lateness.p99_us / 1000:.2f} ms",
+        f"missed {runtime.ledger.missed_ticks}",
+    ]
+    if record.grant.reasons:
+        parts.append("guard: " + ", ".join(record.grant.reasons))
+    if status.unsaved_lessons:
+        parts.append(f"{status.unsaved_lessons} lessons not saved yet")
+    if status.trouble is not None:
+        parts.append(status.trouble)
+    return " | ".join(parts)
+
+
+def closing_line(last: Status) -> str:
+    """What stands at the end."""
+    return f"the robot stands; {len(last.runtime.level.system)} RLAs are saved"
+
+
+def new_session() -> str:
+    """A name that no earlier session has, for the ids of this session's commands."""
+    return f"scripted-{uuid.uuid4().hex[:12]}"

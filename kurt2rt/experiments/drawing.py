@@ -1,0 +1,70 @@
+"""Pictures of a lesson and its exams: where the robot drove, where it asked, how its knowledge grew."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from kurt2rt.experiments.arena import Position, Stage
+from kurt2rt.experiments.curriculum import CurriculumResult
+from kurt2rt.tasks.settings import TaskSettings
+
+_TRAIL = "#1f6fb2"
+_TEACHER = "#b0b0b0"
+_ASK = "#d1495b"
+
+
+def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, path: Path) -> None:
+    """Write a PNG: the lesson, each exam over the teacher's own drive, and the number of RLAs against time."""
+    panels = 2 + len(result.exams)
+    columns = (panels + 1) // 2
+    figure = Figure(figsize=(5.2 * columns, 10.0), layout="constrained")
+    axes = figure.subplots(2, columns).flatten().tolist()
+    lesson = result.lesson
+    asks = _places("the robot asked", len(lesson.ask_positions))
+    _draw_drive(axes[0], stage, lesson.world, lesson.trail, lesson.ask_positions, asks)
+    axes[0].set_title(f"Lesson in world {lesson.world.upper()}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
+    _draw_growth(axes[1], lesson.growth, task)
+    for panel, each in zip(axes[2:], result.exams, strict=False):
+        exam = each.learned
+        panel.plot(*_columns(each.teacher.trail), color=_TEACHER, linewidth=3.0, zorder=2, label="teacher's own drive")
+        unknown = _places("situation unknown", len(exam.unknown_positions))
+        _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
+        verdict = "success" if each.succeeded else "failed"
+        panel.set_title(
+            f"Exam in world {exam.world.upper()}: {exam.laps:.1f} laps, {exam.collisions} collisions, {verdict}"
+        )
+    for panel in axes[panels:]:
+        panel.set_axis_off()
+    figure.savefig(path, dpi=110)
+
+
+def _draw_drive(
+    axes: Axes, stage: Stage, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
+) -> None:
+    stage.draw(axes, world)
+    axes.plot(*_columns(trail), color=_TRAIL, linewidth=1.0, zorder=3, label="the robot")
+    if marks:
+        axes.plot(*_columns(marks), "o", color=_ASK, markersize=5, zorder=4, label=label)
+    # Below the floor plan, where no wall is hidden by it.
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=3, fontsize="small", frameon=False)
+
+
+def _draw_growth(axes: Axes, growth: Sequence[int], task: TaskSettings) -> None:
+    axes.plot(range(1, len(growth) + 1), growth, color=_TRAIL, linewidth=2.0)
+    axes.plot([task.paper.teaching_s], [task.paper.rlas], "k*", markersize=12, linestyle="none", label="paper")
+    axes.axvline(task.teaching.supervised_s, color=_TEACHER, linestyle="--", label="corrections begin (phase 2)")
+    axes.set_xlabel("teaching, s of robot time")
+    axes.set_ylabel("RLAs")
+    axes.set_ylim(bottom=0)
+    axes.set_title("Growth of the RLA system")
+    axes.legend(frameon=False)
+
+
+def _columns(positions: Sequence[Position]) -> tuple[list[float], list[float]]:
+    return [each.x_m for each in positions], [each.y_m for each in positions]
+
+
+def _places(what: str, count: int) -> str:
+    return f"{what} ({count} times)"

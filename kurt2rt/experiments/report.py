@@ -1,0 +1,118 @@
+"""What a lesson and its exams came to, as tables to read."""
+
+import math
+from collections.abc import Sequence
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+
+from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
+from kurt2rt.tasks.settings import TaskSettings
+
+
+def render_curriculum(result: CurriculumResult, task: TaskSettings) -> RenderableType:
+    """Tables of one lesson and its exams, beside what the paper reports."""
+    lesson = result.lesson
+    taught = Table(title=f"Lesson: {task.name} in world {lesson.world}, seed {lesson.seed}", title_justify="left")
+    taught.add_column("")
+    taught.add_column("here", justify="right")
+    taught.add_column("paper", justify="right")
+    taught.add_row("RLAs", str(len(lesson.rlas)), str(task.paper.rlas))
+    taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", f"{task.paper.teaching_s:.0f}")
+    taught.add_row("asks", str(lesson.asks), "")
+    taught.add_row("corrections", str(lesson.corrections), "")
+    taught.add_row("rescues by hand", str(lesson.rescues), "")
+
+    return Group(taught, render_exams(result.exams, task)) if result.exams else taught
+
+
+def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:
+    """Table of one exam per world, beside the teacher's own drive there."""
+    driven = Table(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each", title_justify="left")
+    for heading in ("world", "laps", "teacher's own laps", "collisions", "stuck", "unknown situations", "success"):
+        driven.add_column(heading, justify="left" if heading == "world" else "right")
+    for each in exams:
+        exam = each.learned
+        driven.add_row(
+            exam.world.upper() if len(exam.world) == 1 else exam.world,
+            f"{exam.laps:.2f}",
+            f"{each.teacher.laps:.2f}",
+            str(exam.collisions),
+            f"after {exam.duration_s:.0f} s" if exam.stuck else "no",
+            f"{exam.share_unknown:.1%}",
+            "[green]yes[/]" if each.succeeded else "[red]no[/]",
+        )
+    return driven
+
+
+def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
+    """95 % interval of a share (Wilson's score interval), which holds for few trials and shares near 0 and 1 too."""
+    z = 1.959964
+    share = successes / trials
+    centre = (share + z * z / (2 * trials)) / (1 + z * z / trials)
+    half = z / (1 + z * z / trials) * math.sqrt(share * (1 - share) / trials + z * z / (4 * trials * trials))
+    return max(0.0, centre - half), min(1.0, centre + half)
+
+
+def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
+    """Lower quartile, median, upper quartile, by linear interpolation."""
+    ordered = sorted(values)
+
+    def at(share: float) -> float:
+        place = share * (len(ordered) - 1)
+        low = math.floor(place)
+        high = min(low + 1, len(ordered) - 1)
+        return ordered[low] + (place - low) * (ordered[high] - ordered[low])
+
+    return at(0.25), at(0.5), at(0.75)
+
+
+def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> RenderableType:
+    """Tables of many seeds: one row each, then medians, quartiles and intervals."""
+    worlds = [each.learned.world for each in results[0].exams]
+    seeds = Table(title=f"{task.name}: one row per seed", title_justify="left")
+    for heading in ("seed", "RLAs", "asks", "corrections", "rescues"):
+        seeds.add_column(heading, justify="right")
+    for world in worlds:
+        seeds.add_column(f"world {world.upper()}: laps of teacher's, collisions", justify="right")
+    for result in results:
+        lesson = result.lesson
+        cells = []
+        for each in result.exams:
+            exam = each.learned
+            end = f", stuck at {exam.duration_s:.0f} s" if exam.stuck else ""
+            colour = "green" if each.succeeded else "red"
+            cells.append(f"[{colour}]{exam.laps:.1f} of {each.teacher.laps:.1f}, {exam.collisions}{end}[/]")
+        numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
+        seeds.add_row(*map(str, numbers), *cells)
+
+    summary = Table(title=f"{len(results)} seeds", title_justify="left")
+    for heading in ("", "median", "quartiles", "paper"):
+        summary.add_column(heading, justify="left" if not heading else "right")
+    counted = (
+        ("RLAs", [len(result.lesson.rlas) for result in results], str(task.paper.rlas)),
+        ("asks", [result.lesson.asks for result in results], ""),
+        ("corrections", [result.lesson.corrections for result in results], ""),
+        ("teaching, s of robot time", [result.lesson.teaching_s for result in results], f"{task.paper.teaching_s:.0f}"),
+    )
+    for name, values, paper in counted:
+        low, median, high = quartiles(values)
+        summary.add_row(name, f"{median:.0f}", f"{low:.0f} to {high:.0f}", paper)
+
+    success = Table(title="Exams without teacher", title_justify="left")
+    for heading in ("world", "success", "95 % interval", "collided", "stuck", "laps, median", "unknown, median"):
+        success.add_column(heading, justify="left" if heading == "world" else "right")
+    for place, world in enumerate(worlds):
+        exams = [result.exams[place] for result in results]
+        passed = sum(each.succeeded for each in exams)
+        low, high = wilson_interval(passed, len(exams))
+        success.add_row(
+            world.upper() if len(world) == 1 else world,
+            f"{passed} of {len(exams)}",
+            f"{low:.0%} to {high:.0%}",
+            str(sum(each.learned.collisions > 0 for each in exams)),
+            str(sum(each.learned.stuck for each in exams)),
+            f"{quartiles([each.learned.laps for each in exams])[1]:.2f}",
+            f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
+        )
+    return Group(seeds, summary, success)
