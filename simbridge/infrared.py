@@ -17,16 +17,17 @@ _HIGHEST_COUNTS = 1023
 class InfraredSensors:
     """Readings in raw counts, in the order of the robot's sensor table; each changes only when its sensor measures."""
 
-    def __init__(self, settings: InfraredSettings, world: World, cycle_s: float, noise: Noise) -> None:
+    def __init__(self, settings: InfraredSettings, world: World, cycle_s: float, noise: Noise, robot: Noise) -> None:
+        """What this robot's sensors are is drawn from `robot`: gains and periods; what they do now from `noise`."""
         self._law = settings
         self._cycle_s = cycle_s
         self._noise = noise
         self._noise_share = settings.noise_share
         self._noise_least = settings.noise_least_counts
         count = len(settings.sensors)
-        self._gains = [1.0 + settings.gain_spread_share * share for share in noise.uniform(count)]
+        self._gains = [1.0 + settings.gain_spread_share * share for share in robot.uniform(count)]
         self._periods_s = [
-            max(cycle_s, settings.period_s + settings.period_spread_s * share) for share in noise.uniform(count)
+            max(cycle_s, settings.period_s + settings.period_spread_s * share) for share in robot.uniform(count)
         ]
         self._rays = [_rays_of(settings, i, world.settings.infrared_rays) for i in range(count)]
         self._ray_m = _RECESS_M + settings.far_m + 0.01  # so that a miss reads beyond far_m

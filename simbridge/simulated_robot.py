@@ -21,10 +21,16 @@ _LAPS_EVERY_CYCLES = 10
 
 
 class SimulatedRobot:
-    """The other end of the bus. Its time advances only by `step`; the same seed and frames give the same run."""
+    """The other end of the bus. Its time advances only by `step`; the same seeds and frames give the same run."""
 
-    def __init__(self, robot: RobotSettings, world: WorldSettings, bus: CanBus, seed: int) -> None:
-        """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down."""
+    def __init__(
+        self, robot: RobotSettings, world: WorldSettings, bus: CanBus, seed: int, *, robot_seed: int | None = None
+    ) -> None:
+        """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down.
+
+        `robot_seed` (`seed` unless given) says which robot of its kind it is: gains and periods of its sensors.
+        `seed` says which run: noise, phases, slip. So an exam can be driven by the robot that was taught.
+        """
         cycle_s = robot.can.cycle_s
         self.world = World(world)
         self._cycle_s = cycle_s
@@ -33,7 +39,8 @@ class SimulatedRobot:
         self._slip_noise = Noise(seed, "slip")
         self._wheels = Wheels(robot)
         self._body = Body(self.world, robot.geometry, cycle_s, self._slip_noise)
-        self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise)
+        build = Noise(seed if robot_seed is None else robot_seed, "robot")
+        self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise, build)
         self._bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = Collisions(cycle_s)
         self._laps = Laps(self.world)

@@ -45,11 +45,17 @@ def room(
 class Rig:
     """Robot and notebook; what the robot sent is kept in `heard`, newest frame of each message."""
 
-    def __init__(self, world: WorldSettings | None = None, seed: int = 1, robot: RobotSettings = ROBOT) -> None:
+    def __init__(
+        self,
+        world: WorldSettings | None = None,
+        seed: int = 1,
+        robot: RobotSettings = ROBOT,
+        robot_seed: int | None = None,
+    ) -> None:
         name = f"virtual:simbridge-test-{next(_numbers)}"
         self.robot_end, self.notebook = open_bus(name), open_bus(name)
         self._control_port = self.notebook.control_port()
-        self.robot = SimulatedRobot(robot, world or room(), self.robot_end, seed)
+        self.robot = SimulatedRobot(robot, world or room(), self.robot_end, seed, robot_seed=robot_seed)
         self.heard: dict[str, tuple[int, ...]] = {}
         self.frames = 0
         self.ticks = [0, 0]

@@ -28,6 +28,32 @@ def test_thirty_centimetres_read_189_give_or_take_gain_and_noise() -> None:
     assert max(gains) - min(gains) > 0.01
 
 
+def test_the_same_robot_in_another_run_has_its_gains_and_other_noise() -> None:
+    readings: dict[tuple[int, int], list[int]] = {}
+    for run in ((1, 5), (2, 5), (1, 6), (2, 6)):
+        seed, robot_seed = run
+        with Rig(seed=seed, robot_seed=robot_seed) as rig:
+            rig.robot.place(facing_wall(0.15))
+            readings[run] = []
+            for _ in range(600):
+                rig.step(STAND)
+                readings[run].append(rig.reading("s11"))
+    mean = {run: sum(counts) / len(counts) for run, counts in readings.items()}
+    assert readings[1, 5] != readings[2, 5]
+    assert mean[1, 5] == pytest.approx(mean[2, 5], rel=0.006)
+    assert mean[1, 6] == pytest.approx(mean[2, 6], rel=0.006)
+    assert abs(mean[1, 5] / mean[1, 6] - 1.0) > 0.012
+
+
+def test_without_a_robot_seed_the_run_says_which_robot() -> None:
+    hashes = []
+    for robot_seed in (None, 4):
+        with Rig(seed=4, robot_seed=robot_seed) as rig:
+            rig.run(0.5, STAND)
+            hashes.append(rig.robot.state_hash())
+    assert hashes[0] == hashes[1]
+
+
 def test_a_touching_wall_looks_far_because_readings_fold_back() -> None:
     with Rig(robot=quiet_robot()) as rig:
         readings = {}
