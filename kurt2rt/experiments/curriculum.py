@@ -10,7 +10,7 @@ from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult, teach
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -40,11 +40,19 @@ class CurriculumResult:
 
 
 async def run_lesson(
-    stage: Stage, settings: RobotSettings, task: TaskSettings, knowledge: Path, *, seed: int, report: Report
+    stage: Stage,
+    settings: RobotSettings,
+    task: TaskSettings,
+    knowledge: Path,
+    *,
+    seed: int,
+    report: Report,
+    on_saved: Callable[[Acknowledgement], None] = lambda _: None,
 ) -> tuple[LessonResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
 
-    Goes on from what the file holds already. Raises KnowledgeError, SettingsError, LessonLostError.
+    Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable.
+    Raises KnowledgeError, SettingsError, LessonLostError.
     """
     world, whole_s = task.teaching.world, task.teaching.duration_s
     with open_knowledge(knowledge, settings, task) as journal:
@@ -52,6 +60,12 @@ async def run_lesson(
         arena = stage.open(world, seed)
         try:
             with JournalWriter(journal, utc_now) as writer:
+
+                def on_progress(done_s: float) -> None:
+                    for acknowledgement in writer.acknowledged():
+                        on_saved(acknowledgement)
+                    report(f"teaching in world {world}", done_s, whole_s)
+
                 lesson = await teach(
                     arena,
                     settings,
@@ -59,7 +73,7 @@ async def run_lesson(
                     writer,
                     events,
                     seed=seed,
-                    on_progress=lambda done_s: report(f"teaching in world {world}", done_s, whole_s),
+                    on_progress=on_progress,
                 )
                 writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))
                 if not writer.flush(timeout_s=30.0):
