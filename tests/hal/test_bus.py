@@ -94,6 +94,24 @@ def test_a_full_queue_is_told_to_the_sender_and_nothing_that_was_taken_is_lost(e
     assert len(robot_end.drain()) == 1
 
 
+def test_any_other_listener_of_python_can_hears_the_same_frames(ends: Ends) -> None:
+    robot_end, far_end = ends
+    channel = robot_end.name.partition(":")[2]
+    with can.Bus(interface="virtual", channel=channel, rx_queue_size=3, ignore_config=True) as listener:
+        send(far_end, cycle()[:3])
+        heard = [listener.recv(0) for _ in range(3)]
+        assert [message.data for message in heard if message] == [frame.data for frame in cycle()[:3]]
+        assert all(message and message.timestamp > 0.0 and message.channel == channel for message in heard)
+
+        listener.send(can.Message(arbitration_id=0x09, is_extended_id=False, data=b"12345678"))
+        assert [bytes(message.data) for message in robot_end.drain()][3:] == [b"12345678"]
+
+        send(far_end, cycle()[:3])
+        with pytest.raises(BusError, match="a listener has too many frames waiting"):
+            send(far_end, cycle()[:1])
+    assert len(robot_end.drain()) == 4
+
+
 def test_a_bus_that_was_shut_down_says_so_and_can_be_opened_anew() -> None:
     robot_end, far_end = bus_pair()
     port = robot_end.telemetry_port()
