@@ -1,7 +1,7 @@
 """`kurt2rt run`."""
 
+import sys
 import uuid
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -14,8 +14,10 @@ from behaviors.repertoire import load_repertoire
 from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.app import open_robot
 from kurt2rt.cli.options import Seed
+from kurt2rt.cli.printer import Printer
+from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.rla.rla import Phase
-from kurt2rt.service import Screen, Status, serve
+from kurt2rt.service import Screen, Status, Watcher, serve
 from kurt2rt.service_settings import load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Command
@@ -38,9 +40,12 @@ def run(
         str | None, typer.Option(help="World of the simulated robot. Default: as the settings say.")
     ] = None,
     teacher: Annotated[
-        Literal["none", "scripted"],
-        typer.Option(help="scripted: the task's reference policy answers and corrects, for the simulated robot only."),
-    ] = "none",
+        Literal["none", "terminal", "scripted"],
+        typer.Option(
+            help="terminal: type actions and commands here; scripted: the task's reference policy answers and "
+            "corrects, for the simulated robot only; none: nobody."
+        ),
+    ] = "terminal",
     seconds: Annotated[
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
@@ -51,7 +56,8 @@ def run(
     The robot drives where it was taught to and stands where it was not: then it
     asks. Each lesson is in the knowledge file before it is acknowledged. A status
     line tells once a second what drives the wheels, which rule says so, and how
-    punctual the loop is.
+    punctual the loop is. Type an action to answer the robot's question, or to
+    correct it while it drives; "help" lists what else can be typed.
 
     With --robot can0 set the interface up first:
 
@@ -71,21 +77,43 @@ def run(
     console.print(f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends", highlight=False)
     if service.real_time_priority:
         console.print(take_real_time_priority(service.real_time_priority), highlight=False)
+    printer = Printer()
+
+    def say(text: str, style: str | None = None) -> None:
+        printer.put(lambda: console.print(text, style=style, markup=False, highlight=False, soft_wrap=True))
+
     screen = Screen(
-        status=lambda status: console.print(status_line(status), highlight=False),
-        question=lambda question: console.print(str(question), style="yellow", highlight=False),
+        # The line is made by the printer as well: the percentiles in it cost more than a tick.
+        status=lambda status: printer.put(
+            lambda: console.print(status_line(status), markup=False, highlight=False, soft_wrap=True)
+        ),
+        question=lambda question: say(str(question), "yellow"),
     )
-    watch = scripted_watch(task, robot_settings, seed) if teacher == "scripted" else None
-    with open_robot(robot_settings, robot, service.world, seed) as opened:
+    watch: Watcher | None = None
+    if teacher == "scripted":
+        watch = scripted_watch(task, robot_settings, seed)
+    elif teacher == "terminal":
+        actions = tuple(load_repertoire(task.repertoire, robot_settings))
+        person = TerminalTeacher(
+            sys.stdin,
+            actions,
+            lambda text: say(text, "cyan"),
+            session=new_session("terminal"),
+        )
+        console.print(person.help, style="cyan", highlight=False)
+        person.start()
+        watch = person.watch
+    with printer, open_robot(robot_settings, robot, service.world, seed) as opened:
 
         async def serve_it() -> Status | None:
             return await serve(opened, robot_settings, service, task, screen, teacher=watch, duration_s=seconds)
 
         last = anyio.run(serve_it)
-    console.print("the robot stands; every lesson is saved" if last is None else closing_line(last), highlight=False)
+    count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
+    console.print(f"the robot stands{count}", highlight=False)
 
 
-def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Callable[[TickRecord], Command | None]:
+def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watcher:
     """The scripted teacher for a run in real time: answers, and corrects after the task's time of phase 1."""
     period_s = robot.can.cycle_s
     teacher = ScriptedTeacher(
@@ -94,7 +122,7 @@ def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Calla
         task.teaching.teacher,
         period_s=period_s,
         seed=seed,
-        session=new_session(),
+        session=new_session("scripted"),
     )
     corrections_from = round(task.teaching.supervised_s / period_s)
 
@@ -134,11 +162,6 @@ def status_line(status: Status) -> str:
     return " | ".join(parts)
 
 
-def closing_line(last: Status) -> str:
-    """What stands at the end."""
-    return f"the robot stands; {len(last.runtime.level.system)} RLAs are saved"
-
-
-def new_session() -> str:
+def new_session(teacher: str) -> str:
     """A name that no earlier session has, for the ids of this session's commands."""
-    return f"scripted-{uuid.uuid4().hex[:12]}"
+    return f"{teacher}-{uuid.uuid4().hex[:12]}"

@@ -35,7 +35,8 @@ class School:
 
     def attend(self, command: Command, situation: Situation, tick: int) -> tuple[CommandResult, TeachingEvent | None]:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
-        if self.has_taken(command.command_id):
+        # A stop that comes twice stops twice: it may be the second one that is meant.
+        if self.has_taken(command.command_id) and not isinstance(command, Stop):
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
         result, event = self._carry_out(command, situation, tick)
         if result.accepted:

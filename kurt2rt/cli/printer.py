@@ -1,0 +1,42 @@
+"""Prints outside the loop: a terminal that blocks must not hold up a tick."""
+
+import queue
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+_CAPACITY = 200
+
+
+class Printer:
+    """A thread that runs what it is given, in order. When it cannot keep up, what comes is dropped and counted."""
+
+    def __init__(self) -> None:
+        self._jobs: queue.Queue[Callable[[], None] | None] = queue.Queue(_CAPACITY)
+        self._thread = threading.Thread(target=self._run, name="printer", daemon=True)
+        self.dropped = 0
+
+    def put(self, job: Callable[[], None]) -> None:
+        """Run `job` soon; never waits."""
+        try:
+            self._jobs.put_nowait(job)
+        except queue.Full:
+            self.dropped += 1
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self._jobs.put(None, timeout=1.0)
+        except queue.Full:
+            return  # whoever reads the terminal has stopped reading; the thread ends with the process
+        self._thread.join(timeout=1.0)
+
+    def _run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            job()
