@@ -1,0 +1,90 @@
+"""How long the teacher waits until a lesson is safe."""
+
+import os
+import random
+import time
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+import anyio
+from anyio import to_thread
+
+from kurt2rt.bench.result import Goal, Reference, Result, share_of
+from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge
+from kurt2rt.experiments.curriculum import LessonLostError
+from kurt2rt.runtime import build_runtime
+from kurt2rt.teaching.commands import Teach
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.quiet_gc import quiet_gc
+from kurt2rt.timing.timerfd import TimerfdClock
+
+P99_LIMIT_US = 20_000.0
+_PATIENCE_S = 10.0
+
+
+async def measure_lessons(subject: Subject, folder: Path, lessons: int, on_progress: OnProgress) -> Result:
+    """From a command of the teacher, over the tick that takes it, to the journal in `folder` that has it durable.
+
+    In turns with a bare fsync there. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
+    """
+    period_s = subject.settings.can.cycle_s
+    chance = random.Random(SEED)
+    took_ns: list[int] = []
+    sync_ns: list[int] = []
+    place = subject.open_place()
+    try:
+        with (
+            kept_knowledge(subject, folder / "lesson.knowledge") as writer,
+            (folder / "sync").open("wb", buffering=0) as file,
+            TimerfdClock() as clock,
+            place.live(),
+            quiet_gc(),
+        ):
+            runtime = build_runtime(place.arena.robot, subject.settings, subject.task, subject.events, writer, clock)
+            actions = tuple(runtime.level.repertoire)
+            taken = anyio.Event()
+
+            def after_tick(record: TickRecord) -> None:
+                if record.results:
+                    taken.set()
+
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(partial(runtime.scheduler.run, None, after_tick))
+                for number in range(lessons):
+                    sync_ns.append(await to_thread.run_sync(_sync, file))
+                    # The teacher does not know when ticks begin.
+                    await anyio.sleep(chance.uniform(0.0, 2 * period_s))
+                    taken = anyio.Event()
+                    begun_ns = time.perf_counter_ns()
+                    # In turns, so that one where the robot stands still is never what the robot knows already.
+                    runtime.inbox.put(Teach(f"bench-lesson-{number}", "bench", actions[number % 2]))
+                    await taken.wait()
+                    if not await to_thread.run_sync(writer.flush, _PATIENCE_S):
+                        break
+                    took_ns.append(time.perf_counter_ns() - begun_ns)
+                runtime.scheduler.end()
+            durable = sum(each.sequence is not None for each in writer.acknowledged())
+            if durable < lessons:
+                why = writer.trouble or f"{folder}: the disk did not answer within {_PATIENCE_S:g} s"
+                raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
+    finally:
+        place.arena.close()
+    on_progress(1.0)
+    took = share_of(took_ns)
+    return Result(
+        "lesson",
+        "lesson durable after its command",
+        took,
+        Reference("median of a bare fsync", share_of(sync_ns).median_us, took.median_us),
+        (Goal("p99 in us", took.p99_us, P99_LIMIT_US),),
+        f"{lessons} lessons, the wait for the next tick ({period_s * 500:g} ms on average) included",
+    )
+
+
+def _sync(file: BinaryIO) -> int:
+    """Nanoseconds until one page is durable."""
+    file.write(bytes(4096))
+    begun_ns = time.perf_counter_ns()
+    os.fsync(file.fileno())
+    return time.perf_counter_ns() - begun_ns

@@ -1,0 +1,62 @@
+"""What a benchmark measured, with a reference from the same run and the goals beside it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from kurt2rt.timing.ledger import Share
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What else took how long in the same run: a ratio says more about a program than a time on some machine."""
+
+    what: str
+    took_us: float
+    result_us: float
+    """The median or the p99 of the result, whichever is compared."""
+
+    @property
+    def ratio(self) -> float:
+        """How many times longer the reference took."""
+        return self.took_us / max(self.result_us, 1e-3)
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """One number and the limit it should keep."""
+
+    what: str
+    """Names the number and its unit, as in `p99 in us`."""
+    measured: float
+    limit: float
+    at_least: bool = False
+    """True where more is better."""
+
+    @property
+    def met(self) -> bool:
+        """Whether the number keeps its limit."""
+        return self.measured >= self.limit if self.at_least else self.measured <= self.limit
+
+    def __str__(self) -> str:
+        return f"{self.what} {'>=' if self.at_least else '<='} {self.limit:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """One row of the report."""
+
+    bench: str
+    what: str
+    took: Share
+    reference: Reference | None = None
+    goals: tuple[Goal, ...] = ()
+    note: str = ""
+    """What one has to know to read the numbers."""
+
+
+def share_of(took_ns: Sequence[int]) -> Share:
+    """Median, p99 and worst of times in nanoseconds."""
+    median, p99, worst = np.percentile(took_ns, (50, 99, 100)) / 1000.0
+    return Share(float(median), float(p99), float(worst))

@@ -1,0 +1,89 @@
+"""`kurt2rt bench`."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import anyio
+import typer
+from rich.console import Console
+from rich.progress import Progress
+
+from hal.robot_settings import RobotSettings, load_robot
+from kurt2rt.bench.report import as_json, look_at_machine, print_report
+from kurt2rt.bench.subject import SEED, OnProgress, Place, Subject
+from kurt2rt.bench.suite import FULL, QUICK, Bench, run_suite
+from kurt2rt.tasks.settings import load_task
+
+
+def bench(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Measure less, in under 20 s; rare lateness may hide.")
+    ] = False,
+    only: Annotated[
+        str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(Bench)}.", show_default=False)
+    ] = ",".join(Bench),
+    json: Annotated[Path | None, typer.Option("--json", help="Also write the results to this file, as JSON.")] = None,
+    folder: Annotated[
+        Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
+    ] = Path(),
+) -> None:
+    """Measure what the runtime takes, on this machine, with the simulated robot.
+
+    lateness: how late ticks begin in a minute of driving, beside a bare
+    asyncio.sleep loop. tick: what each stage of these ticks takes. match: how long
+    the nearest of 135, 1000 and 100000 RLAs is sought, beside a brute force. loop:
+    how many times real time a lesson in lockstep runs on one core. lesson: how
+    long a teacher waits until a lesson is durable, beside a bare fsync.
+
+    The ratio says how many times longer the reference took in the same run. The
+    goals are meant for an idle machine; a benchmark informs and ends with code 0
+    whether they are met or not.
+    """
+    benches = _chosen(only)
+    machine = look_at_machine()
+    settings = load_robot()
+    task = load_task("wall_following")
+    subject = Subject(settings, task, partial(_open_place, settings, task.teaching.world))
+    # A bar that redraws itself would do so in the middle of what is measured.
+    with (
+        Progress(console=Console(stderr=True), auto_refresh=False) as progress,
+        tempfile.TemporaryDirectory(prefix=".kurt2rt-bench-", dir=folder) as scratch,
+    ):
+
+        def progress_of(what: str) -> OnProgress:
+            task_id = progress.add_task(what, total=1.0)
+            progress.refresh()
+            return lambda share: progress.update(task_id, completed=share, refresh=True)
+
+        results = anyio.run(run_suite, benches, subject, Path(scratch), QUICK if quick else FULL, progress_of)
+    if json is not None:
+        json.write_text(as_json(results, machine) + "\n", encoding="utf-8")
+    print_report(results, machine, Console())
+
+
+def _open_place(settings: RobotSettings, world: str) -> Place:
+    """The simulated robot in a world, both in lockstep and in real time."""
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.simulated import SimulatedArena
+    from simbridge.realtime import RealtimeSimulation
+
+    arena = SimulatedArena(settings, world, SEED)
+
+    @contextmanager
+    def live() -> Iterator[None]:
+        with RealtimeSimulation(arena.simulation, settings.can.cycle_s), arena.robot.watchdog:
+            yield
+
+    return Place(arena, live)
+
+
+def _chosen(names: str) -> frozenset[Bench]:
+    chosen = {name.strip() for name in names.split(",")}
+    unknown = sorted(chosen - set(Bench))
+    if unknown:
+        raise typer.BadParameter(f"--only: there is no {', '.join(unknown)}; there are {', '.join(Bench)}")
+    return frozenset(map(Bench, chosen))
