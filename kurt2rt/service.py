@@ -62,10 +62,8 @@ async def serve(
     knowledge = Path(service.knowledge)
     knowledge.parent.mkdir(parents=True, exist_ok=True)
     last: Status | None = None
-    with (
-        open_knowledge(knowledge, settings, task) as journal,
-        TimerfdClock() as clock,
-    ):
+    with TimerfdClock() as clock:
+        journal = open_knowledge(knowledge, settings, task)
         events, saved = journal.events(), journal.statistics()
         counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
         with JournalWriter(journal, utc_now) as writer:

@@ -24,15 +24,18 @@ if TYPE_CHECKING:
 class SimulatedArena:
     """The simulated KURT2 in one world, on an in-process CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
+    def __init__(self, settings: RobotSettings, world: str, seed: int, purpose: str) -> None:
+        """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise."""
         self._world = load_world(world, settings)
+        self._cycle_s = settings.can.cycle_s
+        chance = random.Random(f"{purpose} in world {world}, seed {seed}")
         # Two arenas in one process must not hear each other.
         spec = f"virtual:{uuid.uuid4()}"
         self._far_end = open_bus(spec)
-        self.simulation = SimulatedRobot(settings, self._world, self._far_end, seed)
+        self.simulation = SimulatedRobot(settings, self._world, self._far_end, chance.getrandbits(32), robot_seed=seed)
         self.robot = Kurt2(settings, open_bus(spec))
         self._starts = [start.pose for start in self._world.start_poses]
-        self.simulation.place(random.Random(f"start {world} {seed}").choice(self._starts))
+        self.simulation.place(chance.choice(self._starts))
 
     @property
     def position(self) -> Position:
@@ -68,6 +71,12 @@ class SimulatedArena:
 
         self.simulation.place(min(self._starts, key=squared_distance))
 
+    @contextmanager
+    def live(self) -> Iterator[None]:
+        """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
+        with RealtimeSimulation(self.simulation, self._cycle_s), self.robot.watchdog:
+            yield
+
     def close(self) -> None:
         """Stop the robot and shut both ends of the bus."""
         self.robot.close()
@@ -80,9 +89,9 @@ class SimulatedStage:
 
     settings: RobotSettings
 
-    def open(self, world: str, seed: int) -> SimulatedArena:
+    def open(self, world: str, seed: int, purpose: str) -> SimulatedArena:
         """The simulated robot in a world."""
-        return SimulatedArena(self.settings, world, seed)
+        return SimulatedArena(self.settings, world, seed, purpose)
 
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
@@ -95,9 +104,9 @@ def simulated_robot(settings: RobotSettings, world: str, seed: int) -> Iterator[
 
     Raises SettingsError, and on leaving whatever ended the simulation.
     """
-    arena = SimulatedArena(settings, world, seed)
+    arena = SimulatedArena(settings, world, seed, "run")
     try:
-        with RealtimeSimulation(arena.simulation, settings.can.cycle_s), arena.robot.watchdog:
+        with arena.live():
             yield arena.robot
             # While the simulation still runs, so that the last frame finds a listener.
             arena.robot.emergency_stop("the run is over")

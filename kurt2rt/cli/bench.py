@@ -1,9 +1,6 @@
 """`kurt2rt bench`."""
 
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -12,9 +9,9 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from hal.robot_settings import RobotSettings, load_robot
+from hal.robot_settings import load_robot
 from kurt2rt.bench.report import as_json, look_at_machine, print_report
-from kurt2rt.bench.subject import SEED, OnProgress, Place, Subject
+from kurt2rt.bench.subject import SEED, OnProgress, Subject
 from kurt2rt.bench.suite import FULL, QUICK, Bench, run_suite
 from kurt2rt.tasks.settings import load_task
 
@@ -43,11 +40,15 @@ def bench(
     goals are meant for an idle machine; a benchmark informs and ends with code 0
     whether they are met or not.
     """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.simulated import SimulatedStage
+
     benches = _chosen(only)
     machine = look_at_machine()
     settings = load_robot()
     task = load_task("wall_following")
-    subject = Subject(settings, task, partial(_open_place, settings, task.teaching.world))
+    stage = SimulatedStage(settings)
+    subject = Subject(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
     # A bar that redraws itself would do so in the middle of what is measured.
     with (
         Progress(console=Console(stderr=True), auto_refresh=False) as progress,
@@ -63,22 +64,6 @@ def bench(
     if json is not None:
         json.write_text(as_json(results, machine) + "\n", encoding="utf-8")
     print_report(results, machine, Console())
-
-
-def _open_place(settings: RobotSettings, world: str) -> Place:
-    """The simulated robot in a world, both in lockstep and in real time."""
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import SimulatedArena
-    from simbridge.realtime import RealtimeSimulation
-
-    arena = SimulatedArena(settings, world, SEED)
-
-    @contextmanager
-    def live() -> Iterator[None]:
-        with RealtimeSimulation(arena.simulation, settings.can.cycle_s), arena.robot.watchdog:
-            yield
-
-    return Place(arena, live)
 
 
 def _chosen(names: str) -> frozenset[Bench]:

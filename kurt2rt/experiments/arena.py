@@ -59,8 +59,12 @@ class Arena(Protocol):
 class Stage(Protocol):
     """Opens arenas and draws their worlds."""
 
-    def open(self, world: str, seed: int) -> Arena:
-        """The robot in a world, by name; the seed decides start pose and all chance in it."""
+    def open(self, world: str, seed: int, purpose: str) -> Arena:
+        """The robot in a world, by name.
+
+        The seed makes the robot, with the spread of its sensors, so a robot is examined with the sensors it was taught
+        with; seed and purpose ("lesson", "exam") together make the start pose and the noise.
+        """
         ...
 
     def draw(self, axes: "Axes", world: str) -> None:

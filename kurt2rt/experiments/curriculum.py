@@ -55,32 +55,25 @@ async def run_lesson(
     Raises KnowledgeError, SettingsError, LessonLostError.
     """
     world, whole_s = task.teaching.world, task.teaching.duration_s
-    with open_knowledge(knowledge, settings, task) as journal:
-        events = journal.events()
-        arena = stage.open(world, seed)
+    journal = open_knowledge(knowledge, settings, task)
+    events = journal.events()
+    with JournalWriter(journal, utc_now) as writer:
+
+        def on_progress(done_s: float) -> None:
+            for acknowledgement in writer.acknowledged():
+                on_saved(acknowledgement)
+            report(f"teaching in world {world}", done_s, whole_s)
+
+        arena = stage.open(world, seed, "lesson")
         try:
-            with JournalWriter(journal, utc_now) as writer:
-
-                def on_progress(done_s: float) -> None:
-                    for acknowledgement in writer.acknowledged():
-                        on_saved(acknowledgement)
-                    report(f"teaching in world {world}", done_s, whole_s)
-
-                lesson = await teach(
-                    arena,
-                    settings,
-                    task,
-                    writer,
-                    events,
-                    seed=seed,
-                    on_progress=on_progress,
-                )
-                writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))
-                if not writer.flush(timeout_s=30.0):
-                    raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
+            lesson = await teach(arena, settings, task, writer, events, seed=seed, on_progress=on_progress)
         finally:
             arena.close()
-        return lesson, journal.events()
+        writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))
+        if not writer.flush(timeout_s=30.0):
+            raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
+        on_progress(whole_s)
+    return lesson, read_lessons(knowledge, settings, task)
 
 
 def read_lessons(knowledge: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:
@@ -103,7 +96,7 @@ async def run_exams(
 
     async def drive(world: str, *, by_teacher: bool) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
-        arena = stage.open(world, seed)
+        arena = stage.open(world, seed, "exam")
         try:
             return await examine(
                 arena,
