@@ -36,7 +36,7 @@ async def measure_closed_loop(
             on_progress(blocks_done / blocks)
         begun_ns = time.perf_counter_ns()
 
-    arena = subject.open_place().arena
+    arena = subject.open_arena("bench closed_loop")
     try:
         with on_one_core() as core, kept_knowledge(subject, folder / "closed_loop.knowledge") as writer:
             lesson = await teach(
@@ -45,11 +45,11 @@ async def measure_closed_loop(
     finally:
         arena.close()
     tick = share_of(tick_ns)
-    reference = Reference("the period", period_s * 1e6, tick.median_us)
+    reference = Reference("period", period_s * 1e6, tick.median_us)
     best = period_s * 1e9 / min(tick_ns)
     return Result(
         "loop",
-        "closed loop in lockstep, one tick",
+        "closed loop, a tick",
         tick,
         reference,
         (Goal("ratio", reference.ratio, TIMES_REAL_TIME, at_least=True),),

@@ -9,7 +9,7 @@ TIMES_BETTER = 5.0
 
 def lateness_result(run: RealTimeRun) -> Result:
     """Lateness of the ticks of a run beside that of the bare loop in the same run."""
-    reference = Reference("p99 of a bare asyncio.sleep loop", run.asyncio_lateness.p99_us, run.lateness.p99_us)
+    reference = Reference("asyncio.sleep, p99", run.asyncio_lateness.p99_us, run.lateness.p99_us)
     return Result(
         "lateness",
         "tick begins late",
@@ -17,7 +17,7 @@ def lateness_result(run: RealTimeRun) -> Result:
         reference,
         (
             Goal("ratio", reference.ratio, TIMES_BETTER, at_least=True),
-            Goal("missed ticks", run.missed_ticks, 0),
+            Goal("missed", run.missed_ticks, 0),
         ),
         f"{run.ticks} ticks, {run.missed_ticks} missed; {run.rlas} RLAs, "
         f"driving in {run.driving_share:.0%} of the ticks",

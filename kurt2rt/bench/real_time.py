@@ -51,10 +51,10 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
     period_s = subject.settings.can.cycle_s
     asyncio_ledger = Ledger()
     driving = 0
-    place = subject.open_place()
+    arena = subject.open_arena("bench real_time")
     try:
         with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, quiet_gc():
-            runtime = build_runtime(place.arena.robot, subject.settings, subject.task, subject.events, writer, clock)
+            runtime = build_runtime(arena.robot, subject.settings, subject.task, subject.events, writer, clock)
             teacher = ScriptedTeacher(
                 build_policy(subject.task.policy, subject.settings.infrared),
                 tuple(runtime.level.repertoire),
@@ -77,7 +77,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
                     writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
 
             for number in range(turns.rounds):
-                with place.live():
+                with arena.live():
                     # The controller's cycle and ours are not in step: each round meets another phase of it.
                     await clock.wait_until(clock.now_s() + period_s * number / turns.rounds)
                     await runtime.scheduler.run(turns.ticks, after_tick)
@@ -85,7 +85,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
                 # Only here: drawing a progress bar takes milliseconds that would show as lateness.
                 on_progress((number + 1) / turns.rounds)
     finally:
-        place.arena.close()
+        arena.close()
     ledger = runtime.ledger
     return RealTimeRun(
         ticks=turns.rounds * turns.ticks,

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -45,17 +46,19 @@ def as_json(results: Sequence[Result], machine: Machine) -> str:
 
 def print_report(results: Sequence[Result], machine: Machine, console: Console) -> None:
     """One table, what one has to know to read it, and how busy the machine was."""
-    table = Table()
-    for heading in ("what", "median us", "p99 us", "reference", "its us", "ratio", "goal", "met"):
-        table.add_column(heading, justify="right" if heading.endswith("us") or heading == "ratio" else "left")
+    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for heading in ("what", "median us", "p99 us", "reference", "us", "ratio", "goal", "met"):
+        number = heading in ("median us", "p99 us", "us", "ratio")
+        # A goal's verdict stands beside it only while neither wraps.
+        table.add_column(heading, justify="right" if number else "left", overflow="fold", no_wrap=heading == "goal")
     for result in results:
         reference = result.reference
         table.add_row(
             result.what,
-            f"{result.took.median_us:.1f}",
-            f"{result.took.p99_us:.1f}",
+            _shown(result.took.median_us),
+            _shown(result.took.p99_us),
             reference.what if reference else "",
-            f"{reference.took_us:.1f}" if reference else "",
+            _shown(reference.took_us) if reference else "",
             f"{reference.ratio:.2f}" if reference else "",
             "\n".join(map(str, result.goals)),
             Text("\n").join(Text("yes", "green") if goal.met else Text("no", "bold red") for goal in result.goals),
@@ -63,7 +66,7 @@ def print_report(results: Sequence[Result], machine: Machine, console: Console) 
     console.print(table)
     for result in results:
         if result.note:
-            console.print(Text(f"{result.what.strip()}: worst {result.took.worst_us:.1f} us; {result.note}"))
+            console.print(Text(f"{result.what.strip()}: worst {_shown(result.took.worst_us)} us; {result.note}"))
     busy = ", ".join(f"{load:.2f}" for load in machine.load_before)
     console.print(
         Text(
@@ -71,3 +74,7 @@ def print_report(results: Sequence[Result], machine: Machine, console: Console) 
             f"a load average of {busy} before the run; Python {machine.python}, numpy {machine.numpy}."
         )
     )
+
+
+def _shown(time_us: float) -> str:
+    return f"{time_us:.0f}" if time_us >= 1000 else f"{time_us:.1f}"

@@ -28,7 +28,7 @@ class Goal:
     """One number and the limit it should keep."""
 
     what: str
-    """Names the number and its unit, as in `p99 in us`."""
+    """Names the number and its unit, as in `p99 us`."""
     measured: float
     limit: float
     at_least: bool = False

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena
@@ -20,13 +21,12 @@ OnProgress = Callable[[float], None]
 SEED = 1
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class LiveArena(Arena, Protocol):
     """An arena that can also go on by itself, in real time."""
 
-    arena: Arena
-    live: Callable[[], AbstractContextManager[object]]
-    """The world goes on while the context lasts, the watchdog awake; may be entered again and again."""
+    def live(self) -> AbstractContextManager[object]:
+        """The world goes on while the context lasts, the second guard awake; may be entered again and again."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,8 @@ class Subject:
 
     settings: RobotSettings
     task: TaskSettings
-    open_place: Callable[[], Place]
-    """Sets the robot down in the world that the task is taught in."""
+    open_arena: Callable[[str], LiveArena]
+    """Sets the robot down in the world that the task is taught in, for a purpose."""
     events: tuple[TeachingEvent, ...] = ()
 
 
@@ -57,7 +57,7 @@ async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) ->
     """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
     notebook = _Notebook()
     task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
-    arena = subject.open_place().arena
+    arena = subject.open_arena("lesson")
     try:
         await teach(
             arena,
@@ -70,7 +70,7 @@ async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) ->
         )
     finally:
         arena.close()
-    return Subject(subject.settings, subject.task, subject.open_place, tuple(notebook.events))
+    return Subject(subject.settings, subject.task, subject.open_arena, tuple(notebook.events))
 
 
 def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:

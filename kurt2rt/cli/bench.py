@@ -23,27 +23,31 @@ def bench(
     only: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(Bench)}.", show_default=False)
     ] = ",".join(Bench),
-    json: Annotated[Path | None, typer.Option("--json", help="Also write the results to this file, as JSON.")] = None,
+    json: Annotated[
+        Path | None, typer.Option("--json", dir_okay=False, help="Also write the results to this file, as JSON.")
+    ] = None,
     folder: Annotated[
         Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
     ] = Path(),
 ) -> None:
     """Measure what the runtime takes, on this machine, with the simulated robot.
 
-    lateness: how late ticks begin in a minute of driving, beside a bare
-    asyncio.sleep loop. tick: what each stage of these ticks takes. match: how long
-    the nearest of 135, 1000 and 100000 RLAs is sought, beside a brute force. loop:
-    how many times real time a lesson in lockstep runs on one core. lesson: how
-    long a teacher waits until a lesson is durable, beside a bare fsync.
+    lateness  how late ticks begin in a minute of driving; asyncio.sleep beside it
+    tick      what each stage of these ticks takes
+    match     how long the nearest RLA is sought; a brute force beside it
+    loop      how many times real time a lesson in lockstep runs on one core
+    lesson    how long a teacher waits until a lesson is durable; fsync beside it
 
     The ratio says how many times longer the reference took in the same run. The
-    goals are meant for an idle machine; a benchmark informs and ends with code 0
+    goals are meant for an idle machine; a benchmark informs, and ends with code 0
     whether they are met or not.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage
 
     benches = _chosen(only)
+    if json is not None and not json.absolute().parent.is_dir():
+        raise typer.BadParameter(f"there is no folder {json.parent}; make it first", param_hint="--json")
     machine = look_at_machine()
     settings = load_robot()
     task = load_task("wall_following")
@@ -61,14 +65,16 @@ def bench(
             return lambda share: progress.update(task_id, completed=share, refresh=True)
 
         results = anyio.run(run_suite, benches, subject, Path(scratch), QUICK if quick else FULL, progress_of)
+    print_report(results, machine, Console())
     if json is not None:
         json.write_text(as_json(results, machine) + "\n", encoding="utf-8")
-    print_report(results, machine, Console())
 
 
 def _chosen(names: str) -> frozenset[Bench]:
     chosen = {name.strip() for name in names.split(",")}
     unknown = sorted(chosen - set(Bench))
     if unknown:
-        raise typer.BadParameter(f"--only: there is no {', '.join(unknown)}; there are {', '.join(Bench)}")
+        raise typer.BadParameter(
+            f"there is no {', '.join(unknown)}; give some of {', '.join(Bench)}", param_hint="--only"
+        )
     return frozenset(map(Bench, chosen))
