@@ -14,6 +14,7 @@ knowledge = typer.Typer(
     help="Look after what the robot was taught. Reads the file also while a robot runs on it; changes nothing.",
     no_args_is_help=True,
 )
+_WIDE = 140
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
 
 
@@ -24,7 +25,10 @@ def show(
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
-        Console().print(render_knowledge(journal, limit))
+        console = Console()
+        if not console.is_terminal:
+            console = Console(width=_WIDE)  # into a file or a pager the table goes at its full width
+        console.print(render_knowledge(journal, limit, wide=console.width >= _WIDE))
 
 
 @knowledge.command()

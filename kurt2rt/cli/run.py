@@ -147,7 +147,7 @@ def status_line(status: Status) -> str:
         doing = f"stands: {decision.cause.value}"
     lateness = runtime.ledger.lateness()
     parts = [
-        f"{record.now_s:10.1f} s",
+        f"{record.tick * runtime.robot.can.cycle_s:8.1f} s",
         f"{doing:<48}",
         f"{len(runtime.level.system):3d} RLAs",
         f"late {lateness.median_us / 1000:.2f} ms, p99 {lateness.p99_us / 1000:.2f} ms",

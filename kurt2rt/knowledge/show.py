@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -17,29 +18,33 @@ _TELLING_FEATURES = 3
 _FOLLOW_UPS = 3
 
 
-def render_knowledge(journal: Journal, limit: int | None = None) -> RenderableType:
-    """Binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError."""
+def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool = True) -> RenderableType:
+    """Binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError.
+
+    `wide` also shows each RLA's largest features and what follows it, for which 80 columns are too few.
+    """
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = journal.entries()
     rlas = fold_journal(journal, radius=math.inf).rlas
     statistics = journal.statistics()
     taught = {entry.event.origin.command_id: entry for entry in entries}
     shares = follow_ups(statistics)
-    table = _empty_table()
+    table = _empty_table(wide=wide)
     for rla in rlas[:limit]:
         entry = taught[rla.origin.command_id]
-        table.add_row(
+        cells: list[str | Text] = [
             str(rla.rla_id),
             _plain(rla.action),
             _plain(entry.event.instead_of if isinstance(entry.event, ActionReplaced) else ""),
-            _plain(rla.origin.teacher),
-            rla.origin.phase.name.lower(),
-            _plain(entry.stamped_at),
+            _plain(f"{entry.stamped_at[:19].replace('T', ' ')}, {rla.origin.teacher}"),
+            f"{rla.origin.phase.value}",
             str(rla.origin.tick),
             str(statistics.uses.get(rla.rla_id, 0)),
-            _plain(_telling(rla, journal.binding.feature_names)),
-            _followed_by(shares.get(rla.rla_id, {})),
-        )
+        ]
+        if wide:
+            cells.append(_plain(_telling(rla, journal.binding.feature_names)))
+            cells.append(_followed_by(shares.get(rla.rla_id, {})))
+        table.add_row(*cells)
     hidden = len(rlas) - table.row_count
     parts: list[RenderableType] = [_plain(_bound_to(journal)), _plain(_summary(entries, len(rlas))), table]
     if hidden:
@@ -47,12 +52,14 @@ def render_knowledge(journal: Journal, limit: int | None = None) -> RenderableTy
     return Group(*parts)
 
 
-def _empty_table() -> Table:
-    table = Table()
-    for heading in ("RLA", "action", "instead of", "taught by", "phase", "when (UTC)", "tick", "uses"):
-        table.add_column(heading, justify="right" if heading in ("RLA", "tick", "uses") else "left")
-    table.add_column("largest features")
-    table.add_column("followed by")
+def _empty_table(*, wide: bool) -> Table:
+    table = Table(box=SIMPLE_HEAD)
+    for heading in ("RLA", "action", "instead of", "taught (UTC), by", "phase", "tick", "uses"):
+        right = heading in ("RLA", "phase", "tick", "uses")
+        table.add_column(heading, justify="right" if right else "left", overflow="fold", no_wrap=right)
+    if wide:
+        table.add_column("largest features")
+        table.add_column("followed by")
     return table
 
 
