@@ -1,0 +1,66 @@
+"""No collection within, all as before after it."""
+
+import gc
+import weakref
+from collections.abc import Iterator
+
+import pytest
+
+from kurt2rt.timing.quiet_gc import quiet_gc
+
+
+class Loop:
+    """Holds itself, so that only the collector can free it."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+@pytest.fixture(autouse=True)
+def collector_as_it_was() -> Iterator[None]:
+    enabled = gc.isenabled()
+    yield
+    if enabled:
+        gc.enable()
+    else:
+        gc.disable()
+
+
+def test_nothing_is_collected_until_the_end() -> None:
+    gc.enable()
+    with quiet_gc():
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
+
+
+def test_an_error_is_an_end_too() -> None:
+    gc.enable()
+    with pytest.raises(KeyError), quiet_gc():
+        raise KeyError
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
+
+
+def test_garbage_from_before_is_gone_first() -> None:
+    gone = weakref.ref(Loop())
+    with quiet_gc():
+        assert gone() is None
+
+
+def test_who_collects_by_hand_goes_on_doing_so() -> None:
+    gc.disable()
+    with quiet_gc():
+        pass
+    assert not gc.isenabled()
+
+
+def test_one_within_another_changes_nothing() -> None:
+    gc.enable()
+    with quiet_gc():
+        with quiet_gc():
+            pass
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+    assert gc.isenabled()

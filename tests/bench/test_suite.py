@@ -1,0 +1,60 @@
+"""All benchmarks in one run, tiny."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.bench.match import Size
+from kurt2rt.bench.real_time import Turns
+from kurt2rt.bench.subject import OnProgress, Subject
+from kurt2rt.bench.suite import FULL, QUICK, Bench, Lengths, run_suite
+
+TINY = Lengths(
+    learning_s=6.0,
+    turns=Turns(rounds=1, ticks=20, reference_ticks=2),
+    sizes=(Size(20, 10.0, 20),),
+    loop_blocks=1,
+    loop_block_s=1,
+    lessons=2,
+)
+
+
+class Jobs:
+    """The names of the jobs that were begun."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def __call__(self, what: str) -> OnProgress:
+        self.names.append(what)
+        return lambda _: None
+
+
+async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(untaught: Subject, tmp_path: Path) -> None:
+    jobs = Jobs()
+    results = await run_suite(tuple(Bench), untaught, tmp_path, TINY, jobs)
+    assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in Bench]
+    assert len(jobs.names) == 5
+    assert all(result.goals for result in results if not result.what.startswith("  "))
+
+
+@pytest.mark.parametrize(
+    ("chosen", "jobs_begun"),
+    [
+        (Bench.MATCH, ["matching"]),
+        (Bench.TICK, ["teaching, to have something to drive with", "driving in real time"]),
+    ],
+)
+async def test_only_what_is_asked_for_is_measured(
+    chosen: Bench, jobs_begun: list[str], untaught: Subject, tmp_path: Path
+) -> None:
+    jobs = Jobs()
+    results = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)
+    assert {result.bench for result in results} == {chosen}
+    assert jobs.names == jobs_begun
+
+
+def test_a_full_run_drives_a_minute_and_a_quick_one_five_seconds() -> None:
+    assert FULL.turns.rounds * FULL.turns.ticks == 6000
+    assert QUICK.turns.rounds * QUICK.turns.ticks == 500
+    assert FULL.loop_block_s == QUICK.loop_block_s == 20
