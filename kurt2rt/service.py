@@ -60,7 +60,6 @@ async def serve(
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError.
     """
     knowledge = Path(service.knowledge)
-    knowledge.parent.mkdir(parents=True, exist_ok=True)
     last: Status | None = None
     with TimerfdClock() as clock:
         journal = open_knowledge(knowledge, settings, task)
