@@ -2,9 +2,11 @@
 
 import math
 from threading import RLock
+from typing import NamedTuple
 
 from hal.bus import BusError, CanBus
 from hal.control import control_frame, encode_brake, set_point
+from hal.frame import Frame
 from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings
 
@@ -21,6 +23,15 @@ SLEW_LIMIT = "slew limit"
 BUS_LOST = "bus lost"
 
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
+
+
+class _Told(NamedTuple):
+    """Set points in m/s, the CONTROL frame that says them, and what stands in it; kept, for most ticks repeat it."""
+
+    left_m_s: float
+    right_m_s: float
+    frame: Frame
+    granted: WheelSpeeds
 
 
 class Guard:
@@ -51,6 +62,7 @@ class Guard:
         self._lock = RLock()
         self._latched: str | None = None
         self._left_m_s = self._right_m_s = 0.0
+        self._told = self._say(0.0, 0.0)
         self._driven_at_s = -math.inf
         self._send_failures = 0
         self._bus_trouble = ""
@@ -87,15 +99,17 @@ class Guard:
                 self._left_m_s = self._right_m_s = 0.0
             if math.isfinite(now_s):
                 self._driven_at_s = now_s
-            point = set_point(self._speed_mode, WheelSpeeds(self._left_m_s, self._right_m_s), self._motors)
+            told = self._told
+            if told.left_m_s != self._left_m_s or told.right_m_s != self._right_m_s:
+                told = self._told = self._say(self._left_m_s, self._right_m_s)
             try:
-                self._port.send(control_frame(point))
+                self._port.send(told.frame)
             except BusError as error:
                 self._note(error)
                 self._latch(BUS_LOST)
             if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
                 return self._stay_stopped()
-            return Grant(point.wheel_speeds(self._motors), reasons, latched=False)
+            return Grant(told.granted, reasons, latched=False)
 
     def emergency_stop(self, reason: str) -> None:
         """Brake now and stay stopped until `release`; the first reason stands. May be repeated, never raises."""
@@ -166,6 +180,10 @@ class Guard:
         if to_m_s > from_m_s:
             return min(to_m_s, from_m_s + step_m_s)
         return max(to_m_s, from_m_s - step_m_s)
+
+    def _say(self, left_m_s: float, right_m_s: float) -> _Told:
+        point = set_point(self._speed_mode, WheelSpeeds(left_m_s, right_m_s), self._motors)
+        return _Told(left_m_s, right_m_s, control_frame(point), point.wheel_speeds(self._motors))
 
     def _latch(self, reason: str) -> None:
         if self._latched is None:

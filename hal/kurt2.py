@@ -10,13 +10,11 @@ from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.codec import Codec, JunkFrameError, MessageCodec, load_codec
 from hal.guard import BUS_LOST, Guard
 from hal.health import Health
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import HIGHEST_COUNTS, Grant, Senses, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import Watchdog
 
 CLOSED = "closed"
-HIGHEST_COUNTS = 1023
-"""Of a 10-bit converter; the C167's result register keeps the channel number above it (reference 5, point 7)."""
 REOPEN_PERIOD_S = 1.0
 
 
@@ -170,6 +168,7 @@ class Kurt2:
     def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> None:
         raw = analog.codec.unpack(data)
         for at, _ in analog.places:
+            # The C167's result register keeps the channel number above the result (reference 5, point 7).
             if raw[at] > HIGHEST_COUNTS:
                 raise JunkFrameError(f"{analog.codec.name}: {raw[at]} counts, a 10-bit converter has {HIGHEST_COUNTS}")
         for at, sensor in analog.places:

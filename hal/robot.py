@@ -13,6 +13,9 @@ class WheelSpeeds(NamedTuple):
     right_m_s: float
 
 
+HIGHEST_COUNTS = 1023
+"""Largest reading of a sensor: that of a 10-bit converter."""
+
 STANDSTILL = WheelSpeeds(0.0, 0.0)
 
 
@@ -22,7 +25,7 @@ class Senses(NamedTuple):
     time_s: float
     """Time of the tick on the runtime's clock."""
     infrared_counts: tuple[int, ...]
-    """One raw count per sensor, in the order of the robot's sensor table (s1 first); 0 before the first frame."""
+    """One raw count per sensor, at most HIGHEST_COUNTS, in the order of the sensor table; 0 before the first frame."""
     infrared_age_s: float
     """Age of the oldest of the infra-red frames; infinite while one of them never came."""
     encoder_left_ticks: int

@@ -1,9 +1,11 @@
 """Wall following with the wall on the left: what the scripted teacher of that task says."""
 
+from operator import itemgetter
 from typing import Annotated, Literal
 
 from pydantic import Field
 
+from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import InfraredSettings
 from hal.settings import Settings
 
@@ -33,21 +35,23 @@ class WallFollowing:
 
     def __init__(self, settings: WallFollowingSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
-        self._infrared = infrared
+        self._near_m = infrared.near_m
+        # Looked up, for a teacher asks in every tick of a lesson.
+        self._distance_m = [infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1)]
         sensors = {name: index for index, name in enumerate(infrared.names)}
-        self._front = [sensors[name] for name in ("s9", "s10", "s11")]
+        self._front = itemgetter(*(sensors[name] for name in ("s9", "s10", "s11")))
         self._edge = sensors["s15"]
-        self._left = [sensors[name] for name in ("s1", "s3", "s4", "s2")]  # from front to back
+        self._left = itemgetter(*(sensors[name] for name in ("s1", "s3", "s4", "s2")))  # from front to back
         self._baseline_m = infrared.sensors[sensors["s1"]].x_m - infrared.sensors[sensors["s2"]].x_m
 
     def choose(self, infrared_counts: tuple[int, ...]) -> str:
         """Name of the action."""
         want = self._settings
-        distance_m = self._infrared.distance_m
-        front = distance_m(max(infrared_counts[index] for index in self._front))
-        edge = distance_m(infrared_counts[self._edge])
-        left = [distance_m(infrared_counts[index]) for index in self._left]
-        if front < want.front_m or edge < want.edge_m or min(left) <= self._infrared.near_m:
+        distance_m = self._distance_m
+        front = distance_m[max(self._front(infrared_counts))]
+        edge = distance_m[infrared_counts[self._edge]]
+        left = [distance_m[counts] for counts in self._left(infrared_counts)]
+        if front < want.front_m or edge < want.edge_m or min(left) <= self._near_m:
             return "spin_right"
         if left[0] > want.lost_m:  # the wall ends beside the nose, or is gone
             return "curve_left" if left[3] > want.lost_m or left[1] > want.lost_m else "forward"

@@ -30,8 +30,7 @@ class Perception:
         self._extract = FeatureExtractor(definition, sensors)
         self._history = History(definition.history_steps, width)
         self._width = width
-        self._recent_weight = definition.recent_weight
-        self._past_weight = definition.past_weight
+        self._weights = np.repeat((definition.recent_weight, definition.past_weight), width)
         self._driven = STANDSTILL
 
     def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
@@ -45,10 +44,7 @@ class Perception:
         vector = np.empty(2 * self._width)
         vector[: self._width] = recent
         self._history.average_into(vector[self._width :])
-        if self._recent_weight != 1.0:
-            vector[: self._width] *= self._recent_weight
-        if self._past_weight != 1.0:
-            vector[self._width :] *= self._past_weight
+        vector *= self._weights
         return Situation(vector, history_frozen)
 
     def remember_driven(self, wheel_speeds: WheelSpeeds) -> None:
