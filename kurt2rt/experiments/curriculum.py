@@ -12,6 +12,7 @@ from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 
 Report = Callable[[str, float, float], None]
@@ -56,17 +57,22 @@ async def run_lesson(
     """
     world, whole_s = task.teaching.world, task.teaching.duration_s
     journal = open_knowledge(knowledge, settings, task)
-    events = journal.events()
+    events, saved = journal.events(), journal.statistics()
+    counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
     with JournalWriter(journal, utc_now) as writer:
 
         def on_progress(done_s: float) -> None:
             for acknowledgement in writer.acknowledged():
+                if acknowledgement.error is not None:
+                    raise LessonLostError(f"{knowledge}: {acknowledgement.error}")
                 on_saved(acknowledgement)
             report(f"teaching in world {world}", done_s, whole_s)
 
         arena = stage.open(world, seed, "lesson")
         try:
-            lesson = await teach(arena, settings, task, writer, events, seed=seed, on_progress=on_progress)
+            lesson = await teach(
+                arena, settings, task, writer, events, seed=seed, on_progress=on_progress, statistics=counter
+            )
         finally:
             arena.close()
         writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))

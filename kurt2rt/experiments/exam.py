@@ -47,7 +47,9 @@ class ExamResult:
 
     def succeeded(self, teachers_laps: float, laps_share: float) -> bool:
         """No collision, not stuck, and enough of the laps that the teacher's own policy makes."""
-        return self.collisions == 0 and not self.stuck and self.laps >= laps_share * teachers_laps
+        # Where the teacher gets nowhere either, standing still is no success.
+        enough = self.laps > 0.0 and self.laps >= laps_share * teachers_laps
+        return self.collisions == 0 and not self.stuck and enough
 
 
 async def examine(

@@ -47,14 +47,16 @@ async def teach(
     *,
     seed: int,
     on_progress: Callable[[float], None],
+    statistics: StatisticsCounter | None = None,
 ) -> LessonResult:
     """Teach the task for its whole duration; what was taught goes to `keeper`.
 
-    `events`: what an earlier lesson taught, to go on from there. `on_progress` gets simulated seconds.
+    `events`: what an earlier lesson taught, to go on from there; `statistics`: what was counted then, to count on.
+    `on_progress` gets simulated seconds.
     """
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock)
+    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics)
     teacher = ScriptedTeacher(
         build_policy(task.policy, settings.infrared),
         tuple(runtime.level.repertoire),

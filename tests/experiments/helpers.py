@@ -1,0 +1,67 @@
+"""Short lessons and exams on the simulated robot."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import load_robot
+from kurt2rt.experiments.curriculum import run_lesson
+from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.simulated import SimulatedStage
+from kurt2rt.tasks.settings import TaskSettings, load_task
+
+ROBOT = load_robot()
+STAGE = SimulatedStage(ROBOT)
+
+
+def short_task(
+    supervised_s: float = 15.0,
+    corrections_s: float = 10.0,
+    exam_s: float = 20.0,
+    *,
+    radius: float | None = None,
+    **of_exam: object,
+) -> TaskSettings:
+    """Wall following with less time for everything."""
+    task = load_task("wall_following")
+    learning = task.learning if radius is None else task.learning.model_copy(update={"radius": radius})
+    teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
+    exam = task.exam.model_copy(update={"worlds": ("a",), "duration_s": exam_s, **of_exam})
+    return task.model_copy(update={"learning": learning, "teaching": teaching, "exam": exam})
+
+
+@dataclass(frozen=True)
+class Taught:
+    """All that one lesson left behind."""
+
+    task: TaskSettings
+    knowledge: Path
+    result: LessonResult
+    events: list[TeachingEvent]
+    saved: list[Acknowledgement]
+    """As `on_saved` heard of them."""
+    reported_s: list[float]
+
+
+def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> Taught:
+    """Give one lesson into a knowledge file."""
+    saved: list[Acknowledgement] = []
+    reported_s: list[float] = []
+    task = task or short_task()
+
+    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+        return await run_lesson(
+            STAGE,
+            ROBOT,
+            task,
+            knowledge,
+            seed=seed,
+            report=lambda _what, done_s, _whole_s: reported_s.append(done_s),
+            on_saved=saved.append,
+        )
+
+    result, events = anyio.run(lesson)
+    return Taught(task, knowledge, result, events, saved, reported_s)

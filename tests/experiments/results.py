@@ -1,0 +1,39 @@
+"""Results as a lesson and its exams leave them, written by hand."""
+
+from kurt2rt.experiments.arena import Position
+from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
+from kurt2rt.experiments.exam import ExamResult
+from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.rla.rla import Origin, Phase, Rla
+from kurt2rt.rla.statistics import StatisticsCounter
+
+TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
+
+
+def exam_result(world: str = "a", seed: int = 1, laps: float = 8.0, collisions: int = 0, **fields: bool) -> ExamResult:
+    stuck = fields.get("stuck", False)
+    return ExamResult(world, seed, 123.0 if stuck else 300.0, laps, collisions, stuck, 0.034, 1.5, TRAIL, TRAIL[:1])
+
+
+def world_result(learned: ExamResult) -> WorldResult:
+    teacher = exam_result(learned.world, learned.seed, laps=9.0)
+    return WorldResult(learned, teacher, learned.succeeded(teacher.laps, 0.8))
+
+
+def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumResult:
+    origin = Origin("c", "Ann", Phase.SUPERVISED, 1)
+    lesson = LessonResult(
+        seed=seed,
+        world="a",
+        teaching_s=345.0,
+        rlas=tuple(Rla(number, (0.0,), "forward", None, origin) for number in range(1, rlas + 1)),
+        knowledge_hash="0" * 64,
+        asks=41,
+        corrections=52,
+        rescues=3,
+        statistics=StatisticsCounter(),
+        growth=tuple(range(rlas)),
+        trail=TRAIL,
+        ask_positions=TRAIL[1:],
+    )
+    return CurriculumResult(lesson, tuple(world_result(each) for each in exams))

@@ -1,0 +1,132 @@
+from collections.abc import Sequence
+from dataclasses import replace
+
+import anyio
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.experiments.curriculum import WorldResult, run_exams
+from kurt2rt.experiments.exam import ExamResult, NothingIsTaught, examine
+from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, TeachingEvent
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import Teach
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+
+
+def exam_of(events: Sequence[TeachingEvent], task: TaskSettings, seed: int = 1) -> WorldResult:
+    async def run() -> tuple[WorldResult, ...]:
+        return await run_exams(STAGE, ROBOT, task, events, task.exam.worlds, seed=seed, report=lambda *_: None)
+
+    (result,) = anyio.run(run)
+    return result
+
+
+def knows_only(action: str) -> RlaCreated:
+    """An RLA that answers everything; its task needs a large radius."""
+    return RlaCreated(Rla(1, (0.0,) * 72, action, 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
+
+
+def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
+    learned = exam_of([], short_task(exam_s=20.0, stuck_after_s=3.0)).learned
+    assert learned.stuck
+    assert learned.duration_s == pytest.approx(3.01)
+    assert learned.share_unknown == 1.0
+    assert learned.unknown_positions == learned.trail[:1]
+    assert len(set(learned.trail)) == 1
+    assert (learned.laps, learned.collisions, learned.action_changes_per_s) == (0.0, 0, 0.0)
+
+
+def test_going_round_on_the_spot_is_stuck_too() -> None:
+    learned = exam_of([knows_only("spin_left")], short_task(exam_s=20.0, stuck_after_s=3.0)).learned
+    assert learned.stuck
+    assert learned.duration_s == pytest.approx(3.01)
+    assert learned.share_unknown == 0.0
+    assert learned.unknown_positions == ()
+
+
+def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
+    teacher = exam_of([], short_task(exam_s=25.0, stuck_after_s=10.0)).teacher
+    assert teacher.laps > 0.2
+    assert teacher.collisions == 0
+    assert not teacher.stuck
+    assert teacher.duration_s == 25.0
+    assert teacher.share_unknown == 0.0
+
+
+def test_a_taught_robot_drives_by_what_it_was_taught(taught: Taught) -> None:
+    task = short_task(exam_s=4.0)
+    first, again = exam_of(taught.events, task), exam_of(taught.events, task)
+    assert first == again
+    assert first.learned.share_unknown < 1.0
+    assert first.learned.action_changes_per_s > 0.0
+    assert first.learned.trail[0] != first.learned.trail[-1]
+    assert (first.learned.world, first.learned.seed, first.learned.duration_s) == ("a", 1, 4.0)
+    assert exam_of(taught.events, task, seed=2).learned.trail != first.learned.trail
+
+
+def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
+    task = short_task(radius=150.0)
+    arena = STAGE.open("a", 1, "exam")
+    records: list[TickRecord] = []
+    try:
+        clock = LockstepClock(arena.step)
+        runtime = build_runtime(arena.robot, ROBOT, task, taught.events, NothingIsTaught(), clock)
+        anyio.run(runtime.scheduler.run, 500, records.append)
+    finally:
+        arena.close()
+    asking = [record for record in records if record.decision.asking]
+    assert 0 < len(asking) < len(records)
+    assert all(record.decision.wheel_speeds == STANDSTILL for record in asking)
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in asking)
+    assert all(record.decision.action is None for record in asking)
+
+
+def test_a_lesson_in_an_exam_is_a_defect_and_no_silence() -> None:
+    arena = STAGE.open("a", 1, "exam")
+    try:
+        clock = LockstepClock(arena.step)
+        runtime = build_runtime(arena.robot, ROBOT, short_task(), [], NothingIsTaught(), clock)
+        runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+        with pytest.raises(RuntimeError, match="a lesson was given in an exam"):
+            anyio.run(runtime.scheduler.run, 1, lambda _: None)
+    finally:
+        arena.close()
+
+
+def test_progress_is_told_each_second_and_at_the_end() -> None:
+    task = short_task(exam_s=2.5)
+    told: list[float] = []
+    arena = STAGE.open("a", 1, "exam")
+
+    async def run() -> ExamResult:
+        return await examine(arena, ROBOT, task, "a", [], seed=1, on_progress=told.append)
+
+    try:
+        anyio.run(run)
+    finally:
+        arena.close()
+    assert told == pytest.approx([1.0, 2.0, 2.5])
+
+
+DRIVE = ExamResult("a", 1, 300.0, 8.0, 0, False, 0.0, 1.0, (), ())
+
+
+@pytest.mark.parametrize(
+    ("drive", "teachers_laps", "succeeded"),
+    [
+        (DRIVE, 10.0, True),  # just enough
+        (replace(DRIVE, laps=7.999), 10.0, False),
+        (replace(DRIVE, collisions=1), 10.0, False),
+        (replace(DRIVE, stuck=True), 10.0, False),
+        (replace(DRIVE, share_unknown=0.5), 10.0, True),  # asking costs laps, and is judged by them
+        (replace(DRIVE, laps=-1.0), 10.0, False),
+        (replace(DRIVE, laps=0.0), 0.0, False),  # where the teacher makes no way, standing still is no success
+        (replace(DRIVE, laps=0.0), -0.1, False),
+        (replace(DRIVE, laps=-0.05), -0.1, False),
+    ],
+)
+def test_success_is_laps_without_a_collision(drive: ExamResult, teachers_laps: float, *, succeeded: bool) -> None:
+    assert drive.succeeded(teachers_laps, laps_share=0.8) is succeeded

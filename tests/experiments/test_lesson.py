@@ -1,0 +1,136 @@
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.curriculum import LessonLostError, read_lessons
+from kurt2rt.knowledge.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.writer import JournalWriter
+from kurt2rt.rla.rla import Phase, RlaCreated
+from tests.experiments.helpers import ROBOT, Taught, short_task, teach
+
+
+def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) -> None:
+    result = taught.result
+    assert result.growth[0] == 0  # the teacher thinks for a second
+    assert result.asks >= 2
+    assert list(result.growth) == sorted(result.growth)
+    assert len(result.growth) == 25
+    assert result.growth[-1] == len(result.rlas) > 5
+    first, last = result.trail[0], result.trail[-1]
+    assert abs(last.x_m - first.x_m) + abs(last.y_m - first.y_m) > 0.5
+    assert len(result.trail) == 250
+    assert len(result.ask_positions) == result.asks
+    assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 25.0, 0)
+    assert taught.reported_s == [*map(float, range(1, 26)), 25.0]
+
+
+def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None:
+    result = taught.result
+    with Journal.read_only(taught.knowledge) as journal:
+        assert check_knowledge(journal) == []
+        system = fold_journal(journal, taught.task.learning.radius)
+        assert journal.events() == taught.events
+        statistics = journal.statistics()
+    assert system.rlas == result.rlas
+    assert system.knowledge_hash() == result.knowledge_hash
+    assert statistics.uses == result.statistics.uses
+    assert statistics.transitions == result.statistics.transitions
+    assert read_lessons(taught.knowledge, ROBOT, taught.task) == taught.events
+
+
+def test_the_teacher_only_answers_at_first_and_then_corrects_as_well(taught: Taught) -> None:
+    origins = [event.origin for event in taught.events]
+    assert [each.phase for each in origins] == sorted(each.phase for each in origins)
+    assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 1500) for each in origins)
+    assert {each.phase for each in origins} == {Phase.SUPERVISED, Phase.CORRECTIONS}
+    answers = sum(each.phase is Phase.SUPERVISED for each in origins)
+    assert answers + taught.result.corrections >= len(origins)
+
+
+def test_it_is_told_of_every_lesson_that_is_saved(taught: Taught) -> None:
+    assert [each.command_id for each in taught.saved] == [event.origin.command_id for event in taught.events]
+    assert [each.sequence for each in taught.saved] == list(range(1, len(taught.events) + 1))
+
+
+def test_it_is_told_of_a_lesson_that_is_saved_after_the_last_progress(tmp_path: Path) -> None:
+    taught = teach(tmp_path / "knowledge", short_task(1.5, 0.0))
+    assert len(taught.events) == 1
+    assert [each.sequence for each in taught.saved] == [1]
+
+
+def test_the_same_seed_gives_the_same_knowledge_and_the_same_trail(taught: Taught, tmp_path: Path) -> None:
+    again = teach(tmp_path / "again")
+    # Counters are compared by what they counted.
+    assert replace(again.result, statistics=taught.result.statistics) == taught.result
+    assert again.result.statistics.uses == taught.result.statistics.uses
+    assert again.events == taught.events
+
+
+def test_another_seed_gives_another_lesson(taught: Taught, tmp_path: Path) -> None:
+    other = teach(tmp_path / "other", seed=2)
+    assert other.result.knowledge_hash != taught.result.knowledge_hash
+    assert other.result.trail != taught.result.trail
+
+
+def test_a_lesson_goes_on_from_what_the_file_holds(tmp_path: Path) -> None:
+    task = short_task(6.0, 6.0)
+    first = teach(tmp_path / "knowledge", task)
+    second = teach(tmp_path / "knowledge", task, seed=2)
+    same_seed = teach(tmp_path / "knowledge", task)
+
+    assert second.events[: len(first.events)] == first.events
+    assert same_seed.events[: len(second.events)] == second.events
+    assert len(second.events) > len(first.events)
+    assert second.result.growth[0] == len(first.result.rlas)
+    command_ids = [event.origin.command_id for event in same_seed.events]
+    assert len(set(command_ids)) == len(command_ids)
+    created = [event.rla.rla_id for event in same_seed.events if isinstance(event, RlaCreated)]
+    assert created == list(range(1, len(created) + 1))
+
+
+def test_statistics_count_on_in_a_second_lesson(tmp_path: Path) -> None:
+    task = short_task(6.0, 6.0)
+    first = teach(tmp_path / "knowledge", task)
+    uses_before = sum(first.result.statistics.uses.values())
+    second = teach(tmp_path / "knowledge", task, seed=2)
+    with Journal.read_only(tmp_path / "knowledge") as journal:
+        statistics = journal.statistics()
+    assert sum(statistics.uses.values()) > uses_before
+    for rla_id, count in first.result.statistics.uses.items():
+        assert statistics.uses[rla_id] >= count
+    assert statistics.uses == second.result.statistics.uses
+
+
+def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None:
+    task = short_task(4.0, 0.0)
+    impatient = task.teaching.model_copy(update={"rescue_after_s": 1.0})
+    rescued = teach(tmp_path / "knowledge", task.model_copy(update={"teaching": impatient})).result
+    assert rescued.rescues > 0
+
+
+def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def on_a_dead_disk(self: Journal, entries: object) -> object:  # noqa: ARG001
+        raise KnowledgeError(f"{self.path}: the disk is full; make room on it")
+
+    def without_patience(self: JournalWriter, timeout_s: float) -> bool:  # noqa: ARG001
+        return flush(self, 0.05)
+
+    flush = JournalWriter.flush
+    monkeypatch.setattr(JournalWriter, "flush", without_patience)
+    monkeypatch.setattr(Journal, "append", on_a_dead_disk)
+    with pytest.raises((LessonLostError, KnowledgeError), match="the disk is full; make room on it"):
+        teach(tmp_path / "knowledge", short_task(2.0, 0.0))
+
+
+def test_a_lesson_that_the_journal_refuses_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: Journal, entries: Sequence[JournalEntry]) -> list[Receipt]:  # noqa: ARG001
+        return [Receipt(each.event.origin.command_id, 7, new=False, agrees=False) for each in entries]
+
+    monkeypatch.setattr(Journal, "append", refuse)
+    with pytest.raises(LessonLostError, match="knowledge: command 'lesson-1-after-0-1': another lesson of this id"):
+        teach(tmp_path / "knowledge", short_task(2.0, 0.0))

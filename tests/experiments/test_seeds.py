@@ -1,0 +1,46 @@
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.experiments.curriculum import CurriculumResult
+from kurt2rt.experiments.seeds import SeedJob, run_seed, run_seeds
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.statistics import StatisticsCounter
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+
+COUNTED_APART = StatisticsCounter()
+
+
+def jobs(folder: Path, world: str = "a") -> list[SeedJob]:
+    task = short_task(4.0, 3.0, 3.0)
+    return [SeedJob(STAGE, ROBOT, task, (world,), seed, folder / f"{seed}.knowledge") for seed in (5, 6)]
+
+
+def without_counts(result: CurriculumResult) -> CurriculumResult:
+    return replace(result, lesson=replace(result.lesson, statistics=COUNTED_APART))
+
+
+def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> None:
+    (tmp_path / "here").mkdir()
+    (tmp_path / "there").mkdir()
+    done: list[int] = []
+    there = run_seeds(jobs(tmp_path / "there"), 2, done.append)
+    here = [run_seed(job) for job in jobs(tmp_path / "here")]
+
+    assert sorted(done) == [5, 6]
+    assert list(map(without_counts, there)) == list(map(without_counts, here))
+    assert [each.lesson.statistics.uses for each in there] == [each.lesson.statistics.uses for each in here]
+    assert [each.lesson.seed for each in there] == [5, 6]
+    assert there[0].lesson.knowledge_hash != there[1].lesson.knowledge_hash
+    for seed in (5, 6):
+        file = f"{seed}.knowledge"
+        with Journal.read_only(tmp_path / "here" / file) as one, Journal.read_only(tmp_path / "there" / file) as other:
+            assert one.events() == other.events()
+
+
+@pytest.mark.deep
+def test_what_fails_in_a_process_is_said_here(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="nowhere: no such file in worlds"):
+        run_seeds(jobs(tmp_path, world="nowhere"), 1, lambda _: None)
