@@ -10,10 +10,9 @@ import anyio.abc
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
-from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
-from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings
@@ -59,12 +58,9 @@ async def serve(
 
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError.
     """
-    knowledge = Path(service.knowledge)
     last: Status | None = None
     with TimerfdClock() as clock:
-        journal = open_knowledge(knowledge, settings, task)
-        events, saved = journal.events(), journal.statistics()
-        counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
+        journal, events, counter = go_on_teaching(Path(service.knowledge), settings, task)
         with JournalWriter(journal, utc_now) as writer:
             runtime = build_runtime(robot, settings, task, events, writer, clock, statistics=counter)
             period_s = settings.can.cycle_s

@@ -93,6 +93,11 @@ class SimulatedStage:
         """The simulated robot in a world."""
         return SimulatedArena(self.settings, world, seed, purpose)
 
+    def require_worlds(self, *worlds: str) -> None:
+        """Look at each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        for world in worlds:
+            load_world(world, self.settings)
+
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
         draw_world(axes, load_world(world, self.settings))

@@ -10,6 +10,7 @@ from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.report import render_curriculum
+from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import load_task
 
 
@@ -37,6 +38,7 @@ def demo(
     settings = load_robot(robot_settings)
     taught = load_task(task)
     stage = SimulatedStage(settings)
+    stage.require_worlds(taught.teaching.world, *taught.exam.worlds)
     out.mkdir(parents=True, exist_ok=True)
     knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"
     set_aside(knowledge)
@@ -51,14 +53,6 @@ def demo(
     draw_curriculum(result, taught, stage, picture)
     console = Console()
     console.print(render_curriculum(result, taught))
-    console.print(f"picture    {picture}", f"knowledge  {knowledge}", sep="\n", highlight=False)
-
-
-def set_aside(knowledge: Path) -> None:
-    """A job that teaches from nothing leaves earlier knowledge of the same name in place, under a number of its own."""
-    if not knowledge.exists():
-        return
-    number = 1
-    while (kept := knowledge.with_name(f"{knowledge.name}.{number}")).exists():
-        number += 1
-    knowledge.rename(kept)
+    console.print(
+        f"picture    {picture}", f"knowledge  {knowledge}", sep="\n", markup=False, highlight=False, soft_wrap=True
+    )

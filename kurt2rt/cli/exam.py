@@ -10,8 +10,9 @@ from rich.console import Console
 from hal.robot_settings import load_robot
 from kurt2rt.cli.options import RobotName, Seed, TaskName
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.experiments.curriculum import Report, WorldResult, read_lessons, run_exams
+from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.report import render_exams
+from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import load_task
 
 
@@ -35,13 +36,12 @@ def exam(
 
     settings = load_robot(robot_settings)
     taught = load_task(task)
-    if not knowledge.is_file():
-        raise typer.BadParameter(f"{knowledge}: no such file; teach one with kurt2rt lesson", param_hint="KNOWLEDGE")
-    events = read_lessons(knowledge, settings, taught)
+    worlds = tuple(world) if world else taught.exam.worlds
     stage = SimulatedStage(settings)
+    stage.require_worlds(*worlds)
+    events = read_lessons(knowledge, settings, taught)
 
     async def run(report: Report) -> tuple[WorldResult, ...]:
-        worlds = tuple(world) if world else taught.exam.worlds
         return await run_exams(stage, settings, taught, events, worlds, seed=seed, report=report)
 
     with job_bars() as report:

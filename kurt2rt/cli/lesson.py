@@ -10,12 +10,12 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.demo import set_aside
 from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.report import render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
+from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import load_task
 
 
@@ -49,6 +49,7 @@ def lesson(
     settings = load_robot(robot_settings)
     taught = load_task(task)
     stage = SimulatedStage(settings)
+    stage.require_worlds(taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
     out.mkdir(parents=True, exist_ok=True)
     console = Console()
     if seeds is None:
@@ -63,7 +64,7 @@ def lesson(
         with job_bars() as report:
             result = anyio.run(run, report)
         console.print(render_curriculum(result, taught))
-        console.print(f"knowledge  {file}", highlight=False)
+        console.print(f"knowledge  {file}", markup=False, highlight=False, soft_wrap=True)
         return
     if knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
@@ -84,10 +85,17 @@ def parse_seeds(text: str) -> list[int]:
     seeds: list[int] = []
     try:
         for part in text.split(","):
-            first, _, last = part.partition("-")
-            seeds.extend(range(int(first), int(last or first) + 1))
+            seeds.extend(_seeds_of(part))
     except ValueError as error:
         raise typer.BadParameter(f"{text!r} is no list of seeds; give e.g. 100-119 or 1,5,7-9") from error
-    if not seeds or len(set(seeds)) != len(seeds):
-        raise typer.BadParameter(f"{text!r} names no seed or one twice; give e.g. 100-119 or 1,5,7-9")
+    if len(set(seeds)) != len(seeds):
+        raise typer.BadParameter(f"{text!r} names a seed twice; give e.g. 100-119 or 1,5,7-9")
+    return seeds
+
+
+def _seeds_of(part: str) -> range:
+    first, _, last = part.partition("-")
+    seeds = range(int(first), int(last or first) + 1)
+    if not seeds:
+        raise ValueError(f"{part} ends before it begins")
     return seeds

@@ -1,5 +1,6 @@
 """`kurt2rt`: the command line."""
 
+import errno
 import sys
 from typing import NoReturn
 
@@ -21,6 +22,19 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
 
 _SIMULATION_PACKAGES = ("pymunk", "matplotlib", "shapely")
+
+_MENDED_BY_ANOTHER_PATH = {
+    errno.EACCES,
+    errno.EDQUOT,
+    errno.EEXIST,
+    errno.EISDIR,
+    errno.ENAMETOOLONG,
+    errno.ENOENT,
+    errno.ENOSPC,
+    errno.ENOTDIR,
+    errno.EPERM,
+    errno.EROFS,
+}
 
 app = typer.Typer(
     help="Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
@@ -51,6 +65,10 @@ def main() -> None:
             _complain(f"{error.name} is not installed; the simulator needs it: pip install 'kurt2rt[simulation]'")
         except (SettingsError, KnowledgeError, UnknownActionError, BusError, LessonLostError) as error:
             _complain(str(error))
+        except OSError as error:
+            if error.errno not in _MENDED_BY_ANOTHER_PATH:
+                raise
+            _complain(f"{error}; give a path that can be written, on a disk with room")
 
 
 def _complain(text: str) -> NoReturn:

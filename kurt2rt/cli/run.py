@@ -1,5 +1,6 @@
 """`kurt2rt run`."""
 
+import math
 import sys
 import uuid
 from pathlib import Path
@@ -63,6 +64,8 @@ def run(
 
         sudo ip link set can0 up type can bitrate 1000000
     """
+    if seconds is not None and not math.isfinite(seconds):
+        raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
     service = load_service(settings)
     changes: dict[str, str] = {}
     if knowledge is not None:
@@ -74,7 +77,12 @@ def run(
     if teacher == "scripted" and robot != "sim":
         raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--teacher")
     console = Console()
-    console.print(f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends", highlight=False)
+    console.print(
+        f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends",
+        markup=False,
+        highlight=False,
+        soft_wrap=True,
+    )
     if service.real_time_priority:
         console.print(take_real_time_priority(service.real_time_priority), highlight=False)
     printer = Printer()
@@ -110,7 +118,7 @@ def run(
 
         last = anyio.run(serve_it)
     count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
-    console.print(f"the robot stands{count}", highlight=False)
+    console.print(f"the robot stands{count}", markup=False, highlight=False, soft_wrap=True)
 
 
 def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watcher:

@@ -8,11 +8,10 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult, teach
-from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 
 Report = Callable[[str, float, float], None]
@@ -56,9 +55,7 @@ async def run_lesson(
     Raises KnowledgeError, SettingsError, LessonLostError.
     """
     world, whole_s = task.teaching.world, task.teaching.duration_s
-    journal = open_knowledge(knowledge, settings, task)
-    events, saved = journal.events(), journal.statistics()
-    counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
+    journal, events, counter = go_on_teaching(knowledge, settings, task)
     with JournalWriter(journal, utc_now) as writer:
 
         def on_progress(done_s: float) -> None:
@@ -80,12 +77,6 @@ async def run_lesson(
             raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
         on_progress(whole_s)
     return lesson, read_lessons(knowledge, settings, task)
-
-
-def read_lessons(knowledge: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:
-    """All teaching events of a knowledge file, for a robot and task it was taught with. Raises KnowledgeError."""
-    with open_knowledge(knowledge, settings, task) as journal:
-        return journal.events()
 
 
 async def run_exams(

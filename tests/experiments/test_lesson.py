@@ -4,11 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.curriculum import LessonLostError, read_lessons
+from kurt2rt.experiments.curriculum import LessonLostError
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.writer import JournalWriter
 from kurt2rt.rla.rla import Phase, RlaCreated
 from tests.experiments.helpers import ROBOT, Taught, short_task, teach

@@ -1,0 +1,20 @@
+"""Makes room for new knowledge where earlier knowledge stands, without losing any of it."""
+
+from pathlib import Path
+
+from kurt2rt.knowledge import journal_file
+
+
+def set_aside(path: Path) -> None:
+    """Give what stands at `path` a name with a number of its own. Raises KnowledgeError while somebody writes it."""
+    if not path.exists():
+        return
+    with journal_file.lock_for_writing(path):
+        number = 1
+        while (kept := path.with_name(f"{path.name}.{number}")).exists():
+            number += 1
+        log = journal_file.log_of(path)
+        path.rename(kept)
+        # After a crash the newest lessons stand in the log alone.
+        if log.exists():
+            log.rename(journal_file.log_of(kept))

@@ -1,0 +1,234 @@
+"""What a user can get wrong is said in one line, with exit code 2, and nothing is lost by it."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from kurt2rt.knowledge.journal import Journal
+from tests.cli.helpers import CommandLine
+
+NOT_OURS = "to whom it may concern\n"
+
+EVERY_WRITER = [("lesson", "--knowledge"), ("run", "--seconds", "0.1", "--knowledge")]
+EVERY_READER = [("exam",), ("knowledge", "show"), ("knowledge", "check")]
+
+
+def changed(kind: str, name: str, folder: Path, change: Callable[[dict[str, object]], None]) -> Path:
+    """A shipped settings file with something changed, in a folder of the user's."""
+    content = yaml.safe_load((CONFIG_DIR / kind / f"{name}.yaml").read_text(encoding="utf-8"))
+    change(content)
+    path = folder / f"my_{kind}.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    return path
+
+
+def copied(knowledge: Path, to: Path) -> Path:
+    shutil.copy(knowledge, to)
+    return to
+
+
+def lessons_in(knowledge: Path) -> int:
+    with Journal.read_only(knowledge) as journal:
+        assert journal.check() == []
+        return len(journal.events())
+
+
+@pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
+def test_a_foreign_file_is_refused_and_stays_as_it_was(
+    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
+) -> None:
+    letter = tmp_path / "letter.txt"
+    letter.write_text(NOT_OURS, encoding="utf-8")
+    assert "letter.txt: is not a knowledge file" in kurt2rt.refused(*command, letter)
+    assert letter.read_text(encoding="utf-8") == NOT_OURS
+
+
+@pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
+def test_a_folder_is_refused(kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]) -> None:
+    (tmp_path / "folder").mkdir()
+    assert "folder: is a folder or device, not a file" in kurt2rt.refused(*command, tmp_path / "folder")
+
+
+@pytest.mark.parametrize("command", EVERY_READER, ids=" ".join)
+def test_a_file_that_is_not_there_is_not_made(kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]) -> None:
+    assert "No such file" in kurt2rt.refused(*command, tmp_path / "none.knowledge")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", EVERY_WRITER, ids=" ".join)
+def test_a_place_where_no_file_can_be_is_refused(
+    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
+) -> None:
+    (tmp_path / "letter.txt").write_text(NOT_OURS, encoding="utf-8")
+    assert "letter.txt" in kurt2rt.refused(*command, tmp_path / "letter.txt" / "x.knowledge")
+    assert (tmp_path / "letter.txt").read_text(encoding="utf-8") == NOT_OURS
+
+
+@pytest.mark.parametrize("command", ["demo", "lesson"])
+def test_a_file_where_the_output_folder_should_be_is_refused(
+    kurt2rt: CommandLine, tmp_path: Path, command: str
+) -> None:
+    (tmp_path / "out").write_text(NOT_OURS, encoding="utf-8")
+    assert "out" in kurt2rt.refused(command, "--out", tmp_path / "out")
+    assert (tmp_path / "out").read_text(encoding="utf-8") == NOT_OURS
+
+
+def other_features(folder: Path) -> Path:
+    """The task with another weight in its situation."""
+    situation = changed("situations", "basic", folder, lambda content: content.update(past_weight=0.5))
+    return changed("tasks", "wall_following", folder, lambda content: content.update(situation=str(situation)))
+
+
+def few_actions(folder: Path) -> Path:
+    """The task with a repertoire that only stands."""
+
+    def only_stand(content: dict[str, object]) -> None:
+        content["actions"] = [{"kind": "motor", "name": "stand", "left_m_s": 0.0, "right_m_s": 0.0}]
+
+    repertoire = changed("repertoires", "basic", folder, only_stand)
+    return changed("tasks", "wall_following", folder, lambda content: content.update(repertoire=str(repertoire)))
+
+
+@pytest.mark.parametrize(
+    ("another_task", "why"),
+    [
+        (other_features, "mine.knowledge: taught with other features: the names are the same, but weights"),
+        (few_actions, "which the repertoire lacks; add it there, or teach with the repertoire it came from: stand"),
+    ],
+)
+def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path, another_task: Callable[[Path], Path], why: str
+) -> None:
+    mine = copied(lessons, tmp_path / "mine.knowledge")
+    taught = lessons_in(mine)
+    task = another_task(tmp_path)
+    service = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
+
+    assert why in kurt2rt.refused("exam", mine, "--task", task)
+    assert why in kurt2rt.refused("lesson", "--knowledge", mine, "--task", task)
+    assert why in kurt2rt.refused("run", "--knowledge", mine, "--settings", service, "--seconds", "1")
+    assert lessons_in(mine) == taught
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("demo", "--task", "nope"), "nope: no such file in tasks; give a path to a .yaml file or one of: wall_follow"),
+        (("lesson", "--task", "nope"), "nope: no such file in tasks"),
+        (("lesson", "--robot-settings", "nope"), "nope: no such file in robots; give a path to a .yaml file or one of"),
+        (("demo", "--robot-settings", "nope"), "nope: no such file in robots"),
+        (("run", "--settings", "nope"), "nope: no such file in runtime"),
+        (("run", "--world", "nope", "--seconds", "1"), "nope: no such file in worlds"),
+        (("run", "--robot", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.refused(*words)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("run", "--robot", "can7", "--teacher", "scripted"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--seconds", "nan"), "--seconds"),
+        (("run", "--seconds", "inf"), "--seconds"),
+        (("run", "--seconds", "0"), "--seconds"),
+        (("run", "--teacher", "nobody"), "--teacher"),
+        (("lesson", "--seeds", "a-b"), "'a-b' is no list of seeds; give e.g. 100-119 or 1,5,7-9"),
+        (("lesson", "--seeds", "'5-3' is no list of seeds"), "'5-3' is no list of seeds"),
+        (("lesson", "--seeds", "'1,5-3' is no list of seeds"), "'1,5-3' is no list of seeds"),
+        (("lesson", "--seeds", "1,1"), "names a seed twice"),
+        (("lesson", "--seeds", "1,2", "--knowledge", "mine"), "each seed needs a file of its own: give --out instead"),
+        (("lesson", "--seed", "-1"), "--seed"),
+        (("knowledge", "show", "mine", "--limit", "0"), "--limit"),
+        (("fly",), "No such command 'fly'"),
+        (("demo", "--fast"), "No such option: --fast"),
+        (("exam",), "Missing argument"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_an_option_that_makes_no_sense_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.misused(*words)
+
+
+def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandLine, lessons: Path) -> None:
+    said = kurt2rt.refused("exam", lessons, "--world", "a", "--world", "nope")
+    assert "nope: no such file in worlds" in said
+
+
+@pytest.mark.parametrize(
+    ("where", "command"),
+    [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("lesson",)), ("exam", ("lesson", "--seeds", "1,2"))],
+)
+def test_a_task_with_an_unknown_world_is_refused_before_anything_is_taught(
+    kurt2rt: CommandLine, tmp_path: Path, where: str, command: tuple[str, ...]
+) -> None:
+    def somewhere_else(content: dict[str, object]) -> None:
+        part = content[where]
+        assert isinstance(part, dict)
+        part.update({"world": "nope"} if where == "teaching" else {"worlds": ["a", "nope"]})
+
+    task = changed("tasks", "wall_following", tmp_path, somewhere_else)
+    assert "nope: no such file in worlds" in kurt2rt.refused(*command, "--task", task, "--out", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "key", "words"),
+    [
+        ("tasks", "wall_following", "radius", ("lesson", "--task")),
+        ("robots", "kurt2", "cycle_s", ("lesson", "--robot-settings")),
+        ("runtime", "default", "status_period_s", ("run", "--settings")),
+        ("worlds", "a", "x_m", ("run", "--world")),
+    ],
+)
+def test_not_a_number_in_a_settings_file_names_file_and_key(
+    kurt2rt: CommandLine, tmp_path: Path, kind: str, name: str, key: str, words: tuple[str, ...]
+) -> None:
+    mine = tmp_path / "mine.yaml"
+    lines = (CONFIG_DIR / kind / f"{name}.yaml").read_text(encoding="utf-8")
+    before, found, after = lines.partition(f"{key}: ")
+    assert found
+    number = after.split()[0].rstrip(",}")
+    mine.write_text(before + found + after.replace(number, ".nan", 1), encoding="utf-8")
+    said = kurt2rt.refused(*words, mine)
+    assert "mine.yaml: " in said
+    assert key in said
+
+
+def test_settings_that_are_no_text_are_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    mine = tmp_path / "mine.yaml"
+    mine.write_bytes(b"\xff\xfe\x00name: x")
+    assert "mine.yaml: cannot be read" in kurt2rt.refused("demo", "--task", mine)
+
+
+def test_knowledge_that_somebody_writes_is_refused_to_a_second_writer_and_shown_to_a_reader(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
+) -> None:
+    mine = copied(lessons, tmp_path / "mine.knowledge")
+    with Journal.read_only(mine) as journal:
+        binding = journal.binding
+    with Journal.open(mine, binding):
+        assert "another kurt2rt is writing it" in kurt2rt.refused("lesson", "--knowledge", mine)
+        assert "another kurt2rt is writing it" in kurt2rt.refused("run", "--seconds", "1", "--knowledge", mine)
+        assert kurt2rt("knowledge", "check", mine).exit_code == 0
+        assert kurt2rt("knowledge", "show", mine).exit_code == 0
+        refusal = kurt2rt.refused("exam", mine, "--world", "nope")
+        assert "nope: no such file in worlds" in refusal
+
+
+def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+    mine = copied(lessons, tmp_path / "mine.knowledge")
+    image = mine.read_bytes()
+    assert image.count(b'"teacher":"scripted teacher"') == lessons_in(mine)
+    mine.write_bytes(image.replace(b'"teacher":"scripted teacher"', b'"teacher":"scripted preacher"'[:28]))
+    for command in (*EVERY_WRITER, ("exam",), ("knowledge", "show")):
+        assert "keep the file, and go on with a backup copy" in kurt2rt.refused(*command, mine)
+    said = kurt2rt("knowledge", "check", mine)
+    assert said.exit_code == 1
+    assert len(said.out.splitlines()) == image.count(b'"teacher":"scripted teacher"')
