@@ -1,0 +1,171 @@
+"""README and documentation hold: commands run, examples load, links lead somewhere."""
+
+import re
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+import yaml
+
+from behaviors.repertoire_settings import RepertoireSettings
+from config import CONFIG_DIR
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings, load_settings
+from kurt2rt.perception.definition import SituationDefinition
+from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.tasks.settings import TaskSettings
+from simbridge.world_settings import WorldSettings
+from tests.experiments.helpers import short_task, teach
+
+ROOT = Path(__file__).parents[1]
+DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])
+
+SCHEMAS: dict[str, type[Settings]] = {
+    "repertoire": RepertoireSettings,
+    "robot": RobotSettings,
+    "runtime": ServiceSettings,
+    "situation": SituationDefinition,
+    "task": TaskSettings,
+    "world": WorldSettings,
+}
+
+Shorten = Callable[[Sequence[str]], list[str]]
+
+# Minutes, or without end, as they stand in the text: run with less of the same, in the deep suite.
+LONG: dict[str, Shorten] = {
+    "demo": lambda words: [*words, "--task", "short.yaml"],
+    "exam": lambda words: [*words, "--task", "short.yaml"],
+    "lesson": lambda words: [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"],
+    "run": lambda words: [*words, "--seconds", "1", "--teacher", "none"],
+    "bench": lambda words: [*words, "--quick", "--only", "match"],
+}
+TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
+
+
+class Block(NamedTuple):
+    """A fenced block of a document."""
+
+    document: str
+    line: int
+    kind: str
+    text: str
+
+
+def blocks(kind: str) -> Iterator[Block]:
+    for path in DOCUMENTS:
+        text = path.read_text(encoding="utf-8")
+        for fenced in re.finditer(r"^```(\w+)\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+            if fenced[1] == kind:
+                line = text.count("\n", 0, fenced.start()) + 1
+                yield Block(str(path.relative_to(ROOT)), line, kind, fenced[2])
+
+
+class Story(NamedTuple):
+    """The commands of one console block, in order; what an earlier block said already is left out."""
+
+    where: str
+    commands: tuple[tuple[str, ...], ...]
+
+
+def stories() -> list[Story]:
+    told: set[str] = set()
+    found = []
+    for block in blocks("console"):
+        lines = [line for line in block.text.splitlines() if line.startswith("$ kurt2rt ") and line not in told]
+        told.update(lines)
+        found.append(Story(where(block), tuple(tuple(shlex.split(line, comments=True)[2:]) for line in lines)))
+    return [story for story in found if story.commands]
+
+
+def is_long(words: Sequence[str]) -> bool:
+    if not words or words[0] not in LONG or "--help" in words:
+        return False
+    return {"run": "--seconds", "bench": "--quick"}.get(words[0], "nothing") not in words
+
+
+def where(block: Block) -> str:
+    return f"{block.document}:{block.line}"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Where a reader works: a short task, and what the demo leaves behind."""
+    (tmp_path / TAUGHT_BY_THE_DEMO).parent.mkdir(parents=True)
+    teach(tmp_path / TAUGHT_BY_THE_DEMO, short_task(3.0, 2.0))
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
+    task["teaching"].update(supervised_s=5.0, corrections_s=3.0)
+    task["exam"].update(duration_s=5.0)
+    (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
+    return tmp_path
+
+
+def run(words: Sequence[str], folder: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "kurt2rt.cli.main", *words],
+        cwd=folder,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, f"kurt2rt {shlex.join(words)}: exit code {done.returncode}\n{done.stderr}"
+
+
+def test_the_readme_says_what_to_type() -> None:
+    assert any(story.where.startswith("README.md") for story in stories())
+
+
+@pytest.mark.parametrize("story", stories(), ids=lambda story: story.where)
+def test_the_commands_of_the_documentation_run(story: Story, folder: Path) -> None:
+    for words in story.commands:
+        if not is_long(words):
+            run(words, folder)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("story", stories(), ids=lambda story: story.where)
+def test_the_long_commands_of_the_documentation_run_with_less_of_the_same(story: Story, folder: Path) -> None:
+    for words in story.commands:
+        run(LONG[words[0]](words) if is_long(words) else words, folder)
+
+
+@pytest.mark.deep
+def test_the_demo_runs_as_it_stands(tmp_path: Path) -> None:
+    run(["demo"], tmp_path)
+    assert (tmp_path / TAUGHT_BY_THE_DEMO).is_file()
+    assert (tmp_path / TAUGHT_BY_THE_DEMO).with_suffix(".png").is_file()
+
+
+def test_examples_in_python_run(tmp_path: Path) -> None:
+    for block in blocks("python"):
+        command = [sys.executable, "-c", block.text]
+        done = subprocess.run(
+            command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, f"{where(block)}: {done.stderr}"
+
+
+@pytest.mark.parametrize("block", list(blocks("yaml")), ids=where)
+def test_an_example_of_settings_loads(block: Block, tmp_path: Path) -> None:
+    named = re.match(
+        r"# (?:config/(\w+)s/|my_)(\w+)\.yaml\b", block.text.replace("config/runtime/", "config/runtimes/")
+    )
+    assert named, f"{where(block)}: begin it with a comment that names its file: config/tasks/NAME.yaml or my_task.yaml"
+    path = tmp_path / "example.yaml"
+    path.write_text(block.text, encoding="utf-8")
+    load_settings(path, SCHEMAS[named[1] or named[2]])
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_links_and_paths_lead_to_files(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    links = [link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in link]
+    missing = [link for link in links if link and not (path.parent / link).exists()]
+    folders = "config|hal|behaviors|kurt2rt|simbridge|tests|docs"
+    named = re.findall(rf"`((?:{folders})/[\w./-]*)`", text)
+    missing += [name for name in named if not (ROOT / name).exists()]
+    assert not missing, f"{path.name} names what is not there: {', '.join(missing)}"
