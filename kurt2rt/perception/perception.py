@@ -31,16 +31,11 @@ class Perception:
         self._history = History(definition.history_steps, width)
         self._width = width
         self._weights = np.repeat((definition.recent_weight, definition.past_weight), width)
-        # A past of weight zero is zero in every situation: to keep it would cost a third of perception.
-        self._past_counts = definition.past_weight > 0.0
-        self._no_past = np.zeros(width, dtype=np.int64)
         self._driven = STANDSTILL
 
     def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
         """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
         recent = self._extract(senses.infrared_counts, self._driven)
-        if not self._past_counts:
-            return Situation(np.concatenate((recent, self._no_past)) * self._weights, history_frozen)
         if self._history.filled == 0 and senses.infrared_age_s < math.inf:
             # A robot that was just switched on has no past; where it stands is the best guess of it.
             self._history.fill(recent)
