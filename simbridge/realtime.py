@@ -29,9 +29,7 @@ class RealtimeSimulation:
 
     def stop(self) -> None:
         """End the thread, wait for it, and raise what ended it before, if something did."""
-        self._stopping.set()
-        if self._thread.ident is not None:
-            self._thread.join()
+        self._end()
         if self.error is not None:
             raise self.error
 
@@ -47,7 +45,15 @@ class RealtimeSimulation:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.stop()
+        self._end()
+        # What went wrong first is what to mend: a body that failed is not to be hidden by what it left unread.
+        if error is None and self.error is not None:
+            raise self.error
+
+    def _end(self) -> None:
+        self._stopping.set()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     def _run(self) -> None:
         try:

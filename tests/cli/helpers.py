@@ -1,8 +1,12 @@
 """The command line as a user meets it."""
 
 import io
+import os
+import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -59,14 +63,56 @@ class CommandLine:
         return " ".join(said.err.replace("│", "").split())
 
 
-def start(*words: str | Path, folder: Path) -> "subprocess.Popen[str]":
-    """Start `kurt2rt ...` as a process of its own, with nobody at its keyboard."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "kurt2rt.cli.main", *map(str, words)],
-        stdin=subprocess.DEVNULL,
+class Running:
+    """A `kurt2rt ...` that runs as a process of its own."""
+
+    def __init__(self, process: "subprocess.Popen[str]") -> None:
+        self.process = process
+        self._seen: list[str] = []
+
+    def wait_for(self, text: str) -> str:
+        """Read on until a line holds the text; returns that line."""
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self._seen.append(line)
+            if text in line:
+                return line
+        raise AssertionError(f"{text!r} was never said: {''.join(self._seen)} {self.process.communicate()[1]}")
+
+    def type(self, line: str) -> None:
+        """Type a line at its keyboard."""
+        assert self.process.stdin is not None
+        print(line, file=self.process.stdin, flush=True)
+
+    def stop_reading(self) -> None:
+        """Close the terminal that it prints to."""
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+    def end(self, number: signal.Signals) -> Said:
+        """Send a signal and wait for the end."""
+        assert self.process.stdout is not None
+        assert self.process.stderr is not None
+        self.process.send_signal(number)
+        if not self.process.stdout.closed:
+            self._seen += self.process.stdout.readlines()
+        err = self.process.stderr.read()
+        return Said(self.process.wait(), "".join(self._seen), err)
+
+
+@contextmanager
+def running(*words: str, folder: Path) -> Iterator[Running]:
+    """Start `kurt2rt ...` in a folder; what is left of it at the end is killed."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "kurt2rt.cli.main", *words],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        bufsize=1,
         cwd=folder,
-    )
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    ) as process:
+        try:
+            yield Running(process)
+        finally:
+            process.kill()

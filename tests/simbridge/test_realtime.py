@@ -61,3 +61,22 @@ def test_missed_cycles_are_skipped_whole_and_counted(monkeypatch: pytest.MonkeyP
         assert steps.enough.wait(30.0)
         simulation.stop()
         assert simulation.missed_cycles > 0
+
+
+def test_an_error_in_the_thread_does_not_hide_what_the_body_raised() -> None:
+    def fail_when_it_has_failed(simulation: RealtimeSimulation) -> None:
+        with simulation:
+            assert simulation.wait(30.0)
+            raise ValueError("the body's own")
+
+    with Rig() as rig:
+        rig.robot_end.shutdown()
+        with pytest.raises(ValueError, match="the body's own"):
+            fail_when_it_has_failed(RealtimeSimulation(rig.robot))
+
+
+def test_an_error_in_the_thread_comes_out_of_a_body_that_went_well() -> None:
+    with Rig() as rig:
+        rig.robot_end.shutdown()
+        with pytest.raises(BusError, match="is shut down"), RealtimeSimulation(rig.robot) as simulation:
+            assert simulation.wait(30.0)

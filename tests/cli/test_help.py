@@ -1,0 +1,44 @@
+import pytest
+import typer
+
+from kurt2rt.cli.main import app
+from tests.cli.helpers import CommandLine
+
+
+def commands() -> dict[tuple[str, ...], list[str]]:
+    """Every command by its words, with the names of its options and arguments."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(app))]
+    while waiting:
+        words, command = waiting.pop()
+        found[words] = [name for each in getattr(command, "params") for name in _names(each)]  # noqa: B009
+        waiting += [((*words, name), each) for name, each in getattr(command, "commands", {}).items()]
+    return found
+
+
+def _names(parameter: object) -> list[str]:
+    opts: list[str] = parameter.opts  # type: ignore[attr-defined]  # of click or of typer, by typer's version
+    return opts
+
+
+def test_every_command_is_found() -> None:
+    assert {words[-1] for words in commands() if words} == {
+        *("demo", "run", "lesson", "exam", "knowledge", "show", "check", "bench", "doctor")
+    }
+    assert "--seeds" in commands()["lesson",]
+    assert "--limit" in commands()["knowledge", "show"]
+
+
+@pytest.mark.parametrize(("words", "names"), commands().items(), ids=lambda value: " ".join(value))
+def test_help_mentions_every_option_and_explains_it(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], names: list[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setattr("typer.rich_utils.MAX_WIDTH", 200)
+    said = kurt2rt(*words, "--help")
+    assert said.exit_code == 0
+    assert said.err == ""
+    for name in names:
+        (line, *_) = [line for line in said.out.splitlines() if line.startswith("│") and f" {name} " in line]
+        explained = line.strip("│ ").split(name, 1)[1]
+        assert len(explained.split()) > 2, f"{' '.join(words)} {name} is not explained"

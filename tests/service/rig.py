@@ -1,0 +1,121 @@
+"""The service with the simulated robot in real time, and an ear on its bus."""
+
+import os
+import signal
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hal.bus import CONTROL_ID, CanBus, open_bus
+from hal.kurt2 import Kurt2
+from hal.robot_settings import load_robot
+from kurt2rt.cli.run import scripted_watch
+from kurt2rt.service import Screen, Status, serve
+from kurt2rt.service_settings import ServiceSettings, load_service
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching.commands import Command
+from kurt2rt.teaching.question import Question
+from kurt2rt.tick import TickRecord
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world_settings import load_world
+
+SETTINGS = load_robot()
+LONGEST_S = 60.0
+"""Ends a test whose event never comes; none waits for it."""
+
+
+def eager_task(radius: float = 100.0) -> TaskSettings:
+    """A robot that soon asks again, and a teacher that answers at once."""
+    task = load_task("wall_following")
+    teacher = task.teaching.teacher.model_copy(update={"reaction_s": 0.03, "patience_s": 0.05})
+    return task.model_copy(
+        update={
+            "learning": task.learning.model_copy(update={"radius": radius}),
+            "teaching": task.teaching.model_copy(update={"teacher": teacher}),
+        }
+    )
+
+
+@dataclass
+class Rig:
+    """A simulated robot that lives by itself, the driver at the other end of its bus, and what was seen."""
+
+    robot: Kurt2
+    robot_bus: CanBus
+    far_end: CanBus
+    ear: CanBus
+    simulation: RealtimeSimulation
+    simulated: SimulatedRobot
+    records: list[TickRecord] = field(default_factory=list)
+    questions: list[Question] = field(default_factory=list)
+    statuses: list[Status] = field(default_factory=list)
+
+    @property
+    def now(self) -> TickRecord:
+        """The newest tick."""
+        return self.records[-1]
+
+    def control_payloads(self) -> list[bytes]:
+        """Every CONTROL frame that went over the bus since the last call."""
+        return [bytes(frame.data) for frame in self.ear.drain() if frame.arbitration_id == CONTROL_ID]
+
+    async def serve(
+        self,
+        knowledge: Path,
+        watch: Callable[[TickRecord], Command | None],
+        *,
+        task: TaskSettings | None = None,
+        duration_s: float = LONGEST_S,
+    ) -> Status | None:
+        """Run the service; `watch` sees each tick, may answer it and ends the run when it has seen enough."""
+
+        def teacher(record: TickRecord) -> Command | None:
+            self.records.append(record)
+            return watch(record)
+
+        screen = Screen(status=self.statuses.append, question=self.questions.append)
+        return await serve(
+            self.robot,
+            SETTINGS,
+            settings_for(knowledge),
+            task or eager_task(),
+            screen,
+            teacher=teacher,
+            duration_s=duration_s,
+        )
+
+
+def settings_for(knowledge: Path) -> ServiceSettings:
+    return load_service().model_copy(update={"knowledge": str(knowledge)})
+
+
+@contextmanager
+def rig(seed: int = 1) -> Iterator[Rig]:
+    spec = f"virtual:{uuid.uuid4()}"
+    far_end, robot_bus, ear = open_bus(spec), open_bus(spec), open_bus(spec)
+    simulated = SimulatedRobot(SETTINGS, load_world("a"), far_end, seed)
+    robot = Kurt2(SETTINGS, robot_bus)
+    simulation = RealtimeSimulation(simulated)
+    simulation.start()
+    try:
+        with robot.watchdog:
+            yield Rig(robot, robot_bus, far_end, ear, simulation, simulated)
+    finally:
+        robot.close()
+        if simulation.error is None:
+            simulation.stop()
+        far_end.shutdown()
+        ear.shutdown()
+
+
+def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickRecord], Command | None]:
+    """The scripted teacher as `kurt2rt run --teacher scripted` puts it there."""
+    return scripted_watch(task or eager_task(), SETTINGS, seed)
+
+
+def end_service(number: signal.Signals = signal.SIGTERM) -> None:
+    """What a service manager or Ctrl-C does."""
+    os.kill(os.getpid(), number)

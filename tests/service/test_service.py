@@ -1,0 +1,91 @@
+import signal
+from pathlib import Path
+
+import pytest
+
+from hal.control import encode_brake
+from hal.robot import STANDSTILL
+from kurt2rt.knowledge.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.layers.decision import Cause
+from kurt2rt.teaching.commands import Command
+from kurt2rt.tick import TickRecord
+from tests.service.rig import Rig, eager_task, end_service, rig, scripted
+
+
+async def teach_until(lessons: int, here: Rig, knowledge: Path, number: signal.Signals = signal.SIGTERM) -> list[str]:
+    """Let the scripted teacher answer until so many lessons act, then end the service; returns their command ids."""
+    teacher = scripted()
+    acting: list[str] = []
+
+    def watch(record: TickRecord) -> Command | None:
+        acting.extend(result.command_id for result in record.results if " taught: " in result.text)
+        if len(acting) >= lessons:
+            end_service(number)
+            return None
+        return teacher(record)
+
+    await here.serve(knowledge, watch)
+    return acting
+
+
+def events_in(knowledge: Path) -> list[str]:
+    with Journal.read_only(knowledge) as journal:
+        assert check_knowledge(journal) == []
+        return [event.origin.command_id for event in journal.events()]
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+async def test_answers_become_lessons_the_robot_drives_by_them_and_stands_at_the_end(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    knowledge = tmp_path / "var" / "new.knowledge"
+    with rig() as here:
+        taught = await teach_until(2, here, knowledge, number)
+        payloads = here.control_payloads()
+        assert here.robot.health.latched == "the service ends"
+    assert payloads[-1] == bytes(encode_brake().data)
+    assert any(payload != payloads[-1] for payload in payloads)
+    assert events_in(knowledge) == taught
+    assert here.records[0].decision.asking
+    assert any(record.decision.driving for record in here.records)
+    assert str(here.questions[0]) == "I know nothing yet, teach me"
+
+
+async def test_the_next_run_goes_on_from_the_file(tmp_path: Path) -> None:
+    knowledge = tmp_path / "knowledge"
+    with rig() as here:
+        first = await teach_until(1, here, knowledge)
+    with rig() as here:
+        second = await teach_until(1, here, knowledge)
+    assert events_in(knowledge) == first + second
+    assert not here.records[0].decision.asking or here.records[0].decision.match is not None
+    with Journal.read_only(knowledge) as journal:
+        statistics = journal.statistics()
+        assert statistics.uses.keys() <= {rla.rla_id for rla in fold_journal(journal, 1.0).rlas}
+        assert statistics.uses[1] >= 1
+
+
+async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
+    with rig() as here:
+        last = await here.serve(tmp_path / "knowledge", lambda _: None, duration_s=1.2)
+    assert here.now.tick >= 120  # beyond, when the last ones were missed
+    assert {record.decision.cause for record in here.records} == {Cause.UNKNOWN}
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in here.records)
+    assert len(here.questions) == 1
+    assert last is not None
+    assert here.statuses[-1] is last
+    assert (last.unsaved_lessons, last.trouble) == (0, None)
+
+
+async def test_knowledge_that_asks_for_other_actions_is_refused_before_the_wheels_turn(tmp_path: Path) -> None:
+    knowledge = tmp_path / "knowledge"
+    with rig() as here:
+        await teach_until(1, here, knowledge)
+    task = eager_task()
+    with rig() as here:
+        with pytest.raises(Exception, match="no such file in repertoires"):
+            await here.serve(knowledge, lambda _: None, task=task.model_copy(update={"repertoire": "other"}))
+        assert here.records == []
+        assert here.control_payloads() == []
+    assert len(events_in(knowledge)) == 1

@@ -1,0 +1,189 @@
+"""What goes wrong while the robot runs: it stands, says why, and goes on when it can."""
+
+import resource
+from collections.abc import Callable
+from pathlib import Path
+
+from hal.robot import STANDSTILL
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal_file import log_of
+from kurt2rt.layers.decision import Cause
+from kurt2rt.teaching.commands import Command, Resume, Stop
+from kurt2rt.tick import TickRecord
+from tests.service.rig import end_service, rig, scripted
+
+Step = Callable[[TickRecord], bool]
+
+
+class Story:
+    """Steps that follow each other, each as soon as the one before has seen what it waited for."""
+
+    def __init__(self, *steps: Step) -> None:
+        self._steps = list(steps)
+
+    @property
+    def over(self) -> bool:
+        return not self._steps
+
+    def see(self, record: TickRecord) -> None:
+        if self._steps and self._steps[0](record):
+            self._steps.pop(0)
+
+
+def largest_file(size_bytes: int) -> None:
+    """No file of this process may grow beyond: writes fail for real, as they do on a full disk."""
+    _, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, hard))
+
+
+async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(tmp_path: Path) -> None:
+    knowledge = tmp_path / "knowledge"
+    soft, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
+    teacher = scripted()
+    acting: list[str] = []
+    unsaved: list[TickRecord] = []
+
+    def a_lesson_is_saved(_record: TickRecord) -> bool:
+        if not acting or log_of(knowledge).stat().st_size == 0:
+            return False
+        largest_file(log_of(knowledge).stat().st_size)
+        return True
+
+    def it_stands_for_a_while(record: TickRecord) -> bool:
+        if record.decision.cause is Cause.UNSAVED:
+            unsaved.append(record)
+        if len(unsaved) < 20:
+            return False
+        largest_file(soft)
+        return True
+
+    def it_goes_on(record: TickRecord) -> bool:
+        if record.decision.cause is Cause.UNSAVED:
+            unsaved.append(record)
+        return record.decision.cause is not Cause.UNSAVED and record.decision.driving
+
+    story = Story(a_lesson_is_saved, it_stands_for_a_while, it_goes_on)
+
+    def watch(record: TickRecord) -> Command | None:
+        acting.extend(result.command_id for result in record.results if " taught: " in result.text)
+        story.see(record)
+        if story.over:
+            end_service()
+        return teacher(record)
+
+    with rig() as here:
+        try:
+            await here.serve(knowledge, watch)
+        finally:
+            largest_file(soft)
+    assert story.over
+    assert all(record.decision.wheel_speeds == STANDSTILL for record in unsaved)
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in unsaved)
+    with Journal.read_only(knowledge) as journal:
+        assert [event.origin.command_id for event in journal.events()] == acting
+
+
+async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tmp_path: Path) -> None:
+    teacher = scripted()
+    lost: list[TickRecord] = []
+    said: list[Command] = []
+
+    def it_drives(record: TickRecord) -> bool:
+        if record.grant.wheel_speeds == STANDSTILL:
+            return False
+        here.robot_bus.shutdown()
+        return True
+
+    def the_bus_is_back(record: TickRecord) -> bool:
+        lost.append(record)
+        fresh = record.senses.infrared_age_s < 0.05 and record.senses.encoder_age_s < 0.05
+        if not fresh or len(lost) < 20:
+            return False
+        said.append(Resume("resume-1", "Ann"))
+        return True
+
+    def it_drives_again(record: TickRecord) -> bool:
+        return record.grant.wheel_speeds != STANDSTILL
+
+    story = Story(it_drives, the_bus_is_back, it_drives_again)
+
+    def watch(record: TickRecord) -> Command | None:
+        story.see(record)
+        if story.over:
+            end_service()
+        return said.pop() if said else teacher(record)
+
+    with rig() as here:
+        await here.serve(tmp_path / "knowledge", watch)
+        assert story.over
+        assert here.robot.health.receive_failures > 0
+    assert all(record.grant.latched for record in lost)
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in lost)
+    assert {record.grant.reasons for record in lost} == {("bus lost",)}
+
+
+async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
+    teacher = scripted()
+    silent: list[TickRecord] = []
+
+    def it_drives(record: TickRecord) -> bool:
+        if record.grant.wheel_speeds == STANDSTILL:
+            return False
+        here.far_end.shutdown()
+        return True
+
+    def it_stands(record: TickRecord) -> bool:
+        if record.senses.infrared_age_s > 0.05:
+            silent.append(record)
+        return len(silent) >= 20
+
+    story = Story(it_drives, it_stands)
+
+    def watch(record: TickRecord) -> Command | None:
+        story.see(record)
+        if story.over:
+            end_service()
+        return teacher(record)
+
+    with rig() as here:
+        await here.serve(tmp_path / "knowledge", watch)
+        assert story.over
+        assert isinstance(here.simulation.error, OSError)
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in silent)
+    assert {reason for record in silent for reason in record.grant.reasons} <= {"infra-red stale", "encoder stale"}
+
+
+async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
+    teacher = scripted()
+    stopped: list[TickRecord] = []
+    said: list[Command] = []
+
+    def it_drives(record: TickRecord) -> bool:
+        if record.grant.wheel_speeds == STANDSTILL:
+            return False
+        said.append(Stop("stop-1", "Ann"))
+        return True
+
+    def it_stands(record: TickRecord) -> bool:
+        if record.decision.cause is Cause.STOPPED:
+            stopped.append(record)
+        if len(stopped) < 20:
+            return False
+        said.append(Resume("resume-1", "Ann"))
+        return True
+
+    def it_drives_again(record: TickRecord) -> bool:
+        return record.grant.wheel_speeds != STANDSTILL
+
+    story = Story(it_drives, it_stands, it_drives_again)
+
+    def watch(record: TickRecord) -> Command | None:
+        story.see(record)
+        if story.over:
+            end_service()
+        return said.pop() if said else teacher(record)
+
+    with rig() as here:
+        await here.serve(tmp_path / "knowledge", watch)
+    assert story.over
+    assert all(record.grant.wheel_speeds == STANDSTILL for record in stopped)
