@@ -14,6 +14,8 @@ from simbridge.world_settings import WorldSettings
 _WALL = "#d5d5d5"
 _WALL_EDGE = "#9a9a9a"
 _ROBOT = "#2f6db3"
+_TEXT = "#222222"
+_TEXT_SIZE = 11.0
 _MARGIN_M = 0.15
 
 
@@ -35,10 +37,11 @@ def draw_world(axes: Axes, world: WorldSettings) -> None:
         )
     axes.set_xticks(range(math.floor(width_m) + 1))
     axes.set_yticks(range(math.floor(height_m) + 1))
-    axes.tick_params(length=0, labelsize=8, colors="#666666")
+    axes.tick_params(length=0, labelsize=_TEXT_SIZE, colors=_TEXT)
     for spine in axes.spines.values():
         spine.set_visible(False)
-    axes.set_xlabel("m", fontsize=8, color="#666666")
+    axes.set_xlabel("x in m", fontsize=_TEXT_SIZE, color=_TEXT)
+    axes.set_ylabel("y in m", fontsize=_TEXT_SIZE, color=_TEXT)
 
 
 def draw_robot(axes: Axes, pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:

@@ -2,86 +2,96 @@
 
 import math
 
-from simbridge.geometry import Edge, Point, edges_of, point_distance_m, signed_area_m2
+import shapely  # type: ignore[import-untyped, unused-ignore]
+import shapely.ops  # type: ignore[import-untyped, unused-ignore]
+
+from simbridge.geometry import Point
 from simbridge.world import World
 from simbridge.world_settings import WorldSettings
 
+_ROBOT_M = 0.15
+"""From the robot's centre to its side, and somewhat less: nowhere does it come nearer to a wall."""
+_WALL_M = 0.35
+"""From a wall follower's centre to its wall. Along this way corners are short, and places in them distinct."""
+_NEAR_M = 0.3
+"""Along the wall is where the robot is so near to that way; its sensors hardly see a wall from farther off."""
+_REACH_M = 0.3
+"""From one call to the next its place moves on by less, as long as it stays along one stretch of wall."""
+_CORNER_M = 1.0
+"""A jump in place that a corner or a bulge in its way explains; longer jumps cross the room."""
+
 
 class Laps:
-    """Progress along the contour of the room: its point nearest to the robot, followed as it wanders round.
+    """Progress along the outer wall: the place of the way round the room that is nearest to the robot, followed.
 
-    Positive with the wall on the left, which is clockwise. The contour is the outline with a detour round each wall
-    that stands against it, since that is the way a wall follower takes. Progress is meant for a robot near the wall:
-    in the middle of a room the nearest point changes sides.
+    Positive with the wall on the left, which is clockwise. Only ways along the wall make progress. A way through the
+    middle leads to a place of the lap driven last, never ahead of the foremost place reached along the wall: whoever
+    cuts across makes up no lap by it, however often.
     """
 
     def __init__(self, world: World) -> None:
         self.count = 0.0
         """Laps so far, with fractions."""
         self._world = world
-        self._along_m = 0.0
-        self._survey(world.settings)
+        start = world.settings.start_poses[0]
+        self.put((start.x_m, start.y_m))
 
     def put(self, position: Point) -> None:
         """The robot was put here: no progress."""
-        self._along_m = self._project(position)
+        self._surveyed = self._world.settings
+        self._way = way_round(self._surveyed, position)
+        self._length_m: float = self._way.length
+        self._foremost = self.count
+        self._two_rounds = shapely.LineString([*self._way.coords, *self._way.coords[1:]])
+        self._along_m: float | None = None
+        self._along_m = self._place(position)
 
     def follow(self, position: Point) -> None:
-        """The robot came here on its own wheels, less than half a lap since the last call."""
+        """The robot came here on its own wheels, not more than some decimetres since the last call."""
         if self._world.settings is not self._surveyed:
-            # A wall was moved, and what was measured along the old contour means nothing on the new one.
-            self._survey(self._world.settings)
+            # A wall was moved, and what was measured along the old way means nothing on the new one.
             self.put(position)
-        along_m = self._project(position)
-        self.count += math.remainder(along_m - self._along_m, self._perimeter_m) / self._perimeter_m
+            return
+        along_m = self._place(position)
+        if along_m is None:
+            return
+        if self._along_m is not None:
+            self._advance(math.remainder(along_m - self._along_m, self._length_m))
         self._along_m = along_m
 
-    def _survey(self, world: WorldSettings) -> None:
-        """Measure the contour: of each edge its start, direction, length, and place along the whole."""
-        self._surveyed = world
-        self._edges: list[tuple[float, float, float, float, float, float]] = []
-        along_m = 0.0
-        for (ax, ay), (bx, by) in edges_of(contour(world)):
-            length_m = math.hypot(bx - ax, by - ay)
-            if length_m > 0.0:
-                self._edges.append((ax, ay, (bx - ax) / length_m, (by - ay) / length_m, length_m, along_m))
-                along_m += length_m
-        self._perimeter_m = along_m
+    def _advance(self, step_m: float) -> None:
+        count = self.count + step_m / self._length_m
+        if abs(step_m) <= _CORNER_M:
+            self._foremost = min(max(self._foremost, count), count + 1.0)
+        else:
+            count = self._foremost - (self._foremost - count) % 1.0
+        self.count = count
 
-    def _project(self, position: Point) -> float:
-        x, y = position
-        nearest2, found_m = math.inf, 0.0
-        for ax, ay, ux, uy, length_m, start_m in self._edges:
-            dx, dy = x - ax, y - ay
-            along_m = min(length_m, max(0.0, dx * ux + dy * uy))
-            away2 = (dx - along_m * ux) ** 2 + (dy - along_m * uy) ** 2
-            if away2 < nearest2:
-                nearest2, found_m = away2, start_m + along_m
-        return found_m
-
-
-def contour(world: WorldSettings) -> list[Point]:
-    """Corners of the outline, clockwise, with a detour round each wall that has one end at it."""
-    corners = list(world.outline[:-1])
-    if signed_area_m2(corners) > 0:
-        corners.reverse()
-    found: list[Point] = []
-    for edge in edges_of(corners):
-        found.append(edge[0])
-        detours = []
-        for wall in world.walls:
-            # Corners run along one side of the wall and back along the other; 0 and 3 are those at its end `to_m`.
-            to_left, from_left, from_right, to_right = wall.corners
-            if point_distance_m(wall.from_m, edge) <= wall.thickness_m:
-                detours.append((from_left, to_left, to_right, from_right))
-            elif point_distance_m(wall.to_m, edge) <= wall.thickness_m:
-                detours.append((to_right, from_right, from_left, to_left))
-        for detour in sorted(detours, key=lambda way: _share_along(edge, way[0])):
-            forward = _share_along(edge, detour[0]) < _share_along(edge, detour[3])
-            found += detour if forward else detour[::-1]
-    return found
+    def _place(self, position: Point) -> float | None:
+        """Length of the way up to the robot's place; None away from the wall."""
+        centre = shapely.Point(position)
+        away_m: float = self._way.distance(centre)
+        if away_m > _NEAR_M:
+            return None
+        along_m: float = self._way.project(centre)
+        if self._along_m is None or abs(math.remainder(along_m - self._along_m, self._length_m)) <= _REACH_M:
+            return along_m
+        # In a narrow place another wall may be nearer for a while than the one it follows.
+        begin_m = (self._along_m - _REACH_M) % self._length_m
+        stretch = shapely.ops.substring(self._two_rounds, begin_m, begin_m + 2 * _REACH_M)
+        return begin_m + float(stretch.project(centre)) if stretch.distance(centre) <= _NEAR_M else along_m
 
 
-def _share_along(edge: Edge, point: Point) -> float:
-    (ax, ay), (bx, by) = edge
-    return (point[0] - ax) * (bx - ax) + (point[1] - ay) * (by - ay)
+def way_round(world: WorldSettings, position: Point) -> shapely.LinearRing:
+    """Clockwise way of a wall follower's centre round the room that a position is in.
+
+    It leads along the outline and round all that stands against it or leaves no gap to pass. Islands are left out.
+    """
+    walls = shapely.union_all([shapely.Polygon(corners) for corners in world.solids])
+    rooms = shapely.get_parts(shapely.Polygon(world.outline).difference(walls).buffer(-_ROBOT_M, quad_segs=2))
+    centre = shapely.Point(position)
+    room = min(rooms, key=lambda part: float(part.distance(centre)))
+    apart = room.buffer(_ROBOT_M - _WALL_M, quad_segs=2)
+    # Where it would not get through a narrow place so far from both walls, it goes as near to them as it can.
+    way = (apart if isinstance(apart, shapely.Polygon) and not apart.is_empty else room).exterior
+    return way.reverse() if way.is_ccw else way

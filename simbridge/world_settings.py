@@ -1,21 +1,15 @@
 """Schema of `config/worlds/*.yaml`: outline, walls, obstacles and start poses of one world. Lengths in metres."""
 
 import math
+from itertools import pairwise
 from typing import Annotated, Literal, Self
 
+import shapely  # type: ignore[import-untyped, unused-ignore]
 from pydantic import Field, field_validator, model_validator
 
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
-from simbridge.geometry import (
-    Point,
-    contains,
-    edge_distance_m,
-    edges_cross,
-    edges_of,
-    point_distance_m,
-    rectangle,
-)
+from simbridge.geometry import Point, rectangle
 from simbridge.obstacle_settings import (
     Coordinate,
     Corner,
@@ -28,7 +22,6 @@ from simbridge.pose import Pose
 START_CLEARANCE_M = 0.05
 """A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
 
-_TOUCHING_M = 1e-9
 Size = Annotated[float, Field(gt=0, le=50)]
 
 
@@ -62,17 +55,12 @@ class WorldSettings(Settings):
     def _is_a_simple_closed_polygon(cls, outline: tuple[Corner, ...]) -> tuple[Corner, ...]:
         if outline[0] != outline[-1]:
             raise ValueError(f"not closed: the last corner {outline[-1]} must repeat the first {outline[0]}")
-        edges = edges_of(outline[:-1])
-        for edge in edges:
-            if edge[0] == edge[1]:
-                raise ValueError(f"corner {edge[0]} stands twice in a row")
-        for edge, following in zip(edges, (*edges[1:], edges[0]), strict=True):
-            if min(point_distance_m(following[1], edge), point_distance_m(edge[0], following)) < _TOUCHING_M:
-                raise ValueError(f"intersects itself: it turns back on itself at {edge[1]}")
-        for i, edge in enumerate(edges):
-            for j in range(i + 2, len(edges)):
-                if (i, j) != (0, len(edges) - 1) and edges_cross(edge, edges[j]):
-                    raise ValueError(f"intersects itself: {edge[0]} to {edge[1]} meets {edges[j][0]} to {edges[j][1]}")
+        for corner, following in pairwise(outline):
+            if corner == following:
+                raise ValueError(f"corner {corner} stands twice in a row")
+        polygon = shapely.Polygon(outline)
+        if not polygon.is_valid:
+            raise ValueError(f"intersects or touches itself: {shapely.is_valid_reason(polygon)}")
         return outline
 
     @model_validator(mode="after")
@@ -116,21 +104,16 @@ class WorldSettings(Settings):
 
     def clearance_m(self, pose: Pose, geometry: GeometrySettings) -> float:
         """Distance from the body at a pose to the nearest wall or obstacle; 0 when it overlaps one or is outside."""
-        centre = (pose.x_m, pose.y_m)
-        body = rectangle(centre, geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
-        if not contains(self.outline[:-1], centre) or any(contains(solid, centre) for solid in self.solids):
+        corners = rectangle((pose.x_m, pose.y_m), geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
+        body, room = shapely.Polygon(corners), shapely.Polygon(self.outline)
+        if not room.contains(body):
             return 0.0
-        faces = edges_of(self.outline[:-1]) + [face for solid in self.solids for face in edges_of(solid)]
-        # A solid wholly under the body crosses none of its sides; its corners still lie within.
-        if any(contains(body, face[0]) for face in faces):
-            return 0.0
-        sides = edges_of(body)
-        clear_m = min(edge_distance_m(side, face) for side in sides for face in faces)
+        clear_m: float = body.distance(room.exterior)
+        for solid in self.solids:
+            clear_m = min(clear_m, body.distance(shapely.Polygon(solid)))
         for post in self.round_obstacles:
-            post_centre = (post.x_m, post.y_m)
-            away_m = 0.0 if contains(body, post_centre) else min(point_distance_m(post_centre, side) for side in sides)
-            clear_m = min(clear_m, max(0.0, away_m - post.radius_m))
-        return clear_m
+            clear_m = min(clear_m, body.distance(shapely.Point(post.x_m, post.y_m)) - post.radius_m)
+        return max(0.0, clear_m)
 
 
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:

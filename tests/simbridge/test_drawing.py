@@ -27,6 +27,7 @@ def test_a_picture_shows_walls_robot_trail_and_marks(tmp_path: Path) -> None:
     figure.savefig(picture)
     assert picture.stat().st_size > 2000
     assert axes.get_aspect() == 1.0
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x in m", "y in m")
     assert len(axes.patches) == 1 + 3 + 3
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["lesson"]  # type: ignore[union-attr]
 
