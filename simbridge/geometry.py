@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-import shapely  # type: ignore[import-untyped, unused-ignore]
+import shapely
 
 Point = tuple[float, float]
 Edge = tuple[Point, Point]

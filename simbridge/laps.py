@@ -2,8 +2,8 @@
 
 import math
 
-import shapely  # type: ignore[import-untyped, unused-ignore]
-import shapely.ops  # type: ignore[import-untyped, unused-ignore]
+import shapely
+import shapely.ops
 
 from simbridge.geometry import Point
 from simbridge.world import World

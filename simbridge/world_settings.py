@@ -4,7 +4,7 @@ import math
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
-import shapely  # type: ignore[import-untyped, unused-ignore]
+import shapely
 from pydantic import Field, field_validator, model_validator
 
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot

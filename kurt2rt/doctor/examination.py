@@ -29,5 +29,6 @@ def examine(folder: Path, ticks: int = 100) -> tuple[Finding, ...]:
         *check_can_interfaces(),
         check_vcan(),
         check_package("pymunk", "the simulator's physics"),
+        check_package("shapely", "the simulator's worlds"),
         check_package("matplotlib", "drawing to files, without a display"),
     )

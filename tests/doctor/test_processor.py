@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+from threadpoolctl import threadpool_limits
 
 from kurt2rt.doctor.finding import Status
 from kurt2rt.doctor.processor import check_blas_threads, check_cores, check_governor

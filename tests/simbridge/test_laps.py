@@ -4,7 +4,7 @@ import random
 from collections.abc import Iterator
 
 import pytest
-import shapely  # type: ignore[import-untyped, unused-ignore]
+import shapely
 
 from simbridge.geometry import Point
 from simbridge.laps import Laps, way_round

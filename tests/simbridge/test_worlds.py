@@ -2,7 +2,7 @@ import math
 from pathlib import Path
 
 import pytest
-import shapely  # type: ignore[import-untyped, unused-ignore]
+import shapely
 import yaml
 
 from config import CONFIG_DIR
