@@ -76,6 +76,7 @@ def test_a_disk_that_stays_full_is_the_last_word(tmp_path: Path) -> None:
     assert actions_in(knowledge) == ["stand"]
 
 
+@pytest.mark.deep
 def test_a_reader_that_goes_away_does_not_stop_the_robot(tmp_path: Path) -> None:
     with running("run", "--seconds", "60", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
         robot.wait_for("I know nothing yet, teach me")

@@ -18,8 +18,8 @@ STAGE = SimulatedStage(ROBOT)
 
 
 def short_task(
-    supervised_s: float = 15.0,
-    corrections_s: float = 10.0,
+    supervised_s: float = 9.0,
+    corrections_s: float = 6.0,
     exam_s: float = 20.0,
     *,
     radius: float | None = None,

@@ -20,14 +20,14 @@ def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) ->
     assert result.growth[0] == 0  # the teacher thinks for a second
     assert result.asks >= 2
     assert list(result.growth) == sorted(result.growth)
-    assert len(result.growth) == 25
-    assert result.growth[-1] == len(result.rlas) > 5
+    assert len(result.growth) == 15
+    assert result.growth[-1] == len(result.rlas) > 3
     first, last = result.trail[0], result.trail[-1]
     assert abs(last.x_m - first.x_m) + abs(last.y_m - first.y_m) > 0.5
-    assert len(result.trail) == 250
+    assert len(result.trail) == 150
     assert len(result.ask_positions) == result.asks
-    assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 25.0, 0)
-    assert taught.reported_s == [*map(float, range(1, 26)), 25.0]
+    assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 15.0, 0)
+    assert taught.reported_s == [*map(float, range(1, 16)), 15.0]
 
 
 def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None:
@@ -47,7 +47,7 @@ def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None
 def test_the_teacher_only_answers_at_first_and_then_corrects_as_well(taught: Taught) -> None:
     origins = [event.origin for event in taught.events]
     assert [each.phase for each in origins] == sorted(each.phase for each in origins)
-    assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 1500) for each in origins)
+    assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 900) for each in origins)
     assert {each.phase for each in origins} == {Phase.SUPERVISED, Phase.CORRECTIONS}
     answers = sum(each.phase is Phase.SUPERVISED for each in origins)
     assert answers + taught.result.corrections >= len(origins)
@@ -73,42 +73,36 @@ def test_the_same_seed_gives_the_same_knowledge_and_the_same_trail(taught: Taugh
 
 
 def test_another_seed_gives_another_lesson(taught: Taught, tmp_path: Path) -> None:
-    other = teach(tmp_path / "other", seed=2)
-    assert other.result.knowledge_hash != taught.result.knowledge_hash
-    assert other.result.trail != taught.result.trail
+    other = teach(tmp_path / "other", short_task(5.0, 0.0), seed=2)
+    assert other.events != taught.events[: len(other.events)]
+    assert other.result.trail != taught.result.trail[: len(other.result.trail)]
 
 
 def test_a_lesson_goes_on_from_what_the_file_holds(tmp_path: Path) -> None:
-    task = short_task(6.0, 6.0)
+    task = short_task(4.0, 3.0)
     first = teach(tmp_path / "knowledge", task)
     second = teach(tmp_path / "knowledge", task, seed=2)
-    same_seed = teach(tmp_path / "knowledge", task)
+    again = teach(tmp_path / "knowledge", task)
 
     assert second.events[: len(first.events)] == first.events
-    assert same_seed.events[: len(second.events)] == second.events
+    assert again.events[: len(second.events)] == second.events
     assert len(second.events) > len(first.events)
     assert second.result.growth[0] == len(first.result.rlas)
-    command_ids = [event.origin.command_id for event in same_seed.events]
+    command_ids = [event.origin.command_id for event in again.events]
     assert len(set(command_ids)) == len(command_ids)
-    created = [event.rla.rla_id for event in same_seed.events if isinstance(event, RlaCreated)]
+    created = [event.rla.rla_id for event in again.events if isinstance(event, RlaCreated)]
     assert created == list(range(1, len(created) + 1))
-
-
-def test_statistics_count_on_in_a_second_lesson(tmp_path: Path) -> None:
-    task = short_task(6.0, 6.0)
-    first = teach(tmp_path / "knowledge", task)
-    uses_before = sum(first.result.statistics.uses.values())
-    second = teach(tmp_path / "knowledge", task, seed=2)
+    # Counts too: each lesson adds to what was counted before it.
     with Journal.read_only(tmp_path / "knowledge") as journal:
-        statistics = journal.statistics()
-    assert sum(statistics.uses.values()) > uses_before
-    for rla_id, count in first.result.statistics.uses.items():
-        assert statistics.uses[rla_id] >= count
-    assert statistics.uses == second.result.statistics.uses
+        assert journal.statistics().uses == again.result.statistics.uses
+    for before, after in ((first, second), (second, again)):
+        uses = after.result.statistics.uses
+        assert all(uses[rla_id] >= count for rla_id, count in before.result.statistics.uses.items())
+        assert uses.total() > before.result.statistics.uses.total()
 
 
 def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None:
-    task = short_task(4.0, 0.0)
+    task = short_task(3.0, 0.0)
     impatient = task.teaching.model_copy(update={"rescue_after_s": 1.0})
     rescued = teach(tmp_path / "knowledge", task.model_copy(update={"teaching": impatient})).result
     assert rescued.rescues > 0

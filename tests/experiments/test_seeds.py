@@ -14,7 +14,7 @@ COUNTED_APART = StatisticsCounter()
 
 
 def jobs(folder: Path, world: str = "a") -> list[SeedJob]:
-    task = short_task(4.0, 3.0, 3.0)
+    task = short_task(2.5, 1.0, 1.0)
     return [SeedJob(STAGE, ROBOT, task, (world,), seed, folder / f"{seed}.knowledge") for seed in (5, 6)]
 
 
