@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -96,11 +97,16 @@ def told_where(story: Story) -> str:
     return story.where
 
 
+@pytest.fixture(scope="session")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return teach(tmp_path_factory.mktemp("demo") / "knowledge", short_task(3.0, 2.0)).knowledge
+
+
 @pytest.fixture
-def folder(tmp_path: Path) -> Path:
+def folder(tmp_path: Path, taught: Path) -> Path:
     """Where a reader works: a short task, and what the demo leaves behind."""
     (tmp_path / TAUGHT_BY_THE_DEMO).parent.mkdir(parents=True)
-    teach(tmp_path / TAUGHT_BY_THE_DEMO, short_task(3.0, 2.0))
+    shutil.copy(taught, tmp_path / TAUGHT_BY_THE_DEMO)
     task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
     task["teaching"].update(supervised_s=5.0, corrections_s=3.0)
     task["exam"].update(duration_s=5.0)
