@@ -47,9 +47,14 @@ def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], 
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(processes, mp_context=context) as pool:
         running = {pool.submit(run_seed, job): job.seed for job in jobs}
-        for future in as_completed(running):
-            future.result()
-            on_done(running[future])
+        try:
+            for future in as_completed(running):
+                future.result()
+                on_done(running[future])
+        except BaseException:
+            # Else what failed would be said when all the others are through, minutes later.
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
         return [future.result() for future in running]
 
 

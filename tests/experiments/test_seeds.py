@@ -13,9 +13,9 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 COUNTED_APART = StatisticsCounter()
 
 
-def jobs(folder: Path, world: str = "a") -> list[SeedJob]:
+def jobs(folder: Path) -> list[SeedJob]:
     task = short_task(2.5, 1.0, 1.0)
-    return [SeedJob(STAGE, ROBOT, task, (world,), seed, folder / f"{seed}.knowledge") for seed in (5, 6)]
+    return [SeedJob(STAGE, ROBOT, task, ("a",), seed, folder / f"{seed}.knowledge") for seed in (5, 6)]
 
 
 def without_counts(result: CurriculumResult) -> CurriculumResult:
@@ -41,6 +41,12 @@ def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> Non
 
 
 @pytest.mark.deep
-def test_what_fails_in_a_process_is_said_here(tmp_path: Path) -> None:
+def test_what_fails_in_a_process_is_said_before_the_others_are_through(tmp_path: Path) -> None:
+    first, second = jobs(tmp_path)
+    failing = replace(first, worlds=("nowhere",))
+    others = [replace(second, seed=seed, knowledge=tmp_path / f"{seed}.knowledge") for seed in range(10, 30)]
+    done: list[int] = []
     with pytest.raises(SettingsError, match="nowhere: no such file in worlds"):
-        run_seeds(jobs(tmp_path, world="nowhere"), 1, lambda _: None)
+        run_seeds([failing, *others], 1, done.append)
+    assert done == []
+    assert len(list(tmp_path.glob("*.knowledge"))) < 10
