@@ -38,10 +38,14 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class Screen:
-    """What the service tells; called at most once per status period, and once for each question."""
+    """What the service tells. Called from the loop: none of these may wait."""
 
     status: Callable[[Status], None]
+    """Once per status period."""
     question: Callable[[Question], None]
+    """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
+    refused: Callable[[str], None]
+    """A lesson that acts but can never be saved, and why."""
 
 
 async def serve(
@@ -66,15 +70,18 @@ async def serve(
             period_s = settings.can.cycle_s
             checkpoint_ticks = round(service.checkpoint_period_s / period_s)
             status_ticks = round(service.status_period_s / period_s)
+            ticks_per_second = round(1 / period_s)
             asking = False
+            asked_at = -ticks_per_second
 
             def after_tick(record: TickRecord) -> None:
-                nonlocal last, asking
+                nonlocal last, asking, asked_at
                 if teacher is not None:
                     command = teacher(record)
                     if command is not None:
                         runtime.inbox.put(command)
-                if record.decision.asking and not asking:
+                if record.decision.asking and not asking and record.tick - asked_at >= ticks_per_second:
+                    asked_at = record.tick
                     names = runtime.definition.names
                     screen.question(ask(record.decision.match, record.situation.vector, names))
                 asking = record.decision.asking
@@ -82,7 +89,9 @@ async def serve(
                 if ticks % checkpoint_ticks == 0:
                     writer.submit_statistics(Statistics(dict(counter.uses), dict(counter.transitions)))
                 if ticks % status_ticks == 0:
-                    writer.acknowledged()
+                    for acknowledgement in writer.acknowledged():
+                        if acknowledgement.error is not None:
+                            screen.refused(f"lesson {acknowledgement.command_id}: {acknowledgement.error}")
                     last = Status(record, runtime, writer.unwritten, writer.trouble)
                     screen.status(last)
 

@@ -80,7 +80,7 @@ async def run_suite(
     if Bench.MATCH in benches:
         results.extend(measure_match(lengths.sizes, progress_of("matching")))
     if Bench.LOOP in benches:
-        results.append(
+        results.extend(
             await measure_closed_loop(
                 subject, folder, lengths.loop_blocks, lengths.loop_block_s, progress_of("driving in lockstep")
             )

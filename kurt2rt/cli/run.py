@@ -96,6 +96,7 @@ def run(
             lambda: console.print(status_line(status), markup=False, highlight=False, soft_wrap=True)
         ),
         question=lambda question: say(str(question), "yellow"),
+        refused=lambda text: say(text, "red"),
     )
     watch: Watcher | None = None
     if teacher == "scripted":

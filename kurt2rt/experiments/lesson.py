@@ -1,7 +1,7 @@
 """A lesson: a scripted teacher teaches the robot, phases 1 and 2, in lockstep."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from behaviors.policies.build import build_policy
 from hal.robot_settings import RobotSettings
@@ -14,6 +14,7 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
+from kurt2rt.timing.ledger import Ledger
 
 TRAIL_STRIDE = 10
 """Ticks between two points of a trail."""
@@ -36,6 +37,8 @@ class LessonResult:
     """Number of RLAs after each second of teaching."""
     trail: tuple[Position, ...]
     ask_positions: tuple[Position, ...]
+    ledger: Ledger = field(compare=False, repr=False)
+    """Where the time of its last ticks went, on the machine that ran it."""
 
 
 async def teach(
@@ -112,4 +115,5 @@ async def teach(
         growth=tuple(growth),
         trail=tuple(trail),
         ask_positions=tuple(ask_positions),
+        ledger=runtime.ledger,
     )

@@ -16,10 +16,12 @@ class WayMade:
         self._ticks = 0
 
     def none_since_window(self, position: Position) -> bool:
-        """Take in one tick's position; true when a whole window passed within `least_m`."""
-        if self._ticks % self._stride == 0:
-            self._positions.append(position)
+        """Take in one tick's position; true when a whole window passed within `least_m`. Looks twice a second."""
+        due = self._ticks % self._stride == 0
         self._ticks += 1
+        if not due:
+            return False
+        self._positions.append(position)
         full = len(self._positions) == self._positions.maxlen
         return full and all(
             math.hypot(position.x_m - old.x_m, position.y_m - old.y_m) < self._least_m for old in self._positions

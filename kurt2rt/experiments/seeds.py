@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
+from threadpoolctl import threadpool_limits
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
@@ -38,7 +39,9 @@ def run_seed(job: SeedJob) -> CurriculumResult:
         )
         return CurriculumResult(lesson, exams)
 
-    return anyio.run(run)
+    # As on the command line: this process shares the machine with its siblings.
+    with threadpool_limits(limits=1):
+        return anyio.run(run)
 
 
 def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:

@@ -55,7 +55,7 @@ class ExamSettings(Settings):
     """The course of an exam, without a teacher."""
 
     worlds: Annotated[tuple[str, ...], Field(min_length=1)]
-    duration_s: Annotated[float, Field(gt=0, le=100_000)]
+    duration_s: Annotated[float, Field(ge=1, le=100_000)]
     stuck_after_s: Annotated[float, Field(gt=0, le=1000)]
     """No way made for so long is stuck, and ends the exam."""
     laps_share: Share

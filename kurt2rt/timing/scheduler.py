@@ -30,7 +30,6 @@ class Scheduler:
 
         `after_tick` sees each record when the wheels have been told; it counts against the period.
         """
-        self._ending = False
         clock, period_s = self._clock, self._period_s
         last = None if ticks is None else self._number + ticks
         # Deadlines are multiples of the period from here, computed anew each time: no rounding error adds up.
@@ -48,3 +47,4 @@ class Scheduler:
             self._ledger.begin(now_s - deadline_s)
             after_tick(self._tick.run(self._number, now_s))
             self._ledger.end()
+        self._ending = False

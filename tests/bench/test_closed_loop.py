@@ -13,7 +13,7 @@ from kurt2rt.bench.subject import Subject
 
 async def test_blocks_are_timed_whole_and_one_by_one(subject: Subject, tmp_path: Path) -> None:
     told: list[float] = []
-    result = await measure_closed_loop(subject, tmp_path, 2, 1, told.append)
+    result, share = await measure_closed_loop(subject, tmp_path, 2, 1, told.append)
     assert told == [0.5, 1.0]
     assert "2 blocks of 100 ticks" in result.note
     assert 0.0 < result.took.median_us <= result.took.worst_us
@@ -22,6 +22,7 @@ async def test_blocks_are_timed_whole_and_one_by_one(subject: Subject, tmp_path:
     (goal,) = result.goals
     assert goal.at_least
     assert goal.measured == result.reference.ratio
+    assert 0.0 < share.took.median_us < result.took.worst_us
 
 
 def test_one_core_is_for_this_thread_and_those_it_starts_and_only_for_a_while() -> None:

@@ -6,6 +6,7 @@ from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.rla.rla import Origin, Phase, Rla
 from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.timing.ledger import Ledger
 
 TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
 
@@ -35,5 +36,6 @@ def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumRes
         growth=tuple(range(rlas)),
         trail=TRAIL,
         ask_positions=TRAIL[1:],
+        ledger=Ledger(),
     )
     return CurriculumResult(lesson, tuple(world_result(each) for each in exams))

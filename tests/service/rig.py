@@ -52,6 +52,7 @@ class Rig:
     records: list[TickRecord] = field(default_factory=list)
     questions: list[Question] = field(default_factory=list)
     statuses: list[Status] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
 
     @property
     def now(self) -> TickRecord:
@@ -76,7 +77,7 @@ class Rig:
             self.records.append(record)
             return watch(record)
 
-        screen = Screen(status=self.statuses.append, question=self.questions.append)
+        screen = Screen(status=self.statuses.append, question=self.questions.append, refused=self.refused.append)
         return await serve(
             self.robot,
             SETTINGS,
