@@ -4,10 +4,11 @@ import time
 from pathlib import Path
 
 from kurt2rt.bench.one_core import on_one_core
-from kurt2rt.bench.result import Goal, Reference, Result, share_of
+from kurt2rt.bench.result import Goal, Reference, Result
 from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge, lasting
 from kurt2rt.bench.tick_share import share_result
 from kurt2rt.experiments.lesson import teach
+from kurt2rt.timing.ledger import share_of
 
 TIMES_REAL_TIME = 60.0
 

@@ -1,21 +1,21 @@
 """How long the teacher waits until a lesson is safe."""
 
-import os
 import random
 import time
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO
 
 import anyio
 from anyio import to_thread
 
-from kurt2rt.bench.result import Goal, Reference, Result, share_of
+from kurt2rt.bench.result import Goal, Reference, Result
 from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge
 from kurt2rt.experiments.curriculum import LessonLostError
 from kurt2rt.runtime import build_runtime
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
+from kurt2rt.timing.disk import sync_ns
+from kurt2rt.timing.ledger import share_of
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.timerfd import TimerfdClock
 
@@ -32,7 +32,7 @@ async def measure_lessons(
     period_s = subject.settings.can.cycle_s
     chance = random.Random(SEED)
     took_ns: list[int] = []
-    sync_ns: list[int] = []
+    syncs_ns: list[int] = []
     arena = subject.open_arena("bench lesson")
     try:
         with (
@@ -53,7 +53,7 @@ async def measure_lessons(
             async with anyio.create_task_group() as tasks:
                 tasks.start_soon(partial(runtime.scheduler.run, None, after_tick))
                 for number in range(lessons):
-                    sync_ns.append(await to_thread.run_sync(_sync, file))
+                    syncs_ns.append(await to_thread.run_sync(sync_ns, file))
                     # The teacher does not know when ticks begin.
                     await anyio.sleep(chance.uniform(0.0, 2 * period_s))
                     taken = anyio.Event()
@@ -77,15 +77,7 @@ async def measure_lessons(
         "lesson",
         "lesson durable",
         took,
-        Reference("bare fsync", share_of(sync_ns).median_us, took.median_us),
+        Reference("bare fsync", share_of(syncs_ns).median_us, took.median_us),
         (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
         f"{lessons} lessons, the wait for the next tick ({period_s * 500:g} ms on average) included",
     )
-
-
-def _sync(file: BinaryIO) -> int:
-    """Nanoseconds until one page is durable."""
-    file.write(bytes(4096))
-    begun_ns = time.perf_counter_ns()
-    os.fsync(file.fileno())
-    return time.perf_counter_ns() - begun_ns

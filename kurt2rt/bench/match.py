@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.bench.result import Goal, Reference, Result, share_of
+from kurt2rt.bench.result import Goal, Reference, Result
 from kurt2rt.bench.subject import SEED, OnProgress
 from kurt2rt.rla.matching import ConditionIndex, exact_distances
+from kurt2rt.timing.ledger import share_of
 
 DIMENSIONS = 72
 """Of the basic situation (paper, VI.B.1)."""

@@ -1,9 +1,6 @@
 """What a benchmark measured, with a reference from the same run and the goals beside it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from kurt2rt.timing.ledger import Share
 
@@ -54,9 +51,3 @@ class Result:
     goals: tuple[Goal, ...] = ()
     note: str = ""
     """What one has to know to read the numbers."""
-
-
-def share_of(took_ns: Sequence[int]) -> Share:
-    """Median, p99 and worst of times in nanoseconds."""
-    median, p99, worst = np.percentile(took_ns, (50, 99, 100)) / 1000.0
-    return Share(float(median), float(p99), float(worst))

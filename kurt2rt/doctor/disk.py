@@ -1,14 +1,13 @@
 """The folder where knowledge is kept: can it be written, has it room, and how long does a lesson take to be durable?"""
 
-import os
 import shutil
 import statistics
 import tempfile
-import time
 from pathlib import Path
 
 from kurt2rt.doctor.finding import Finding, Status
 from kurt2rt.doctor.sqlite_log import check_sqlite_log
+from kurt2rt.timing.disk import sync_ns
 
 SYNC_TIMES = 20
 SYNC_LIMIT_S = 0.02
@@ -57,13 +56,8 @@ def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes:
 
 def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
     """How long does the disk take until a page is durable?"""
-    took_s = []
     with (folder / "sync").open("wb", buffering=0) as file:
-        for _ in range(SYNC_TIMES):
-            file.write(bytes(4096))
-            start_s = time.perf_counter()
-            os.fsync(file.fileno())
-            took_s.append(time.perf_counter() - start_s)
+        took_s = [sync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
     median_s = statistics.median(took_s)
     found = f"median {median_s * 1000:.2f} ms of {SYNC_TIMES}, worst {max(took_s) * 1000:.2f} ms"
     if median_s > limit_s:

@@ -2,6 +2,7 @@
 
 import time
 from array import array
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -26,6 +27,14 @@ class Share:
     median_us: float
     p99_us: float
     worst_us: float
+
+
+def share_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Share:
+    """Median, p99 and worst of times in nanoseconds; zeros where there are none."""
+    if len(took_ns) == 0:
+        return Share(0.0, 0.0, 0.0)
+    median, p99, worst = np.percentile(took_ns, (50, 99, 100)) / 1000.0
+    return Share(float(median), float(p99), float(worst))
 
 
 class Ledger:
@@ -69,8 +78,4 @@ class Ledger:
         return self._share(np.array(self._lateness))
 
     def _share(self, nanoseconds: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Share:
-        kept = nanoseconds[: min(self.ticks, self._capacity)]
-        if len(kept) == 0:
-            return Share(0.0, 0.0, 0.0)
-        median, p99, worst = np.percentile(kept, (50, 99, 100)) / 1000.0
-        return Share(float(median), float(p99), float(worst))
+        return share_of(nanoseconds[: min(self.ticks, self._capacity)])

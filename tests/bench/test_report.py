@@ -6,8 +6,8 @@ import json
 from rich.console import Console
 
 from kurt2rt.bench.report import Machine, as_json, look_at_machine, print_report
-from kurt2rt.bench.result import Goal, Reference, Result, share_of
-from kurt2rt.timing.ledger import Share
+from kurt2rt.bench.result import Goal, Reference, Result
+from kurt2rt.timing.ledger import Share, share_of
 
 MACHINE = Machine(2, (0.5, 0.25, 0.125), "3.11.7", "2.1.0")
 RESULTS = (

@@ -1,0 +1,15 @@
+"""How long the disk takes to keep something."""
+
+import os
+import time
+from typing import BinaryIO
+
+_PAGE_BYTES = 4096
+
+
+def sync_ns(file: BinaryIO) -> int:
+    """Nanoseconds until one more page of an unbuffered file is durable."""
+    file.write(bytes(_PAGE_BYTES))
+    begun_ns = time.perf_counter_ns()
+    os.fsync(file.fileno())
+    return time.perf_counter_ns() - begun_ns
