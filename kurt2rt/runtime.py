@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from behaviors.repertoire import load_repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
@@ -57,7 +59,8 @@ def build_runtime(
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    system = RlaSystem(definition.dimensions, task.learning.radius)
+    weights = np.repeat((1.0, task.learning.past_weight), len(definition.features))
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights)
     events = tuple(events)
     system.apply_all(events)
     period_s = settings.can.cycle_s

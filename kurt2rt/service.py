@@ -82,8 +82,8 @@ async def serve(
                         runtime.inbox.put(command)
                 if record.decision.asking and not asking and record.tick - asked_at >= ticks_per_second:
                     asked_at = record.tick
-                    names = runtime.definition.names
-                    screen.question(ask(record.decision.match, record.situation.vector, names))
+                    weights, names = runtime.level.system.weights, runtime.definition.names
+                    screen.question(ask(record.decision.match, record.situation.vector, weights, names))
                 asking = record.decision.asking
                 ticks = runtime.ledger.ticks
                 if ticks % checkpoint_ticks == 0:

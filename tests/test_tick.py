@@ -74,8 +74,8 @@ class Corridor:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
-        small = definition((*READINGS, *WHEELS), scale=10, past_weight=PAST_WEIGHT)
-        self.system = RlaSystem(small.dimensions, RADIUS)
+        small = definition((*READINGS, *WHEELS), scale=10)
+        self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
         self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3)
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
@@ -107,7 +107,7 @@ class Corridor:
 
 
 def averages(record: TickRecord) -> list[float]:
-    values: list[float] = (record.situation.vector[4:] / PAST_WEIGHT).tolist()
+    values: list[float] = (record.situation.vector[4:]).tolist()
     return values
 
 

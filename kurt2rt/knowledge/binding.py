@@ -36,7 +36,7 @@ def require_same(taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path)
 
 def _difference(taught: KnowledgeBinding, wanted: KnowledgeBinding) -> str:
     if taught.feature_names == wanted.feature_names:
-        return "the names are the same, but weights, scales, history or the robot's sensor order differ"
+        return "the names are the same, but scales, history or the robot's sensor order differ"
     only_taught = [name for name in taught.feature_names if name not in wanted.feature_names]
     only_wanted = [name for name in wanted.feature_names if name not in taught.feature_names]
     if not only_taught and not only_wanted:

@@ -73,8 +73,6 @@ class SituationDefinition(Settings):
     features: Annotated[tuple[Feature, ...], Field(min_length=1)]
     wheel_speed_counts_per_m_s: Annotated[int, Field(ge=0, le=1000)]
     """Scale of the wheel-speed features; 0 leaves them out of every distance."""
-    recent_weight: Annotated[float, Field(ge=0, le=10)]
-    past_weight: Annotated[float, Field(ge=0, le=10)]
 
     @property
     def dimensions(self) -> int:

@@ -16,7 +16,7 @@ class Situation(NamedTuple):
     """Where the robot is in feature space."""
 
     vector: NDArray[np.float64]
-    """Recent features, then the same averaged over the history, weighted; shape (dimensions,)."""
+    """Recent features, then the same averaged over the history; shape (dimensions,)."""
     history_frozen: bool
     """True while the robot waits for its teacher: the averages stand still."""
 
@@ -30,7 +30,6 @@ class Perception:
         self._extract = FeatureExtractor(definition, sensors)
         self._history = History(definition.history_steps, width)
         self._width = width
-        self._weights = np.repeat((definition.recent_weight, definition.past_weight), width)
         self._driven = STANDSTILL
 
     def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
@@ -44,7 +43,6 @@ class Perception:
         vector = np.empty(2 * self._width)
         vector[: self._width] = recent
         self._history.average_into(vector[self._width :])
-        vector *= self._weights
         return Situation(vector, history_frozen)
 
     def remember_driven(self, wheel_speeds: WheelSpeeds) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.rla.matching import ConditionIndex
-from kurt2rt.rla.rla import ActionReplaced, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import ActionReplaced, Condition, Rla, RlaCreated, RlaDeleted, TeachingEvent
 
 
 class Match(NamedTuple):
@@ -35,9 +35,11 @@ class UnfitEventError(ValueError):
 class RlaSystem:
     """The fold of teaching events; winner takes all by Euclidean distance."""
 
-    def __init__(self, dimensions: int, radius: float) -> None:
+    def __init__(self, dimensions: int, radius: float, weights: NDArray[np.float64] | None = None) -> None:
+        """`weights`, shape (dimensions,): how much each feature counts in a distance; all count 1 unless given."""
         self.dimensions = dimensions
         self.radius = radius
+        self.weights = np.ones(dimensions) if weights is None else weights
         self._rlas: list[Rla] = []
         self._position: dict[int, int] = {}
         self._index = ConditionIndex(dimensions)
@@ -63,7 +65,7 @@ class RlaSystem:
 
     def match(self, situation: NDArray[np.float64]) -> Match | None:
         """The nearest RLA to a situation vector (d,), and the one behind it; None when nothing was taught yet."""
-        nearest = self._index.nearest(situation)
+        nearest = self._index.nearest(situation * self.weights)
         if nearest is None:
             return None
         rla = self._rlas[nearest.position]
@@ -78,7 +80,7 @@ class RlaSystem:
                 if rla.rla_id <= self._last_id:
                     raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
                 try:
-                    self._index.append(rla.condition)
+                    self._index.append(self._weighted(rla.condition))
                 except ValueError as error:
                     raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
                 self._position[rla.rla_id] = len(self._rlas)
@@ -106,6 +108,11 @@ class RlaSystem:
             digest.update(f"{rla.rla_id} {rla.action} {rla.radius!r} ".encode())
             digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
+
+    def _weighted(self, condition: Condition) -> tuple[float, ...]:
+        if len(condition) != self.dimensions:
+            raise ValueError(f"condition has {len(condition)} values, this system matches {self.dimensions}")
+        return tuple((np.array(condition, dtype=np.float64) * self.weights).tolist())
 
     def _living(self, rla_id: int) -> int:
         position = self._position.get(rla_id)

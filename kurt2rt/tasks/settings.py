@@ -17,6 +17,8 @@ class LearningSettings(Settings):
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     """Confidence radius R, in the units of the situation (counts)."""
+    past_weight: Annotated[float, Field(ge=0, le=10)]
+    """Weight of the averaged features in every distance; the recent ones weigh 1."""
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]

@@ -40,15 +40,22 @@ class Question:
         )
 
 
-def ask(match: Match | None, situation: NDArray[np.float64], feature_names: tuple[str, ...], most: int = 5) -> Question:
-    """Question about a situation vector (d,) whose nearest RLA is `match`."""
+def ask(
+    match: Match | None,
+    situation: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    feature_names: tuple[str, ...],
+    most: int = 5,
+) -> Question:
+    """Question about a situation vector (d,) whose nearest RLA is `match`, found with `weights` (d,)."""
     if match is None:
         return Question(None, None, float("inf"), 0.0, ())
     condition = np.array(match.rla.condition)
-    order = np.argsort(-np.abs(situation - condition), kind="stable")[:most]
+    differences = np.abs(situation - condition) * weights
+    order = np.argsort(-differences, kind="stable")[:most]
     differing = tuple(
         FeatureDifference(feature_names[i], float(situation[i]), float(condition[i]))
         for i in order
-        if situation[i] != condition[i]
+        if differences[i] > 0.0
     )
     return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing)

@@ -78,8 +78,8 @@ def test_a_file_where_the_output_folder_should_be_is_refused(
 
 
 def other_features(folder: Path) -> Path:
-    """The task with another weight in its situation."""
-    situation = changed("situations", "basic", folder, lambda content: content.update(past_weight=0.5))
+    """The task with a shorter history in its situation."""
+    situation = changed("situations", "basic", folder, lambda content: content.update(history_steps=500))
     return changed("tasks", "wall_following", folder, lambda content: content.update(situation=str(situation)))
 
 
@@ -96,7 +96,7 @@ def few_actions(folder: Path) -> Path:
 @pytest.mark.parametrize(
     ("another_task", "why"),
     [
-        (other_features, "mine.knowledge: taught with other features: the names are the same, but weights"),
+        (other_features, "mine.knowledge: taught with other features: the names are the same, but scales"),
         (few_actions, "which the repertoire lacks; add it there, or teach with the repertoire it came from: stand"),
     ],
 )

@@ -87,7 +87,7 @@ def test_a_newer_format_is_refused(path: Path) -> None:
         (("s1", "s2", "maximum front"), "only the file has 'wheel speed left'"),
         ((*BINDING.feature_names, *"abcdef"), "only the robot has 'a', 'b', 'c', 'd' and 2 more"),
         (("s2", "s1", "maximum front", "wheel speed left"), "the same names in another order"),
-        (BINDING.feature_names, "weights, scales, history or the robot's sensor order differ"),
+        (BINDING.feature_names, "scales, history or the robot's sensor order differ"),
     ],
 )
 def test_knowledge_of_other_features_is_refused_and_the_difference_named(

@@ -33,16 +33,12 @@ def definition(
     *,
     history_steps: int = 4,
     scale: int = 100,
-    recent_weight: float = 1.0,
-    past_weight: float = 1.0,
 ) -> SituationDefinition:
     content = {
         "name": "small",
         "history_steps": history_steps,
         "features": list(features),
         "wheel_speed_counts_per_m_s": scale,
-        "recent_weight": recent_weight,
-        "past_weight": past_weight,
     }
     return SituationDefinition.model_validate_json(json.dumps(content))
 

@@ -1,7 +1,5 @@
 """From senses to the situation, tick by tick."""
 
-import pytest
-
 from hal.robot import WheelSpeeds
 from kurt2rt.perception.perception import Perception
 from tests.perception.helpers import READINGS, SENSORS, WHEELS, definition, sensed
@@ -32,11 +30,6 @@ def test_a_frozen_history_keeps_while_the_recent_values_go_on() -> None:
     assert situation.vector.tolist() == [40, 20, 25, 12.5]
 
 
-def test_weights_scale_the_two_halves() -> None:
-    perception = Perception(definition(READINGS, recent_weight=2.0, past_weight=0.5), SENSORS)
-    assert perception.perceive(sensed(10, 20, 0, 0), history_frozen=False).vector.tolist() == [40, 20, 10, 5]
-
-
 def test_wheel_speed_features_are_held_until_another_action_drives() -> None:
     perception = Perception(definition(WHEELS), SENSORS)
     now = sensed(0, 0, 0, 0)
@@ -53,10 +46,3 @@ def test_a_situation_once_given_does_not_change_with_the_next_one() -> None:
     first = perception.perceive(sensed(10, 20, 0, 0), history_frozen=False)
     perception.perceive(sensed(99, 99, 0, 0), history_frozen=False)
     assert first.vector.tolist() == [20, 10, 20, 10]
-
-
-@pytest.mark.parametrize("past_weight", [0.0, 1.0])
-def test_past_weight_zero_leaves_the_history_out_of_every_distance(past_weight: float) -> None:
-    perception = Perception(definition(READINGS, past_weight=past_weight), SENSORS)
-    situation = perception.perceive(sensed(10, 20, 0, 0), history_frozen=False)
-    assert situation.vector[2:].any() == bool(past_weight)

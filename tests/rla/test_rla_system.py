@@ -177,3 +177,22 @@ def test_the_knowledge_hash_does_not_depend_on_who_taught_or_on_the_way_there() 
 
 def test_the_knowledge_hash_is_of_numbers_not_of_how_they_were_written() -> None:
     assert system_of(created(1, (1, 2))).knowledge_hash() == system_of(created(1, (1.0, 2.0))).knowledge_hash()
+
+
+def test_weights_say_how_much_each_feature_counts_and_leave_conditions_as_they_were_taught() -> None:
+    system = RlaSystem(2, 10.0, np.array([1.0, 0.5]))
+    system.apply(created(1, (0.0, 0.0)))
+    system.apply(created(2, (3.0, 40.0)))
+    match = system.match(np.array([3.0, 8.0]))
+    assert match is not None
+    assert match.rla.rla_id == 1
+    assert match.distance == 5.0
+    assert match.rla.condition == (0.0, 0.0)
+
+
+def test_a_weight_of_zero_leaves_a_feature_out() -> None:
+    system = RlaSystem(2, 10.0, np.array([1.0, 0.0]))
+    system.apply(created(1, (0.0, 1e9)))
+    match = system.match(np.array([4.0, -1e9]))
+    assert match is not None
+    assert match.distance == 4.0

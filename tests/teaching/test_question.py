@@ -15,7 +15,7 @@ def asked(condition: tuple[float, ...], here: tuple[float, ...], radius: float |
     system = RlaSystem(len(here), 300.0)
     system.apply(created(1, condition, "curve_left", radius))
     situation = np.array(here)
-    return ask(system.match(situation), situation, NAMES)
+    return ask(system.match(situation), situation, system.weights, NAMES)
 
 
 def test_it_names_the_nearest_rla_its_action_distance_radius_and_what_differs_most() -> None:
@@ -43,6 +43,6 @@ def test_of_features_that_differ_alike_the_first_come_first() -> None:
 
 
 def test_before_the_first_lesson_it_asks_without_comparison() -> None:
-    question = ask(None, np.zeros(7), NAMES)
+    question = ask(None, np.zeros(7), np.ones(7), NAMES)
     assert (question.nearest_rla, question.action, question.differing) == (None, None, ())
     assert str(question) == "I know nothing yet, teach me"
