@@ -39,7 +39,7 @@ def lesson(
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
     One lesson lasts as long as its task says (config/tasks), in robot time. Settings
-    were chosen on seeds 0 to 19; results are to be reported on others:
+    were chosen on seeds 0 to 11; results are to be reported on others:
 
         kurt2rt lesson --seeds 100-119
     """
