@@ -28,8 +28,9 @@ def exam(
 ) -> None:
     """Let the simulated robot drive without its teacher, and its teacher's policy for comparison.
 
-    Where the robot does not know a situation it stands, as it would in earnest; a
-    robot that makes no way for long is stuck, and the exam of that world ends.
+    Where the robot does not know a situation it stands, as it would in
+    earnest; a robot that makes no way for long is stuck, and the exam of that
+    world ends.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage

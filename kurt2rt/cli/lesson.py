@@ -38,8 +38,8 @@ def lesson(
 ) -> None:
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
-    One lesson lasts as long as its task says (config/tasks), in robot time. Settings
-    were chosen on seeds 0 to 11; results are to be reported on others:
+    One lesson lasts as long as its task says (config/tasks), in robot time.
+    Settings were chosen on seeds 0 to 11; results are reported on others:
 
         kurt2rt lesson --seeds 100-119
     """

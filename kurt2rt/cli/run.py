@@ -54,11 +54,11 @@ def run(
 ) -> None:
     """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
 
-    The robot drives where it was taught to and stands where it was not: then it
-    asks. Each lesson is in the knowledge file before it is acknowledged. A status
-    line tells once a second what drives the wheels, which rule says so, and how
-    punctual the loop is. Type an action to answer the robot's question, or to
-    correct it while it drives; "help" lists what else can be typed.
+    The robot drives where it was taught to and stands where it was not: then
+    it asks. Each lesson is in the knowledge file before it is acknowledged. A
+    status line tells once a second what drives the wheels, which rule says so,
+    and how punctual the loop is. Type an action to answer the robot's question,
+    or to correct it while it drives; "help" lists what else can be typed.
 
     With --robot can0 set the interface up first:
 
