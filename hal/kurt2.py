@@ -1,7 +1,8 @@
 """The KURT2 on its CAN bus: frames become Senses, and every set point goes through the guard."""
 
 import math
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from typing import Final
 
 import can
@@ -12,7 +13,7 @@ from hal.guard import BUS_LOST, Guard
 from hal.health import Health
 from hal.robot import HIGHEST_COUNTS, Grant, Senses, WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.watchdog import Watchdog
+from hal.watchdog import TICKS_CEASED, Watchdog
 
 CLOSED = "closed"
 REOPEN_PERIOD_S = 1.0
@@ -35,11 +36,13 @@ class _AnalogFrame:
 class Kurt2:
     """A robot (hal.robot.Robot) over a CanBus, which it owns from then on."""
 
-    def __init__(self, settings: RobotSettings, bus: CanBus) -> None:
+    def __init__(
+        self, settings: RobotSettings, bus: CanBus, watchdog_clock: Callable[[], float] = time.monotonic
+    ) -> None:
         """Take the bus. Raises hal.bus.BusError when another robot has it, hal.codec.CodecError for a bad database."""
         self._bus: Final = bus
         self._guard: Final = Guard(settings, bus)
-        self.watchdog: Final = Watchdog(self._guard, settings.guard.ticks_ceased_s)
+        self.watchdog: Final = Watchdog(self._guard, settings.guard.ticks_ceased_s, watchdog_clock)
         """The second guard; whoever runs the robot in real time starts it. `drive` is its beat."""
         codec = load_codec(settings.can.database)
         self._analog = _analog_frames(settings, codec)
@@ -106,6 +109,9 @@ class Kurt2:
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         """Ask for wheel speeds in m/s; what is safe by the newest senses goes out in this tick's CONTROL frame."""
+        if self.watchdog.ticks_ceased:
+            # The loop came back before the watchdog's thread did; its beat must not hide the gap.
+            self._guard.emergency_stop(TICKS_CEASED)
         grant = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
         self.watchdog.beat()
         return grant
@@ -164,6 +170,7 @@ class Kurt2:
             self._receive_trouble = str(error)
         else:
             self._bus_lost = False
+            self._receive_trouble = ""
 
     def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> None:
         raw = analog.codec.unpack(data)

@@ -36,6 +36,11 @@ class Watchdog:
         return beat_s is not None and not now_s - beat_s <= self._ticks_ceased_s
 
     @property
+    def ticks_ceased(self) -> bool:
+        """True when it watches and ticks have ceased by now."""
+        return self.running and self.check(self._clock())
+
+    @property
     def running(self) -> bool:
         """True while the thread watches."""
         return self._thread is not None and self._thread.is_alive()

@@ -76,7 +76,16 @@ def build_runtime(
     statistics = statistics or StatisticsCounter()
     ledger = Ledger()
     tick = Tick(
-        robot, Perception(definition, sensors), level_override or level, school, inbox, keeper, statistics, ledger
+        robot,
+        Perception(definition, sensors),
+        level_override or level,
+        school,
+        inbox,
+        keeper,
+        statistics,
+        ledger,
+        now=clock.now_s,
+        stale_infrared_s=settings.guard.stale_infrared_s,
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
     return Runtime(settings, task, definition, level, school, inbox, statistics, ledger, tick, scheduler)

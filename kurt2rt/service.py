@@ -12,7 +12,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings
@@ -44,8 +44,8 @@ class Screen:
     """Once per status period."""
     question: Callable[[Question], None]
     """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
-    refused: Callable[[str], None]
-    """A lesson that acts but can never be saved, and why."""
+    settled: Callable[[Acknowledgement], None]
+    """A lesson is durable, or never can be, and why."""
 
 
 async def serve(
@@ -57,9 +57,11 @@ async def serve(
     *,
     teacher: Watcher | None,
     duration_s: float | None,
+    stopped: bool = False,
 ) -> Status | None:
-    """Run until SIGTERM or SIGINT, or for `duration_s`; the wheels stand before anything else ends.
+    """Run until SIGTERM, SIGINT or SIGHUP, or for `duration_s`; the wheels stand before anything else ends.
 
+    `stopped`: stand until the teacher says resume, as after a stop.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError.
     """
     last: Status | None = None
@@ -67,6 +69,7 @@ async def serve(
         journal, events, counter = go_on_teaching(Path(service.knowledge), settings, task)
         with JournalWriter(journal, utc_now) as writer:
             runtime = build_runtime(robot, settings, task, events, writer, clock, statistics=counter)
+            runtime.school.stopped = stopped
             period_s = settings.can.cycle_s
             checkpoint_ticks = round(service.checkpoint_period_s / period_s)
             status_ticks = round(service.status_period_s / period_s)
@@ -80,18 +83,19 @@ async def serve(
                     command = teacher(record)
                     if command is not None:
                         runtime.inbox.put(command)
-                if record.decision.asking and not asking and record.tick - asked_at >= ticks_per_second:
+                if not record.decision.asking:
+                    asking = False
+                elif not asking and record.tick - asked_at >= ticks_per_second:
+                    asking = True
                     asked_at = record.tick
                     weights, names = runtime.level.system.weights, runtime.definition.names
                     screen.question(ask(record.decision.match, record.situation.vector, weights, names))
-                asking = record.decision.asking
+                for acknowledgement in writer.acknowledged():
+                    screen.settled(acknowledgement)
                 ticks = runtime.ledger.ticks
                 if ticks % checkpoint_ticks == 0:
                     writer.submit_statistics(Statistics(dict(counter.uses), dict(counter.transitions)))
                 if ticks % status_ticks == 0:
-                    for acknowledgement in writer.acknowledged():
-                        if acknowledgement.error is not None:
-                            screen.refused(f"lesson {acknowledgement.command_id}: {acknowledgement.error}")
                     last = Status(record, runtime, writer.unwritten, writer.trouble)
                     screen.status(last)
 
@@ -105,11 +109,13 @@ async def serve(
                         robot.emergency_stop("the service ends")
                 tasks.cancel_scope.cancel()
             writer.submit_statistics(Statistics(dict(counter.uses), dict(counter.transitions)))
+        for acknowledgement in writer.acknowledged():
+            screen.settled(acknowledgement)
     return last
 
 
 async def _end_on_signal(runtime: Runtime, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT) as signals:
+    with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT, signal.SIGHUP) as signals:
         task_status.started()
         async for _ in signals:
             runtime.scheduler.end()

@@ -1,5 +1,6 @@
 """The tick: the one place that knows the order in which things happen, 100 times a second."""
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from hal.robot import Grant, Robot, Senses
@@ -8,10 +9,12 @@ from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.teaching.commands import CommandResult, Resume
+from kurt2rt.teaching.commands import CommandResult, Correct, Resume, Teach
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
+
+_BLIND = "the infra-red sensors are silent, so there is no situation to teach; wait until the robot sends its readings"
 
 
 class LessonKeeper(Protocol):
@@ -56,7 +59,11 @@ class Tick:
         keeper: LessonKeeper,
         statistics: StatisticsCounter,
         ledger: Ledger,
+        *,
+        now: Callable[[], float],
+        stale_infrared_s: float,
     ) -> None:
+        """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation."""
         self._robot = robot
         self._perception = perception
         self._level = level
@@ -65,6 +72,8 @@ class Tick:
         self._keeper = keeper
         self._statistics = statistics
         self._ledger = ledger
+        self._now = now
+        self._stale_infrared_s = stale_infrared_s
         self._driving = False
 
     def run(self, tick: int, now_s: float) -> TickRecord:
@@ -80,23 +89,28 @@ class Tick:
         commands = self._inbox.take()
         results: tuple[CommandResult, ...] = ()
         events: list[TeachingEvent] = []
+        blind = not senses.infrared_age_s <= self._stale_infrared_s
         for command in commands:
+            if blind and isinstance(command, Teach | Correct):
+                results += (CommandResult(command.command_id, False, _BLIND),)
+                continue
             if isinstance(command, Resume) and not self._school.has_taken(command.command_id):
                 self._robot.release()  # a late copy of an old command must not end a new emergency stop
             result, event = self._school.attend(command, situation, tick)
             results += (result,)
             if event is not None:
                 events.append(event)
-        decision = self._level.decide(situation, senses, self._reason_to_stand())
+        decision = self._level.decide(situation, senses, self._reason_to_stand(blind=blind))
         mark(Stage.DECIDE)
 
-        grant = self._robot.drive(decision.wheel_speeds, now_s, now_s)
+        # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.
+        grant = self._robot.drive(decision.wheel_speeds, now_s, self._now())
         mark(Stage.GUARD)
 
         self._driving = decision.driving and not grant.latched
-        if decision.driving:
+        if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)
-        self._statistics.count(decision.rla_id)
+        self._statistics.count(decision.rla_id if self._driving else None)
         mark(Stage.LEARN)
 
         for event in events:
@@ -104,9 +118,11 @@ class Tick:
         mark(Stage.PUBLISH)
         return TickRecord(tick, now_s, senses, situation, decision, grant, results)
 
-    def _reason_to_stand(self) -> Cause | None:
+    def _reason_to_stand(self, *, blind: bool) -> Cause | None:
         if self._school.stopped:
             return Cause.STOPPED
+        if blind:
+            return Cause.BLIND
         if self._keeper.trouble is not None:
             return Cause.UNSAVED
         return None

@@ -1,5 +1,6 @@
 """The tick as a story: a robot in a corridor that knows nothing, and a teacher who tells it what to do."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -32,15 +33,17 @@ class CorridorRobot:
 
     def __init__(self) -> None:
         self.counts = 100
+        self.infrared_age_s = 0.0
+        self.command_ages_s: list[float] = []
         self.latched = False
         self.driven: list[WheelSpeeds] = []
         self.closed = False
 
     def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (self.counts,) * 4, 0.0, 0, 0, 0.0, 0, 0.0)
+        return Senses(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
-        assert decided_at_s == now_s
+        self.command_ages_s.append(now_s - decided_at_s)
         granted = STANDSTILL if self.latched else wanted
         self.driven.append(granted)
         return Grant(granted, ("emergency stop",) if self.latched else (), self.latched)
@@ -73,6 +76,8 @@ class Corridor:
     def __init__(self) -> None:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
+        self.held_up_s = 0.0
+        """How long a tick hangs between its senses and its frame."""
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
@@ -90,6 +95,8 @@ class Corridor:
             self.notebook,
             self.statistics,
             self.ledger,
+            now=lambda: self.ticks * 0.01 + self.held_up_s,
+            stale_infrared_s=0.05,
         )
         self.ticks = 0
 
@@ -300,3 +307,35 @@ def test_what_the_keeper_holds_folds_to_what_the_robot_knows() -> None:
     system = RlaSystem(8, RADIUS)
     system.apply_all(events)
     assert system.knowledge_hash() == knowledge_hash
+
+
+def test_a_tick_that_was_held_up_tells_the_guard_how_old_its_decision_is(driving: Corridor) -> None:
+    driving.run(100)
+    driving.held_up_s = 0.09
+    driving.run(100)
+    assert driving.robot.command_ages_s[-2:] == pytest.approx([0.0, 0.09])
+
+
+def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(driving: Corridor) -> None:
+    known = len(driving.system)
+    driving.robot.infrared_age_s = math.inf
+    record = driving.run(100, teach("back", "in the dark"))
+    assert record.decision.cause is Cause.BLIND
+    assert record.grant.wheel_speeds == STANDSTILL
+    (result,) = record.results
+    assert not result.accepted
+    assert "infra-red sensors are silent" in result.text
+    assert len(driving.system) == known
+
+    driving.robot.infrared_age_s = 0.0
+    assert driving.run(100).decision.cause is Cause.RLA
+    assert driving.run(100, teach("back", "in the dark")).results[0].accepted
+
+
+def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) -> None:
+    driving.run(100)
+    uses = dict(driving.statistics.uses)
+    driving.robot.latched = True
+    for _ in range(5):
+        driving.run(100)
+    assert driving.statistics.uses == uses

@@ -12,11 +12,12 @@ from rich.console import Console
 
 from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
+from hal.health import Health
 from hal.robot_settings import RobotSettings, load_robot
-from kurt2rt.app import open_robot
-from kurt2rt.cli.options import Seed
+from kurt2rt.app import SIMULATED, open_robot
 from kurt2rt.cli.printer import Printer
 from kurt2rt.cli.terminal import TerminalTeacher
+from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
 from kurt2rt.service import Screen, Status, Watcher, serve
 from kurt2rt.service_settings import load_service
@@ -50,7 +51,7 @@ def run(
     seconds: Annotated[
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
-    seed: Seed = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Decides the simulated robot's start and noise.")] = 1,
 ) -> None:
     """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
 
@@ -60,9 +61,14 @@ def run(
     and how punctual the loop is. Type an action to answer the robot's question,
     or to correct it while it drives; "help" lists what else can be typed.
 
-    With --robot can0 set the interface up first:
+    With --robot can0 set the interface up first; the robot then stands until
+    you type resume, whatever it knows:
 
         sudo ip link set can0 up type can bitrate 1000000
+
+    With --teacher none nobody can say resume: a real robot drives at once where
+    it knows the situation, and once stopped by the guard it stands until the
+    program is started anew.
     """
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
@@ -90,14 +96,12 @@ def run(
     def say(text: str, style: str | None = None) -> None:
         printer.put(lambda: console.print(text, style=style, markup=False, highlight=False, soft_wrap=True))
 
-    screen = Screen(
-        # The line is made by the printer as well: the percentiles in it cost more than a tick.
-        status=lambda status: printer.put(
-            lambda: console.print(status_line(status), markup=False, highlight=False, soft_wrap=True)
-        ),
-        question=lambda question: say(str(question), "yellow"),
-        refused=lambda text: say(text, "red"),
-    )
+    def settled(acknowledgement: Acknowledgement) -> None:
+        if acknowledgement.error is not None:
+            say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
+        elif teacher == "terminal":
+            say("saved", "cyan")
+
     watch: Watcher | None = None
     if teacher == "scripted":
         watch = scripted_watch(task, robot_settings, seed)
@@ -114,8 +118,25 @@ def run(
         watch = person.watch
     with printer, open_robot(robot_settings, robot, service.world, seed) as opened:
 
+        def show(status: Status) -> None:
+            # The line is made by the printer as well: the percentiles in it cost more than a tick.
+            printer.put(
+                lambda: console.print(status_line(status, opened.health), markup=False, highlight=False, soft_wrap=True)
+            )
+
+        screen = Screen(status=show, question=lambda question: say(str(question), "yellow"), settled=settled)
+
         async def serve_it() -> Status | None:
-            return await serve(opened, robot_settings, service, task, screen, teacher=watch, duration_s=seconds)
+            return await serve(
+                opened,
+                robot_settings,
+                service,
+                task,
+                screen,
+                teacher=watch,
+                duration_s=seconds,
+                stopped=robot != SIMULATED and teacher == "terminal",
+            )
 
         last = anyio.run(serve_it)
     count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
@@ -143,7 +164,7 @@ def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watch
     return watch
 
 
-def status_line(status: Status) -> str:
+def status_line(status: Status, health: Health) -> str:
     """One line: what drives the wheels and why, lessons, punctuality, and what is wrong."""
     record, runtime = status.record, status.runtime
     decision, match = record.decision, record.decision.match
@@ -168,6 +189,10 @@ def status_line(status: Status) -> str:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
     if status.trouble is not None:
         parts.append(status.trouble)
+    if health.latched is not None and health.bus_trouble:
+        parts.append(health.bus_trouble)
+    if health.foreign_control:
+        parts.append(f"{health.foreign_control} CONTROL frames from somebody else on the bus: find and end it")
     return " | ".join(parts)
 
 

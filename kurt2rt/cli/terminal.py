@@ -30,7 +30,7 @@ class TerminalTeacher:
     def help(self) -> str:
         """What can be typed."""
         return (
-            "type an action to answer or correct, or: stop, resume, delete N, replace N ACTION, phase N, help\n"
+            "type an action to answer or correct, or: stop, resume, delete N, replace N ACTION, phase 1 or 2, help\n"
             f"actions: {', '.join(self._actions)}"
         )
 
@@ -59,7 +59,7 @@ class TerminalTeacher:
     def _understand(self, line: str, *, asking: bool) -> Command | None:
         self._said += 1
         command_id = f"{self._session}-{self._said}"
-        match line.split():
+        match line.lower().split():
             case ["stop"]:
                 return Stop(command_id, _TEACHER)
             case ["resume"]:
@@ -68,8 +68,10 @@ class TerminalTeacher:
                 return DeleteRla(command_id, _TEACHER, int(rla_id))
             case ["replace", rla_id, action] if rla_id.isdecimal():
                 return ReplaceAction(command_id, _TEACHER, int(rla_id), action)
-            case ["phase", number] if number in {str(phase.value) for phase in Phase}:
-                return SetPhase(command_id, _TEACHER, Phase(int(number)))
+            case ["phase", "1"]:
+                return SetPhase(command_id, _TEACHER, Phase.SUPERVISED)
+            case ["phase", "2"]:
+                return SetPhase(command_id, _TEACHER, Phase.CORRECTIONS)
             case [action] if action in self._actions:
                 # The same word answers a question and corrects a robot that drives.
                 return Teach(command_id, _TEACHER, action) if asking else Correct(command_id, _TEACHER, action)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from kurt2rt.experiments.arena import Position, Stage
 from kurt2rt.experiments.curriculum import CurriculumResult
+from kurt2rt.experiments.report import label_of
 from kurt2rt.tasks.settings import TaskSettings
 
 _TRAIL = "#1f6fb2"
@@ -24,7 +25,7 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
     lesson = result.lesson
     asks = _places("the robot asked", len(lesson.ask_positions))
     _draw_drive(axes[0], stage, lesson.world, lesson.trail, lesson.ask_positions, asks)
-    axes[0].set_title(f"Lesson in world {lesson.world.upper()}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
+    axes[0].set_title(f"Lesson in world {label_of(lesson.world)}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
     _draw_growth(axes[1], lesson.growth, task)
     for panel, each in zip(axes[2:], result.exams, strict=False):
         exam = each.learned
@@ -33,7 +34,7 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
         _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
         verdict = "success" if each.succeeded else "failed"
         panel.set_title(
-            f"Exam in world {exam.world.upper()}: {exam.laps:.1f} laps, {exam.collisions} collisions, {verdict}"
+            f"Exam in world {label_of(exam.world)}: {exam.laps:.1f} laps, {exam.collisions} collisions, {verdict}"
         )
     for panel in axes[panels:]:
         panel.set_axis_off()

@@ -34,7 +34,7 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
     for each in exams:
         exam = each.learned
         driven.add_row(
-            exam.world.upper() if len(exam.world) == 1 else exam.world,
+            label_of(exam.world),
             f"{exam.laps:.2f}",
             f"{each.teacher.laps:.2f}",
             str(exam.collisions),
@@ -43,6 +43,11 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             "[green]yes[/]" if each.succeeded else "[red]no[/]",
         )
     return driven
+
+
+def label_of(world: str) -> str:
+    """A world as it is shown: the shipped ones by their capital letter, others as they were given."""
+    return world.upper() if len(world) == 1 else world
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
@@ -74,7 +79,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     for heading in ("seed", "RLAs", "asks", "corrections", "rescues"):
         seeds.add_column(heading, justify="right")
     for world in worlds:
-        seeds.add_column(f"world {world.upper()}: laps of teacher's, collisions", justify="right")
+        seeds.add_column(f"world {label_of(world)}: laps of teacher's, collisions", justify="right")
     for result in results:
         lesson = result.lesson
         cells = []
@@ -107,7 +112,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         passed = sum(each.succeeded for each in exams)
         low, high = wilson_interval(passed, len(exams))
         success.add_row(
-            world.upper() if len(world) == 1 else world,
+            label_of(world),
             f"{passed} of {len(exams)}",
             f"{low:.0%} to {high:.0%}",
             str(sum(each.learned.collisions > 0 for each in exams)),

@@ -1,10 +1,12 @@
 """Opens the knowledge of a task on a robot."""
 
+import math
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import TeachingEvent
@@ -31,6 +33,7 @@ def go_on_teaching(
     """The journal at `path`, what it holds already, and its counts to count on from. Raises as `open_knowledge`."""
     journal = open_knowledge(path, settings, task)
     try:
+        fold_journal(journal, radius=math.inf)  # one that does not fold is refused, with file and row
         events, saved = journal.events(), journal.statistics()
     except BaseException:
         journal.close()
@@ -42,6 +45,7 @@ def read_lessons(path: Path, settings: RobotSettings, task: TaskSettings) -> lis
     """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError."""
     with Journal.read_only(path) as journal:
         require_same(journal.binding, _binding(settings, task), path)
+        fold_journal(journal, radius=math.inf)
         return journal.events()
 
 

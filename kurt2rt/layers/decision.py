@@ -18,6 +18,8 @@ class Cause(StrEnum):
     """A teacher, or the policy that stands in for one, drives."""
     UNKNOWN = "unknown"
     """No RLA is near enough: the robot stands and asks."""
+    BLIND = "blind"
+    """The infra-red readings are old or never came: there is no situation to decide on, nor to ask about."""
     STOPPED = "stopped"
     """A teacher stopped the robot."""
     UNSAVED = "unsaved"

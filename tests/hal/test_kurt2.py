@@ -13,6 +13,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl
 from hal.guard import BUMPER_STALE, BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
 from hal.kurt2 import CLOSED, Kurt2
 from hal.robot import STANDSTILL, Robot, WheelSpeeds
+from hal.watchdog import TICKS_CEASED
 from tests.hal.helpers import (
     CODEC,
     INFRARED_FRAMES,
@@ -294,3 +295,19 @@ def test_one_bus_has_one_robot(robot: Kurt2, ends: Ends) -> None:
     assert robot.health.latched is None
     with pytest.raises(BusError, match="the CONTROL port is taken"):
         Kurt2(ROBOT, ends[0])
+
+
+def test_a_loop_that_comes_back_late_does_not_drive_on_as_if_nothing_had_been(ends: Ends) -> None:
+    clock_s = 50.0
+    kurt2 = Kurt2(ROBOT, ends[0], lambda: clock_s)
+    with kurt2.watchdog:
+        send(ends[1], cycle())
+        kurt2.sense(1.0)
+        assert not kurt2.drive(WheelSpeeds(0.2, 0.2), 1.0, 1.0).latched
+        clock_s = 50.6
+        send(ends[1], cycle())
+        kurt2.sense(1.6)
+        grant = kurt2.drive(WheelSpeeds(0.2, 0.2), 1.6, 1.6)
+        assert grant.latched
+        assert grant.reasons == (TICKS_CEASED,)
+    kurt2.close()

@@ -12,6 +12,7 @@ from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import load_robot
 from kurt2rt.cli.run import scripted_watch
+from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.service import Screen, Status, serve
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -52,7 +53,7 @@ class Rig:
     records: list[TickRecord] = field(default_factory=list)
     questions: list[Question] = field(default_factory=list)
     statuses: list[Status] = field(default_factory=list)
-    refused: list[str] = field(default_factory=list)
+    settled: list[Acknowledgement] = field(default_factory=list)
 
     @property
     def now(self) -> TickRecord:
@@ -77,7 +78,7 @@ class Rig:
             self.records.append(record)
             return watch(record)
 
-        screen = Screen(status=self.statuses.append, question=self.questions.append, refused=self.refused.append)
+        screen = Screen(status=self.statuses.append, question=self.questions.append, settled=self.settled.append)
         return await serve(
             self.robot,
             SETTINGS,

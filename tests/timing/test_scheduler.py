@@ -74,7 +74,18 @@ class Run:
         self.ledger = Ledger(capacity=100)
         school = School(level, insert_beyond_share=0.5, taken_command_ids=())
         perception, statistics = Perception(small, SENSORS), StatisticsCounter()
-        tick = Tick(StandingRobot(), perception, level, school, TeacherInbox(), NoLessons(), statistics, self.ledger)
+        tick = Tick(
+            StandingRobot(),
+            perception,
+            level,
+            school,
+            TeacherInbox(),
+            NoLessons(),
+            statistics,
+            self.ledger,
+            now=clock.now_s,
+            stale_infrared_s=0.05,
+        )
         self.scheduler = Scheduler(clock, tick, PERIOD_S, self.ledger)
         self.records: list[TickRecord] = []
         self.delays_s: dict[int, float] = {}
