@@ -12,6 +12,7 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import follow_ups
+from kurt2rt.perception.definition import AVERAGED
 from kurt2rt.rla.rla import ActionReplaced, Rla, RlaDeleted
 
 _TELLING_FEATURES = 3
@@ -84,8 +85,11 @@ def _summary(entries: list[StoredEntry], living: int) -> str:
 
 
 def _telling(rla: Rla, feature_names: tuple[str, ...]) -> str:
-    """The features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
-    features = sorted(zip(feature_names, rla.condition, strict=True), key=lambda feature: -abs(feature[1]))
+    """The recent features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
+    recent = [
+        feature for feature in zip(feature_names, rla.condition, strict=True) if not feature[0].endswith(AVERAGED)
+    ]
+    features = sorted(recent, key=lambda feature: -abs(feature[1]))
     return ", ".join(f"{name} {value:.0f}" for name, value in features[:_TELLING_FEATURES])
 
 

@@ -8,6 +8,9 @@ from pydantic import Field
 
 from hal.settings import Settings, SettingsError, find_config, load_settings
 
+AVERAGED = " (10 s average)"
+"""Behind the name of a feature that is averaged over the history."""
+
 Heading = Literal["front", "left", "right", "rear"]
 
 
@@ -83,7 +86,7 @@ class SituationDefinition(Settings):
     def names(self) -> tuple[str, ...]:
         """One name per dimension, as the teacher sees them."""
         recent = tuple(feature.name for feature in self.features)
-        return recent + tuple(f"{name} (10 s average)" for name in recent)
+        return recent + tuple(name + AVERAGED for name in recent)
 
     @property
     def sensors_used(self) -> frozenset[str]:

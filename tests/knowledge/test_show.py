@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -83,3 +84,13 @@ def test_follow_ups_are_shares_of_the_transitions() -> None:
     assert shares == {1: {3: 75.0, 2: 25.0}, 2: {2: 100.0}}
     assert list(shares[1]) == [3, 2]
     assert sum(shares[1].values()) == pytest.approx(100)
+
+
+def test_averages_are_not_among_the_telling_features(path: Path) -> None:
+    binding = replace(BINDING, feature_names=("s1", "s2", "s1 (10 s average)", "s2 (10 s average)"))
+    with Journal.open(path, binding) as journal:
+        journal.append([JournalEntry(created(1), STAMP)])
+        (row,) = rows(printed(render_knowledge(journal)))
+
+    assert "s1 " in row[-1]
+    assert "average" not in row[-1]
