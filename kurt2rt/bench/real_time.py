@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from behaviors.policies.build import build_policy
 from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge
 from kurt2rt.doctor.timer import AsyncioClock
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.ledger import Ledger, Share, Stage
@@ -55,14 +54,8 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
     try:
         with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, quiet_gc():
             runtime = build_runtime(arena.robot, subject.settings, subject.task, subject.events, writer, clock)
-            teacher = ScriptedTeacher(
-                build_policy(subject.task.policy, subject.settings.infrared),
-                tuple(runtime.level.repertoire),
-                subject.task.teaching.teacher,
-                period_s=period_s,
-                seed=SEED,
-                session="bench",
-            )
+            actions = tuple(runtime.level.repertoire)
+            teacher = teacher_of(subject.task, subject.settings, actions, seed=SEED, session="bench")
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
             ticks_per_checkpoint = round(1 / period_s)
 

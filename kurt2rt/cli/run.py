@@ -10,7 +10,6 @@ import anyio
 import typer
 from rich.console import Console
 
-from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
 from hal.health import Health
 from hal.robot_settings import RobotSettings, load_robot
@@ -23,7 +22,7 @@ from kurt2rt.service import Screen, Status, Watcher, serve
 from kurt2rt.service_settings import load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.priority import take_real_time_priority
 
@@ -145,16 +144,9 @@ def run(
 
 def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watcher:
     """The scripted teacher for a run in real time: answers, and corrects after the task's time of phase 1."""
-    period_s = robot.can.cycle_s
-    teacher = ScriptedTeacher(
-        build_policy(task.policy, robot.infrared),
-        tuple(load_repertoire(task.repertoire, robot)),
-        task.teaching.teacher,
-        period_s=period_s,
-        seed=seed,
-        session=new_session("scripted"),
-    )
-    corrections_from = round(task.teaching.supervised_s / period_s)
+    actions = tuple(load_repertoire(task.repertoire, robot))
+    teacher = teacher_of(task, robot, actions, seed=seed, session=new_session("scripted"))
+    corrections_from = round(task.teaching.supervised_s / robot.can.cycle_s)
 
     def watch(record: TickRecord) -> Command | None:
         if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:

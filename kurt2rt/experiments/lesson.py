@@ -3,7 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from behaviors.policies.build import build_policy
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.progress import WayMade
@@ -11,7 +10,7 @@ from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from kurt2rt.timing.ledger import Ledger
@@ -60,14 +59,8 @@ async def teach(
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
     runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics)
-    teacher = ScriptedTeacher(
-        build_policy(task.policy, settings.infrared),
-        tuple(runtime.level.repertoire),
-        task.teaching.teacher,
-        period_s=period_s,
-        seed=seed,
-        session=f"lesson-{seed}-after-{len(events)}",
-    )
+    session = f"lesson-{seed}-after-{len(events)}"
+    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     way = WayMade(task.teaching.rescue_after_s, period_s)
     ticks = round(task.teaching.duration_s / period_s)
     corrections_from = round(task.teaching.supervised_s / period_s)

@@ -1,9 +1,9 @@
 """The basic level: one RLA system over the 72-D situation, its actions taken from the repertoire."""
 
-from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import Match, RlaSystem
@@ -25,16 +25,13 @@ class BasicLevel:
                 )
         self.system = system
         self.repertoire = repertoire
-        self._minimum_action_ticks = minimum_action_ticks
-        self._active: Behaviour | None = None
-        self._action: str | None = None
+        self._held = HeldAction(repertoire, minimum_action_ticks)
         self._rla_id: int | None = None
-        self._ticks_active = 0
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge; the next decision follows it at once, whatever action was being held."""
         self.system.apply(event)
-        self._ticks_active = self._minimum_action_ticks
+        self._held.yield_next()
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
@@ -43,23 +40,13 @@ class BasicLevel:
             return self._stand(stand_because, match)
         if match is None or not match.known:
             return self._stand(Cause.UNKNOWN, match)
-        cause = Cause.RLA
-        winner = match.rla
-        active = self._active
-        if active is not None and winner.action == self._action:
-            self._rla_id = winner.rla_id
-        elif active is not None and self._ticks_active < self._minimum_action_ticks:
-            cause = Cause.HELD
-        else:
-            active = self._active = self.repertoire[winner.action]
-            active.start()
-            self._action = winner.action
-            self._rla_id = winner.rla_id
-            self._ticks_active = 0
-        self._ticks_active += 1
-        return Decision(active.step(senses), cause, self._action, self._rla_id, match)
+        cause = Cause.HELD
+        if self._held.choose(match.rla.action):
+            cause = Cause.RLA
+            self._rla_id = match.rla.rla_id
+        return Decision(self._held.step(senses), cause, self._held.name, self._rla_id, match)
 
     def _stand(self, cause: Cause, match: Match | None) -> Decision:
         """Stand; the next action begins anew."""
-        self._active = None
+        self._held.stand()
         return Decision(STANDSTILL, cause, None, None, match)

@@ -3,13 +3,29 @@
 import random
 from collections.abc import Sequence
 
+from behaviors.policies.build import build_policy
 from behaviors.policies.policy import ReferencePolicy
+from hal.robot_settings import RobotSettings
 from kurt2rt.rla.rla import Phase
-from kurt2rt.tasks.settings import TeacherSettings
+from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
 _NAME = "scripted teacher"
+
+
+def teacher_of(
+    task: TaskSettings, robot: RobotSettings, actions: Sequence[str], *, seed: int, session: str
+) -> "ScriptedTeacher":
+    """The scripted teacher that a task describes, for a robot with this repertoire; `session` as in ScriptedTeacher."""
+    return ScriptedTeacher(
+        build_policy(task.policy, robot.infrared),
+        actions,
+        task.teaching.teacher,
+        period_s=robot.can.cycle_s,
+        seed=seed,
+        session=session,
+    )
 
 
 class ScriptedTeacher:

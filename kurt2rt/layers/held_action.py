@@ -1,0 +1,44 @@
+"""The action at the wheels, held for a minimum time against dithering between neighbours."""
+
+from behaviors.behaviour import Behaviour
+from behaviors.repertoire import Repertoire
+from hal.robot import Senses, WheelSpeeds
+
+
+class HeldAction:
+    """Which behaviour of a repertoire drives, and for how long it has."""
+
+    def __init__(self, repertoire: Repertoire, minimum_ticks: int) -> None:
+        self._repertoire = repertoire
+        self._minimum_ticks = minimum_ticks
+        self._active: Behaviour | None = None
+        self._ticks = 0
+        self.name = ""
+        """Of the action that drives, or drove last."""
+
+    def choose(self, action: str) -> bool:
+        """Let `action` drive; False when another one keeps the wheels, for its minimum time is not over."""
+        if self._active is not None:
+            if action == self.name:
+                return True
+            if self._ticks < self._minimum_ticks:
+                return False
+        self._active = self._repertoire[action]
+        self._active.start()
+        self.name = action
+        self._ticks = 0
+        return True
+
+    def step(self, senses: Senses) -> WheelSpeeds:
+        """Wheel speeds of the action that drives, after `choose`."""
+        assert self._active is not None
+        self._ticks += 1
+        return self._active.step(senses)
+
+    def yield_next(self) -> None:
+        """The next choice counts at once, however short this action drove."""
+        self._ticks = self._minimum_ticks
+
+    def stand(self) -> None:
+        """Nothing drives; the next action begins anew."""
+        self._active = None
