@@ -16,7 +16,7 @@ Step = Callable[[TickRecord], bool]
 
 
 class Story:
-    """Steps that follow each other, each as soon as the one before has seen what it waited for."""
+    """Steps in order, each as soon as the one before has seen what it waited for; then the service ends."""
 
     def __init__(self, *steps: Step) -> None:
         self._steps = list(steps)
@@ -28,6 +28,8 @@ class Story:
     def see(self, record: TickRecord) -> None:
         if self._steps and self._steps[0](record):
             self._steps.pop(0)
+        if self.over:
+            end_service()
 
 
 def largest_file(size_bytes: int) -> None:
@@ -67,8 +69,6 @@ async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(t
     def watch(record: TickRecord) -> Command | None:
         acting.extend(result.command_id for result in record.results if " taught: " in result.text)
         story.see(record)
-        if story.over:
-            end_service()
         return teacher(record)
 
     with rig() as here:
@@ -109,8 +109,6 @@ async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tm
 
     def watch(record: TickRecord) -> Command | None:
         story.see(record)
-        if story.over:
-            end_service()
         return said.pop() if said else teacher(record)
 
     with rig() as here:
@@ -141,8 +139,6 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
 
     def watch(record: TickRecord) -> Command | None:
         story.see(record)
-        if story.over:
-            end_service()
         return teacher(record)
 
     with rig() as here:
@@ -179,8 +175,6 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
 
     def watch(record: TickRecord) -> Command | None:
         story.see(record)
-        if story.over:
-            end_service()
         return said.pop() if said else teacher(record)
 
     with rig() as here:
