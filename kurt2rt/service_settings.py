@@ -18,6 +18,10 @@ class ServiceSettings(Settings):
     checkpoint_period_s: Annotated[float, Field(ge=0.1, le=60)]
     status_period_s: Annotated[float, Field(ge=1, le=3600)]
     real_time_priority: Annotated[int, Field(ge=0, le=80)]
+    teachers: str
+    devices: str
+    port: Annotated[int, Field(ge=0, le=65535)]
+    page_port: Annotated[int, Field(ge=0, le=65535)]
 
 
 def load_service(name_or_path: str = "default") -> ServiceSettings:

@@ -75,5 +75,46 @@ class RlaDeleted:
     origin: Origin
 
 
-TeachingEvent = RlaCreated | ActionReplaced | RlaDeleted
+@dataclass(frozen=True, slots=True)
+class RlaRewarded:
+    """The teacher praised or blamed what an RLA decided (phase 3)."""
+
+    rla_id: int
+    value: int
+    """+1 reward, -1 punishment."""
+    decided_at_tick: int
+    """Tick of the decision that was meant."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class LessonUndone:
+    """The teacher took one lesson back: what it made, changed, ended or rewarded is as before it."""
+
+    lesson: str
+    """Command id of the lesson."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SessionBegun:
+    """A teacher began to teach; changes no RLA."""
+
+    name: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SessionEnded:
+    """A teacher stopped teaching; changes no RLA."""
+
+    lasted_ticks: int
+    """Teaching time, waits included."""
+    origin: Origin
+
+
+Lesson = RlaCreated | ActionReplaced | RlaDeleted | RlaRewarded
+"""A teaching act that can be undone."""
+
+TeachingEvent = Lesson | LessonUndone | SessionBegun | SessionEnded
 """What the knowledge journal holds; the RLA system is the fold of these."""

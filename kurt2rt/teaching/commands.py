@@ -1,22 +1,61 @@
-"""What a teacher can tell the robot: one typed interface for the scripted teacher, the terminal and the network."""
+"""What a teacher can tell the robot: one typed interface for the scripted teacher, the terminal and the network.
+
+Four kinds, as in the paper: motor commands, behaviours, reinforcements, and organising commands. Those with a
+`command_id` count once however often they come; the others are a stream of which the newest counts.
+"""
 
 from dataclasses import dataclass
 
 from kurt2rt.rla.rla import Phase
 
+# Motor commands and presence: streams.
+
 
 @dataclass(frozen=True, slots=True)
-class Teach:
-    """Answer for the present situation: a new RLA with this action stands there (phase 1)."""
+class Watch:
+    """The teacher is there and sees the robot; while nobody is, a robot that needs a teacher stands."""
+
+    teacher: str
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """The teacher drives by hand for as long as these come (a dead man's handle)."""
+
+    teacher: str
+    hold: int
+    """Number of this press of the button, larger than that of any press before; a stop ends a press for good."""
+    left_m_s: float
+    right_m_s: float
+
+
+# Behaviours.
+
+
+@dataclass(frozen=True, slots=True)
+class RunBehaviour:
+    """Run one action of the repertoire for a time, whatever the RLAs say; the robot stands afterwards."""
 
     command_id: str
     teacher: str
     action: str
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Teach:
+    """Answer a situation: a new RLA with this action stands there (phase 1)."""
+
+    command_id: str
+    teacher: str
+    action: str
+    decision_tick: int | None = None
+    """The situation of which tick; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Correct:
-    """Another action is right in the present situation (phase 2).
+    """Another action is right in a situation (phase 2).
 
     Close to the nearest RLA's condition its action is replaced; farther off a new RLA is inserted, because replacing
     would flip one RLA to and fro between situations that contradict each other.
@@ -25,6 +64,8 @@ class Correct:
     command_id: str
     teacher: str
     action: str
+    decision_tick: int | None = None
+    """The decision of which tick was wrong; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +87,36 @@ class DeleteRla:
     rla_id: int
 
 
+# Reinforcements.
+
+
+@dataclass(frozen=True, slots=True)
+class Reward:
+    """Praise (+1) or blame (-1) for the RLA that decided in a tick, however long ago it was."""
+
+    command_id: str
+    teacher: str
+    value: int
+    decision_tick: int | None = None
+    """The decision of which tick; None: the present one."""
+
+
+# Organising commands.
+
+
+@dataclass(frozen=True, slots=True)
+class Undo:
+    """Take a lesson back."""
+
+    command_id: str
+    teacher: str
+    lesson: str | None = None
+    """Command id of the lesson; None: the last one that still stands."""
+
+
 @dataclass(frozen=True, slots=True)
 class SetPhase:
-    """Organising: the training phase from now on."""
+    """The training phase from now on."""
 
     command_id: str
     teacher: str
@@ -56,8 +124,43 @@ class SetPhase:
 
 
 @dataclass(frozen=True, slots=True)
+class BeginSession:
+    """Teaching begins: the teaching clock runs."""
+
+    command_id: str
+    teacher: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class EndSession:
+    """Teaching ends: the teaching clock stops and the robot stands."""
+
+    command_id: str
+    teacher: str
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """Be the teacher from now on, also where another one is; not while that one drives by hand."""
+
+    command_id: str
+    teacher: str
+
+
+@dataclass(frozen=True, slots=True)
+class HandOver:
+    """Be the teacher no longer."""
+
+    command_id: str
+    teacher: str
+    to: str | None = None
+    """Who is the teacher next; None: whoever takes it."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stop:
-    """Stand until `Resume`."""
+    """Stand until `Resume`. Every teacher may say it, at any time."""
 
     command_id: str
     teacher: str
@@ -71,7 +174,24 @@ class Resume:
     teacher: str
 
 
-Command = Teach | Correct | ReplaceAction | DeleteRla | SetPhase | Stop | Resume
+Command = (
+    Watch
+    | Drive
+    | RunBehaviour
+    | Teach
+    | Correct
+    | ReplaceAction
+    | DeleteRla
+    | Reward
+    | Undo
+    | SetPhase
+    | BeginSession
+    | EndSession
+    | Take
+    | HandOver
+    | Stop
+    | Resume
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,3 +202,5 @@ class CommandResult:
     accepted: bool
     text: str
     """What was done, or why not and what to do."""
+    lesson: bool = False
+    """Whether it became an event that has to reach the journal."""

@@ -1,0 +1,78 @@
+"""What the robot tells its teachers, 20 times a second."""
+
+from dataclasses import dataclass
+
+from kurt2rt.teaching.question import FeatureDifference
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedPlace:
+    """Where the simulated robot really is; a real one does not know."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+    laps: float
+    collisions: int
+    world_version: int
+    """Grows when a wall is moved: ask for the world again."""
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """One picture of the robot. What a teacher does is told with the tick of the picture he did it on."""
+
+    boot: bytes
+    """Four random bytes of this start of the robot program."""
+    tick: int
+    phase: int
+    infrared_counts: tuple[int, ...]
+    """In the order of the sensor table; high is near."""
+    infrared_age_s: float
+    """Infinite before the first frame."""
+    bumpers: int
+    """Bit n set: bumper n is pressed."""
+    left_m_s: float
+    """Set points that went out, after the guard."""
+    right_m_s: float
+    cause: str
+    """Who moves the wheels, or why they stand: a value of kurt2rt.layers.decision.Cause."""
+    action: str | None
+    """Action that drives; None while the robot stands."""
+    rla: int | None
+    """RLA that drives; None while the robot stands or a teacher drives."""
+    nearest: int | None
+    """RLA nearest to the situation; None before the first lesson."""
+    nearest_action: str | None
+    distance: float
+    """Of the nearest RLA; infinite without one."""
+    radius: float
+    taught_by: str
+    """Who taught the nearest RLA's action; empty without one."""
+    taught_at: str
+    """When, UTC, ISO 8601; empty without one, or while it is not durable yet."""
+    question: tuple[FeatureDifference, ...]
+    """While the robot asks: the features that differ most from the nearest RLA, most first."""
+    teacher: str | None
+    """Who teaches; None while nobody does."""
+    by_hand: bool
+    """Whether that one drives by hand or runs a behaviour just now."""
+    stopped_because: str
+    """Empty while nobody stopped the robot."""
+    rlas: int
+    lessons: int
+    """Lessons that stand, rewards among them."""
+    unsaved: int
+    """Lessons that are not durable yet."""
+    session: str | None
+    """Name of the session that is on."""
+    clock_s: float
+    """Teaching time of that session, or of the last one."""
+    guard: tuple[str, ...]
+    """Why the guard let through less than was wanted."""
+    trouble: str
+    """What is wrong with disk or bus, in a line; empty when nothing is."""
+    late_p99_ms: float
+    """How late ticks begin, 99th percentile of the last minute."""
+    missed_ticks: int
+    place: SimulatedPlace | None
