@@ -16,6 +16,7 @@ from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import LessonKeeper, Tick
@@ -50,11 +51,13 @@ def build_runtime(
     *,
     statistics: StatisticsCounter | None = None,
     level_override: Level | None = None,
+    attended: bool = False,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
     `statistics` goes on from what was counted before. `level_override` puts another layer at the wheels, with
     knowledge and teaching unchanged behind it: the teacher's own policy, for instance, to see what it would reach.
+    `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
     Raises hal.settings.SettingsError, and UnknownActionError for knowledge that the repertoire cannot act out.
     """
     sensors = settings.infrared.names
@@ -64,11 +67,13 @@ def build_runtime(
     events = tuple(events)
     system.apply_all(events)
     period_s = settings.can.cycle_s
-    level = BasicLevel(
-        system, load_repertoire(task.repertoire, settings), round(task.learning.minimum_action_s / period_s)
-    )
+    repertoire = load_repertoire(task.repertoire, settings)
+    level = BasicLevel(system, repertoire, round(task.learning.minimum_action_s / period_s))
+    # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
+    hand = load_repertoire(task.repertoire, settings)
     school = School(
         level,
+        Authority(hand, attended=attended),
         insert_beyond_share=task.learning.insert_beyond_share,
         taken_command_ids=(event.origin.command_id for event in events),
     )

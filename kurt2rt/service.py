@@ -69,7 +69,8 @@ async def serve(
         journal, events, counter = go_on_teaching(Path(service.knowledge), settings, task)
         with JournalWriter(journal, utc_now) as writer:
             runtime = build_runtime(robot, settings, task, events, writer, clock, statistics=counter)
-            runtime.school.stopped = stopped
+            if stopped:
+                runtime.school.stop("the robot program was started")
             period_s = settings.can.cycle_s
             checkpoint_ticks = round(service.checkpoint_period_s / period_s)
             status_ticks = round(service.status_period_s / period_s)

@@ -9,7 +9,7 @@ from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.teaching.commands import CommandResult, Correct, Resume, Teach
+from kurt2rt.teaching.commands import CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
@@ -86,21 +86,25 @@ class Tick:
         situation = self._perception.perceive(senses, history_frozen=not self._driving)
         mark(Stage.PERCEIVE)
 
-        commands = self._inbox.take()
-        results: tuple[CommandResult, ...] = ()
-        events: list[TeachingEvent] = []
         blind = not senses.infrared_age_s <= self._stale_infrared_s
-        for command in commands:
-            if blind and isinstance(command, Teach | Correct):
-                results += (CommandResult(command.command_id, False, _BLIND),)
+        results: list[CommandResult] = []
+        events: list[TeachingEvent] = []
+        for command in self._inbox.take():
+            if isinstance(command, Watch | Drive):
+                self._school.follow(command, tick)
                 continue
-            if isinstance(command, Resume) and not self._school.has_taken(command.command_id):
-                self._robot.release()  # a late copy of an old command must not end a new emergency stop
+            if blind and isinstance(command, Teach | Correct):
+                results.append(CommandResult(command.command_id, False, _BLIND))
+                continue
+            new = not self._school.has_taken(command.command_id)
             result, event = self._school.attend(command, situation, tick)
-            results += (result,)
+            results.append(result)
+            if new and result.accepted and isinstance(command, Resume):
+                self._robot.release()  # a late copy of an old command must not end a new emergency stop
             if event is not None:
                 events.append(event)
-        decision = self._level.decide(situation, senses, self._reason_to_stand(blind=blind))
+        decision = self._decide(tick, situation, senses, blind=blind)
+        self._school.recent.remember(tick, situation, decision)
         mark(Stage.DECIDE)
 
         # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.
@@ -116,13 +120,31 @@ class Tick:
         for event in events:
             self._keeper.submit(event)
         mark(Stage.PUBLISH)
-        return TickRecord(tick, now_s, senses, situation, decision, grant, results)
+        return TickRecord(tick, now_s, senses, situation, decision, grant, tuple(results))
 
-    def _reason_to_stand(self, *, blind: bool) -> Cause | None:
-        if self._school.stopped:
+    def _decide(self, tick: int, situation: Situation, senses: Senses, *, blind: bool) -> Decision:
+        school, authority = self._school, self._school.authority
+        school.look_after(tick, was_driving=self._driving)
+        stand = self._reason_to_stand(tick, blind=blind)
+        # Also when something else stands in its way: the loop ends the hand's lease, whatever happens.
+        by_hand = authority.hand_on_wheel(tick)
+        if by_hand and stand in (None, Cause.STOPPED, Cause.UNATTENDED):
+            name, wheel_speeds = authority.step(senses)
+            aside = self._level.decide(situation, senses, Cause.TEACHER)
+            return aside._replace(wheel_speeds=wheel_speeds, action=name)
+        decision = self._level.decide(situation, senses, stand)
+        if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
+            return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
+        return decision
+
+    def _reason_to_stand(self, tick: int, *, blind: bool) -> Cause | None:
+        school = self._school
+        if school.stopped_because:
             return Cause.STOPPED
         if blind:
             return Cause.BLIND
         if self._keeper.trouble is not None:
             return Cause.UNSAVED
+        if school.needs_a_teacher and not school.authority.present(tick):
+            return Cause.UNATTENDED
         return None

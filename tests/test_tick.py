@@ -15,6 +15,7 @@ from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Command
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
@@ -73,7 +74,7 @@ class Notebook:
 class Corridor:
     """All that stands round a Tick, and one tick in a call."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, attended: bool = False) -> None:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
         self.held_up_s = 0.0
@@ -90,7 +91,7 @@ class Corridor:
             robot,
             Perception(small, SENSORS),
             self.level,
-            School(self.level, insert_beyond_share=0.5, taken_command_ids=()),
+            School(self.level, Authority(repertoire, attended=attended), insert_beyond_share=0.5, taken_command_ids=()),
             self.inbox,
             self.notebook,
             self.statistics,

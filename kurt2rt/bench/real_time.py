@@ -8,7 +8,7 @@ from kurt2rt.doctor.timer import AsyncioClock
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teaching.scripted_teacher import teacher_of
+from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.ledger import Ledger, Share, Stage
@@ -62,7 +62,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
             def after_tick(record: TickRecord) -> None:
                 nonlocal driving
                 driving += record.decision.driving
-                command = teacher.watch(record)
+                command = teacher.watch(picture_of(record))
                 if command is not None:
                     runtime.inbox.put(command)
                 if record.tick % ticks_per_checkpoint == 0:

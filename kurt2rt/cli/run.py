@@ -22,7 +22,7 @@ from kurt2rt.service import Screen, Status, Watcher, serve
 from kurt2rt.service_settings import load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.scripted_teacher import teacher_of
+from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.priority import take_real_time_priority
 
@@ -151,7 +151,7 @@ def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watch
     def watch(record: TickRecord) -> Command | None:
         if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:
             return teacher.enter(Phase.CORRECTIONS)
-        return teacher.watch(record)
+        return teacher.watch(picture_of(record))
 
     return watch
 

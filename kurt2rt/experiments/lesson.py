@@ -10,7 +10,7 @@ from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.scripted_teacher import teacher_of
+from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from kurt2rt.timing.ledger import Ledger
@@ -75,7 +75,7 @@ async def teach(
         nonlocal asking, rescues
         if record.tick == corrections_from:
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
-        command = teacher.watch(record)
+        command = teacher.watch(picture_of(record))
         if command is not None:
             runtime.inbox.put(command)
         if record.decision.asking and not asking:

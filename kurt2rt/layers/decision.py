@@ -22,6 +22,8 @@ class Cause(StrEnum):
     """The infra-red readings are old or never came: there is no situation to decide on, nor to ask about."""
     STOPPED = "stopped"
     """A teacher stopped the robot."""
+    UNATTENDED = "unattended"
+    """The robot knows what to do, but needs a teacher who is there, and none is."""
     UNSAVED = "unsaved"
     """Lessons cannot be saved at the moment: the robot stands until they are."""
 

@@ -16,6 +16,8 @@ class Watch:
     """The teacher is there and sees the robot; while nobody is, a robot that needs a teacher stands."""
 
     teacher: str
+    seen_tick: int
+    """Tick of the newest sign of the robot that he had."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +25,8 @@ class Drive:
     """The teacher drives by hand for as long as these come (a dead man's handle)."""
 
     teacher: str
+    seen_tick: int
+    """Tick of the newest sign of the robot that he had."""
     hold: int
     """Number of this press of the button, larger than that of any press before; a stop ends a press for good."""
     left_m_s: float

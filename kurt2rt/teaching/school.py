@@ -1,125 +1,281 @@
-"""Applies the teacher's commands to the knowledge, in the tick that takes them."""
+"""Carries out the teacher's commands, in the tick that takes them."""
 
 from collections.abc import Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+from kurt2rt.rla.rla_system import UnfitEventError
+from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
+    BeginSession,
     Command,
     CommandResult,
     Correct,
     DeleteRla,
+    Drive,
+    EndSession,
+    HandOver,
     ReplaceAction,
     Resume,
+    Reward,
+    RunBehaviour,
     SetPhase,
     Stop,
+    Take,
     Teach,
+    Undo,
+    Watch,
 )
+from kurt2rt.teaching.recent import RecentDecisions
+
+_Answer = tuple[CommandResult, TeachingEvent | None]
+
+
+class _RefusedError(Exception):
+    """Why a command is not carried out, in a sentence for the teacher."""
 
 
 class School:
-    """Phases 1 and 2: new RLAs, corrected ones, deleted ones (paper, IV.A and IV.B)."""
+    """What teachers may do: RLAs made, corrected, deleted, rewarded and undone, sessions, phases, stop and resume."""
 
-    def __init__(self, level: BasicLevel, *, insert_beyond_share: float, taken_command_ids: Iterable[str]) -> None:
+    def __init__(
+        self,
+        level: BasicLevel,
+        authority: Authority,
+        *,
+        insert_beyond_share: float,
+        taken_command_ids: Iterable[str],
+    ) -> None:
         self._level = level
+        self.authority = authority
+        self.recent = RecentDecisions(level.system.dimensions)
         self._insert_beyond_share = insert_beyond_share
         self._taken = set(taken_command_ids)
         self.phase = Phase.SUPERVISED
-        self.stopped = False
+        self.stopped_because = ""
+        """Empty while nobody stopped the robot."""
+        self._stopped_by: str | None = None
         self.corrections = 0
+        self.session: str | None = None
+        """Name of the session that is on."""
+        self._session_from = 0
+        self._session_ticks = 0
 
     def has_taken(self, command_id: str) -> bool:
         """Whether a command of this id was carried out already."""
         return command_id in self._taken
 
-    def attend(self, command: Command, situation: Situation, tick: int) -> tuple[CommandResult, TeachingEvent | None]:
+    def stop(self, because: str, by: str | None = None) -> None:
+        """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not."""
+        self.authority.end_hand()
+        self.stopped_because = because
+        self._stopped_by = by
+
+    def teaching_ticks(self, tick: int) -> int:
+        """How long the session that is on has lasted at `tick`, or how long the last one did."""
+        return self._session_ticks if self.session is None else tick - self._session_from
+
+    def look_after(self, tick: int, *, was_driving: bool) -> None:
+        """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume."""
+        authority = self.authority
+        if was_driving and not self.stopped_because and self.needs_a_teacher and not authority.present(tick):
+            self.stop(f"lost the link to {authority.teacher}" if authority.teacher else "no teacher is there")
+
+    @property
+    def needs_a_teacher(self) -> bool:
+        """Whether the robot may drive by its RLAs only while a teacher is there."""
+        return self.authority.attended and self.phase is not Phase.AUTONOMOUS
+
+    def follow(self, command: Watch | Drive, tick: int) -> str | None:
+        """Take in a message of a stream, of which only the newest counts; a refusal in words."""
+        authority = self.authority
+        refusal = authority.held_by_another(command.teacher) or self._stopped_by_another(command)
+        if refusal is not None:
+            return refusal
+        if isinstance(command, Watch):
+            authority.watch(command.teacher, tick, command.seen_tick)
+            return None
+        authority.claim(command.teacher)
+        refusal = authority.drive(command, tick, command.seen_tick)
+        if refusal is None:
+            # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
+            self.stopped_because = f"{command.teacher} drove by hand and let go"
+            self._stopped_by = command.teacher
+        return refusal
+
+    def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
+        if isinstance(command, Watch | Drive):
+            refusal = self.follow(command, tick)
+            return CommandResult("", refusal is None, refusal or ""), None
         # A stop that comes twice stops twice: it may be the second one that is meant.
         if self.has_taken(command.command_id) and not isinstance(command, Stop):
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
-        result, event = self._carry_out(command, situation, tick)
-        if result.accepted:
-            self._taken.add(command.command_id)
-        if event is not None:
-            self._level.apply(event)
-        return result, event
+        try:
+            text, event = self._carry_out(command, situation, tick)
+            if event is not None:
+                self._level.apply(event)
+        except (_RefusedError, UnfitEventError) as error:
+            return CommandResult(command.command_id, False, str(error)), None
+        self._taken.add(command.command_id)
+        return CommandResult(command.command_id, True, text, lesson=event is not None), event
 
-    def _carry_out(
-        self, command: Command, situation: Situation, tick: int
-    ) -> tuple[CommandResult, TeachingEvent | None]:
+    def _carry_out(self, command: Command, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
+        authority = self.authority
+        if isinstance(command, Stop):
+            self.stop(f"{command.teacher} said stop", command.teacher)
+            return "the robot stands until it is told to resume", None
+        if isinstance(command, Take):
+            self._refuse(authority.take(command.teacher, tick))
+            return f"{command.teacher} teaches", None
+        self._refuse(authority.held_by_another(command.teacher))
+        authority.claim(command.teacher)
         match command:
-            case Stop():
-                self.stopped = True
-                return _done(command, "the robot stands until it is told to resume"), None
+            case HandOver(to=to):
+                authority.hand_over(to)
+                return "nobody teaches now" if to is None else f"{to} teaches now", None
             case Resume():
-                self.stopped = False
-                return _done(command, "the robot may drive"), None
+                self.stopped_because, self._stopped_by = "", None
+                authority.end_hand()
+                return "the robot may drive", None
             case SetPhase():
                 self.phase = command.phase
-                return _done(command, f"phase {command.phase.value}, {command.phase.name.lower()}"), None
-            case DeleteRla():
-                return self._delete(command, tick)
-            case _:
-                if command.action not in self._level.repertoire:
-                    known = ", ".join(self._level.repertoire)
-                    return _refused(
-                        command, f"there is no action {command.action!r}; the repertoire has: {known}"
-                    ), None
+                return f"phase {command.phase.value}, {command.phase.name.lower()}", None
+            case RunBehaviour():
+                return self._run(command, tick), None
+            case BeginSession() | EndSession():
+                return self._session(command, tick)
+            case Teach() | Correct():
                 return self._lesson(command, situation, tick)
-
-    def _lesson(
-        self, command: Teach | Correct | ReplaceAction, situation: Situation, tick: int
-    ) -> tuple[CommandResult, TeachingEvent | None]:
-        match command:
             case ReplaceAction():
+                self._require_action(command.action)
                 return self._replace(command, command.rla_id, tick)
-            case Teach():
-                # On the very condition of an RLA a second one would never win: the older one does.
-                replace_within_share = 0.0
-            case Correct():
-                self.corrections += 1
-                replace_within_share = self._insert_beyond_share
-        nearest = self._level.system.match(situation.vector)
+            case DeleteRla():
+                self._require_rla(command.rla_id)
+                return f"RLA {command.rla_id} deleted", RlaDeleted(command.rla_id, self._origin(command, tick))
+            case Reward():
+                return self._reward(command, tick)
+            case Undo():
+                return self._undo(command, tick)
+            case Watch() | Drive():
+                raise AssertionError("streams are followed, not carried out")
+
+    def _run(self, command: RunBehaviour, tick: int) -> str:
+        self._require_action(command.action)
+        self._refuse(self._stopped_by_another(command))
+        self.stop(f"{command.action} is over", command.teacher)
+        self.authority.run(command.action, tick, command.ticks)
+        return f"{command.action} for {command.ticks} ticks"
+
+    def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[str, TeachingEvent]:
+        origin = self._origin(command, tick)
+        if isinstance(command, BeginSession):
+            if self.session is not None:
+                raise _RefusedError(f"the session {self.session!r} is on; end it first")
+            self.session, self._session_from = command.name, tick
+            return f"session {command.name!r} begins", SessionBegun(command.name, origin)
+        if self.session is None:
+            raise _RefusedError("no session is on")
+        name, self._session_ticks = self.session, self.teaching_ticks(tick)
+        self.session = None
+        self.stop(f"the session {name!r} is over", command.teacher)
+        return f"session {name!r} is over; the robot stands", SessionEnded(self._session_ticks, origin)
+
+    def _lesson(self, command: Teach | Correct, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
+        self._require_action(command.action)
+        meant = situation.vector
+        if command.decision_tick is not None:
+            self._require_known(command.decision_tick)
+            meant = self.recent.situation(command.decision_tick)
+        # On the very condition of an RLA a second one would never win: the older one does.
+        replace_within_share = 0.0
+        if isinstance(command, Correct):
+            self.corrections += 1
+            replace_within_share = self._insert_beyond_share
+        nearest = self._level.system.match(meant)
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
-            return self._create(command, situation, tick)
+            return self._create(command, meant, tick)
         if nearest.rla.action == command.action:
-            return _done(command, f"RLA {nearest.rla.rla_id} says {command.action} already"), None
+            return f"RLA {nearest.rla.rla_id} says {command.action} already", None
         return self._replace(command, nearest.rla.rla_id, tick)
 
     def _create(
-        self, command: Teach | Correct, situation: Situation, tick: int
-    ) -> tuple[CommandResult, TeachingEvent | None]:
+        self, command: Teach | Correct, meant: NDArray[np.float64], tick: int
+    ) -> tuple[str, TeachingEvent | None]:
         rla = Rla(
             rla_id=self._level.system.next_id,
-            condition=tuple(situation.vector.tolist()),
+            condition=tuple(meant.tolist()),
             action=command.action,
             radius=None,
             origin=self._origin(command, tick),
         )
-        return _done(command, f"RLA {rla.rla_id} taught: {rla.action}"), RlaCreated(rla)
+        return f"RLA {rla.rla_id} taught: {rla.action}", RlaCreated(rla)
 
     def _replace(
         self, command: Teach | Correct | ReplaceAction, rla_id: int, tick: int
-    ) -> tuple[CommandResult, TeachingEvent | None]:
+    ) -> tuple[str, TeachingEvent | None]:
+        rla = self._require_rla(rla_id)
+        event = ActionReplaced(rla_id, command.action, rla.action, self._origin(command, tick))
+        return f"RLA {rla_id} corrected: {command.action} instead of {rla.action}", event
+
+    def _reward(self, command: Reward, tick: int) -> tuple[str, TeachingEvent]:
+        meant = command.decision_tick
+        if meant is None:
+            meant = tick - 1
+        self._require_known(meant)
+        rla_id = self.recent.rla(meant)
+        if rla_id is None:
+            raise _RefusedError("no RLA drove the robot then; there is nothing to reward or to punish")
+        self._require_rla(rla_id)
+        word = "rewarded" if command.value > 0 else "punished"
+        return f"RLA {rla_id} {word}", RlaRewarded(rla_id, command.value, meant, self._origin(command, tick))
+
+    def _undo(self, command: Undo, tick: int) -> tuple[str, TeachingEvent]:
+        lesson = command.lesson or self._level.system.last_standing_lesson
+        if lesson is None:
+            raise _RefusedError("there is no lesson to undo")
+        return "undone", LessonUndone(lesson, self._origin(command, tick))
+
+    def _require_action(self, action: str) -> None:
+        if action not in self._level.repertoire:
+            known = ", ".join(self._level.repertoire)
+            raise _RefusedError(f"there is no action {action!r}; the repertoire has: {known}")
+
+    def _require_rla(self, rla_id: int) -> Rla:
         rla = self._level.system.get(rla_id)
         if rla is None:
-            return _refused(command, f"there is no RLA {rla_id}; it may have been deleted"), None
-        event = ActionReplaced(rla_id, command.action, rla.action, self._origin(command, tick))
-        return _done(command, f"RLA {rla_id} corrected: {command.action} instead of {rla.action}"), event
+            raise _RefusedError(f"there is no RLA {rla_id}; it may have been deleted")
+        return rla
 
-    def _delete(self, command: DeleteRla, tick: int) -> tuple[CommandResult, TeachingEvent | None]:
-        if self._level.system.get(command.rla_id) is None:
-            return _refused(command, f"there is no RLA {command.rla_id}; it may have been deleted already"), None
-        return _done(command, f"RLA {command.rla_id} deleted"), RlaDeleted(command.rla_id, self._origin(command, tick))
+    def _require_known(self, tick: int) -> None:
+        if not self.recent.knows(tick):
+            raise _RefusedError(f"the decision of tick {tick} is not remembered any more; look at the newest picture")
+
+    def _stopped_by_another(self, command: Watch | Drive | RunBehaviour) -> str | None:
+        if isinstance(command, Watch) or self._stopped_by in (None, command.teacher):
+            return None
+        return f"{self._stopped_by} stopped the robot; say resume first"
+
+    def _refuse(self, reason: str | None) -> None:
+        if reason is not None:
+            raise _RefusedError(reason)
 
     def _origin(self, command: Command, tick: int) -> Origin:
+        assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
-
-
-def _done(command: Command, text: str) -> CommandResult:
-    return CommandResult(command.command_id, True, text)
-
-
-def _refused(command: Command, text: str) -> CommandResult:
-    return CommandResult(command.command_id, False, text)

@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from behaviors.policies.build import build_policy
 from behaviors.policies.policy import ReferencePolicy
@@ -12,6 +13,21 @@ from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
 _NAME = "scripted teacher"
+
+
+class Picture(NamedTuple):
+    """What a teacher sees of the robot."""
+
+    asking: bool
+    driving: bool
+    action: str | None
+    infrared_counts: tuple[int, ...]
+
+
+def picture_of(record: TickRecord) -> Picture:
+    """What a tick looks like to a teacher."""
+    decision = record.decision
+    return Picture(decision.asking, decision.driving, decision.action, record.senses.infrared_counts)
 
 
 def teacher_of(
@@ -31,7 +47,7 @@ def teacher_of(
 class ScriptedTeacher:
     """Consistent and memoryless about the task; of its own it has only patience and reaction time.
 
-    Watches the same records that a person sees on the screen and answers with the same commands.
+    Sees the same pictures that a person has on the screen and answers with the same commands.
     """
 
     def __init__(
@@ -63,36 +79,36 @@ class ScriptedTeacher:
         self.phase = phase
         return SetPhase(self._next_id(), _NAME, phase)
 
-    def watch(self, record: TickRecord) -> Command | None:
-        """See one tick; what the teacher says to it, if anything."""
-        if record.decision.asking or self._ticks_asked > 0:
+    def watch(self, picture: Picture, ticks: int = 1) -> Command | None:
+        """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""
+        if picture.asking or self._ticks_asked > 0:
             # Once asked the teacher answers, also when noise has meanwhile let the robot drive on for a moment.
             self._ticks_otherwise = 0
-            self._ticks_asked += 1
+            self._ticks_asked += ticks
             if self._ticks_asked < self._reaction_ticks:
                 return None
             self._ticks_asked = 0
-            return Teach(self._next_id(), _NAME, self._choose(record))
-        if self.phase is Phase.SUPERVISED or not record.decision.driving:
+            return Teach(self._next_id(), _NAME, self._choose(picture))
+        if self.phase is Phase.SUPERVISED or not picture.driving:
             return None
-        return self._correct(record)
+        return self._correct(picture, ticks)
 
-    def _correct(self, record: TickRecord) -> Command | None:
-        wanted = self._policy.choose(record.senses.infrared_counts)
-        if wanted == record.decision.action:
+    def _correct(self, picture: Picture, ticks: int) -> Command | None:
+        wanted = self._policy.choose(picture.infrared_counts)
+        if wanted == picture.action:
             self._ticks_otherwise = 0
             return None
         if wanted != self._wanted:  # patience runs for one opinion at a time
             self._wanted = wanted
             self._ticks_otherwise = 0
-        self._ticks_otherwise += 1
+        self._ticks_otherwise += ticks
         if self._ticks_otherwise < self._patience_ticks:
             return None
         self._ticks_otherwise = 0
-        return Correct(self._next_id(), _NAME, self._choose(record))
+        return Correct(self._next_id(), _NAME, self._choose(picture))
 
-    def _choose(self, record: TickRecord) -> str:
-        right = self._policy.choose(record.senses.infrared_counts)
+    def _choose(self, picture: Picture) -> str:
+        right = self._policy.choose(picture.infrared_counts)
         if self._chance.random() >= self._error_rate:
             return right
         return self._chance.choice([action for action in self._actions if action != right])

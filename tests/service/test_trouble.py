@@ -99,7 +99,7 @@ async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tm
         fresh = record.senses.infrared_age_s < 0.05 and record.senses.encoder_age_s < 0.05
         if not fresh or len(lost) < 20:
             return False
-        said.append(Resume("resume-1", "Ann"))
+        said.append(Resume("resume-1", "scripted teacher"))
         return True
 
     def it_drives_again(record: TickRecord) -> bool:
@@ -165,7 +165,7 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
             stopped.append(record)
         if len(stopped) < 20:
             return False
-        said.append(Resume("resume-1", "Ann"))
+        said.append(Resume("resume-1", "scripted teacher"))
         return True
 
     def it_drives_again(record: TickRecord) -> bool:

@@ -6,6 +6,7 @@ import pytest
 
 from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Command, CommandResult
 from kurt2rt.teaching.school import School
 from tests.layers.helpers import RADIUS, SmallLevel, situation
@@ -21,7 +22,12 @@ class Lesson:
 
     def __init__(self, *events: TeachingEvent, taken: tuple[str, ...] = ()) -> None:
         self.small = SmallLevel(*events)
-        self.school = School(self.small.level, insert_beyond_share=SHARE, taken_command_ids=taken)
+        self.school = School(
+            self.small.level,
+            Authority(self.small.actions, attended=False),
+            insert_beyond_share=SHARE,
+            taken_command_ids=taken,
+        )
         self.events: list[TeachingEvent] = list(events)
         self.tick = 100
 
@@ -41,7 +47,7 @@ class Lesson:
 def test_teach_puts_an_rla_on_the_present_situation() -> None:
     lesson = Lesson()
     result = lesson.say(teach("a", "t-1"), place=2.5)
-    assert result == CommandResult("t-1", True, "RLA 1 taught: a")
+    assert result == CommandResult("t-1", True, "RLA 1 taught: a", lesson=True)
     assert lesson.events == [RlaCreated(Rla(1, (2.5,), "a", None, Origin("t-1", "Ann", Phase.SUPERVISED, 101)))]
     assert lesson.small.at(2.5).action == "a"
 
@@ -110,9 +116,9 @@ def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> No
 def test_stop_and_resume() -> None:
     lesson = Lesson()
     assert lesson.say(stop()).text == "the robot stands until it is told to resume"
-    assert lesson.school.stopped
+    assert lesson.school.stopped_because
     assert lesson.say(resume()).text == "the robot may drive"
-    assert not lesson.school.stopped
+    assert not lesson.school.stopped_because
 
 
 def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
@@ -161,9 +167,9 @@ def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> N
     lesson = Lesson()
     for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
         lesson.say(command)
-        assert lesson.school.stopped == stopped
+        assert bool(lesson.school.stopped_because) == stopped
     lesson.say(resume("2"))
-    assert lesson.school.stopped
+    assert lesson.school.stopped_because
 
 
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:

@@ -11,7 +11,7 @@ from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
-from kurt2rt.teaching.scripted_teacher import ScriptedTeacher
+from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
 from kurt2rt.tick import TickRecord
 from tests.layers.helpers import sensed
 
@@ -53,7 +53,7 @@ def doing(action: str, count: int = FAR, cause: Cause = Cause.RLA) -> TickRecord
 
 def said(person: ScriptedTeacher, records: Sequence[TickRecord]) -> dict[int, Command]:
     """What it says in which tick, counted from 1."""
-    heard = {number: person.watch(each) for number, each in enumerate(records, start=1)}
+    heard = {number: person.watch(picture_of(each)) for number, each in enumerate(records, start=1)}
     return {number: command for number, command in heard.items() if command is not None}
 
 

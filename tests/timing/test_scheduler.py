@@ -13,6 +13,7 @@ from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import Tick, TickRecord
@@ -72,7 +73,9 @@ class Run:
         level = BasicLevel(RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1)
         self.clock = clock
         self.ledger = Ledger(capacity=100)
-        school = School(level, insert_beyond_share=0.5, taken_command_ids=())
+        school = School(
+            level, Authority(level.repertoire, attended=False), insert_beyond_share=0.5, taken_command_ids=()
+        )
         perception, statistics = Perception(small, SENSORS), StatisticsCounter()
         tick = Tick(
             StandingRobot(),

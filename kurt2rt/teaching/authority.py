@@ -1,0 +1,113 @@
+"""Who teaches, whether that one is there, and what his hand does at the wheels."""
+
+from behaviors.behaviour import Behaviour
+from behaviors.repertoire import Repertoire
+from hal.robot import Senses, WheelSpeeds
+from kurt2rt.teaching.commands import Drive
+
+_BY_HAND = "by hand"
+
+
+class Authority:
+    """One teacher at a time. His hand has a lease that the loop ends, so a silent teacher is a robot that stands.
+
+    Whoever speaks first is the teacher; another one becomes it only by `take` or when it is handed over.
+    """
+
+    def __init__(self, repertoire: Repertoire, *, attended: bool, lease_ticks: int = 30, reach_ticks: int = 35) -> None:
+        """`attended`: the robot needs a teacher who is there. A message is good for `lease_ticks` from its arrival, and
+        never for longer than `reach_ticks` from the picture it was given on, however long it was on its way.
+        """
+        self.attended = attended
+        self.teacher: str | None = None
+        self._repertoire = repertoire
+        self._lease_ticks = lease_ticks
+        self._reach_ticks = reach_ticks
+        self._there_until = -1
+        self._hold: dict[str, int] = {}
+        self._ended_hold: dict[str, int] = {}
+        self._speeds: WheelSpeeds | None = None
+        self._driven_until = -1
+        self._behaviour: Behaviour | None = None
+        self._behaviour_name = ""
+        self._behaviour_until = -1
+
+    def held_by_another(self, teacher: str) -> str | None:
+        """Why this one may not teach now; None when he may."""
+        if self.teacher is None or self.teacher == teacher:
+            return None
+        return f"{self.teacher} teaches now; ask to be handed over to, or take the robot"
+
+    def claim(self, teacher: str) -> None:
+        """Become the teacher where nobody is; call it for every command that is carried out."""
+        if self.teacher is None:
+            self._become(teacher)
+
+    def take(self, teacher: str, tick: int) -> str | None:
+        """Become the teacher also in place of another one; a refusal while that one drives by hand."""
+        if self.teacher not in (None, teacher) and self.hand_on_wheel(tick):
+            return f"{self.teacher} drives by hand just now; stop the robot first"
+        if self.teacher != teacher:
+            self._become(teacher)
+        return None
+
+    def hand_over(self, to: str | None) -> None:
+        """Nobody, or another one, is the teacher; that one has to be there before the robot drives on."""
+        self._become(to)
+
+    def watch(self, teacher: str, tick: int, seen_tick: int) -> None:
+        """A sign that the teacher is there, arrived now and given on the picture of `seen_tick`."""
+        if teacher == self.teacher:
+            self._there_until = max(self._there_until, self._until(tick, seen_tick))
+
+    def present(self, tick: int) -> bool:
+        """Whether the teacher is there; always where none is needed."""
+        return not self.attended or tick < self._there_until
+
+    def drive(self, command: Drive, tick: int, seen_tick: int) -> str | None:
+        """Take or keep the wheels; a refusal for a press that a stop has ended."""
+        if command.hold <= self._ended_hold.get(command.teacher, -1):
+            return "this press was ended by a stop; let go and press anew"
+        self._hold[command.teacher] = command.hold
+        self._behaviour = None
+        self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
+        self._driven_until = self._until(tick, seen_tick)
+        self.watch(command.teacher, tick, seen_tick)
+        return None
+
+    def run(self, action: str, tick: int, ticks: int) -> None:
+        """Let an action of the repertoire drive for so many ticks, while the teacher is there."""
+        self._speeds = None
+        self._behaviour = self._repertoire[action]
+        self._behaviour.start()
+        self._behaviour_name = action
+        self._behaviour_until = tick + ticks
+
+    def end_hand(self) -> None:
+        """Take the wheels from the teacher's hand: every press so far is over, whatever of it is still on its way."""
+        self._ended_hold.update(self._hold)
+        self._speeds = None
+        self._behaviour = None
+
+    def hand_on_wheel(self, tick: int) -> bool:
+        """Whether the teacher drives by hand or runs a behaviour in this tick."""
+        if self._speeds is not None and tick >= self._driven_until:
+            self.end_hand()
+        if self._behaviour is not None and (tick >= self._behaviour_until or not self.present(tick)):
+            self.end_hand()
+        return self._speeds is not None or self._behaviour is not None
+
+    def step(self, senses: Senses) -> tuple[str, WheelSpeeds]:
+        """What the hand does, after `hand_on_wheel`: a name for it, and wheel speeds."""
+        if self._speeds is not None:
+            return _BY_HAND, self._speeds
+        assert self._behaviour is not None
+        return self._behaviour_name, self._behaviour.step(senses)
+
+    def _become(self, teacher: str | None) -> None:
+        self.end_hand()
+        self.teacher = teacher
+        self._there_until = -1
+
+    def _until(self, tick: int, seen_tick: int) -> int:
+        return min(tick + self._lease_ticks, seen_tick + self._reach_ticks)

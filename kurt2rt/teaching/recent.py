@@ -1,0 +1,37 @@
+"""The latest decisions, so that a teacher can mean one of them: delay must not blur who is blamed."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.layers.decision import Decision
+from kurt2rt.perception.perception import Situation
+
+
+class RecentDecisions:
+    """Situation and deciding RLA of the last `capacity` ticks, in memory that does not grow."""
+
+    def __init__(self, dimensions: int, capacity: int = 1000) -> None:
+        self._capacity = capacity
+        self._ticks = np.full(capacity, -1, dtype=np.int64)
+        self._situations = np.zeros((capacity, dimensions))
+        self._rlas: list[int | None] = [None] * capacity
+
+    def remember(self, tick: int, situation: Situation, decision: Decision) -> None:
+        """Keep what was decided in a tick; the oldest is forgotten."""
+        row = tick % self._capacity
+        self._ticks[row] = tick
+        self._situations[row] = situation.vector
+        self._rlas[row] = decision.rla_id
+
+    def knows(self, tick: int) -> bool:
+        """Whether that tick is kept: it ran, and not too long ago."""
+        return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick
+
+    def situation(self, tick: int) -> NDArray[np.float64]:
+        """Situation vector (d,) of a tick that is known; a view, to be copied by whoever keeps it."""
+        row: NDArray[np.float64] = self._situations[tick % self._capacity]
+        return row
+
+    def rla(self, tick: int) -> int | None:
+        """The RLA that drove in a tick that is known."""
+        return self._rlas[tick % self._capacity]
