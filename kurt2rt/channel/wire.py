@@ -1,0 +1,181 @@
+"""The one codec of the teacher's channel: requests, answers and the state as CBOR (docs/the-wire.md)."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
+from kurt2rt.channel.schema import (
+    Check,
+    Flag,
+    ManyOf,
+    Octets,
+    OrNone,
+    Real,
+    Row,
+    Text,
+    Whole,
+    WireError,
+    decode_strictly,
+    encode_plainly,
+)
+from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.teaching.question import FeatureDifference
+
+__all__ = [
+    "CONTENT_FORMAT",
+    "PATHS",
+    "WireError",
+    "decode_answer",
+    "decode_request",
+    "decode_state",
+    "encode_answer",
+    "encode_request",
+    "encode_state",
+]
+
+CONTENT_FORMAT = 60
+"""CoAP's number for application/cbor."""
+
+MOST_REQUEST_BYTES = 1024
+MOST_ANSWER_BYTES = 65_507
+"""The largest UDP datagram: a world may have many walls."""
+
+_REQUEST_DEPTH = 1
+"""A request is one flat list."""
+_STATE_DEPTH = 3
+_ANSWER_DEPTH = 8
+
+PATHS: Mapping[str, type[Request]] = {kind.path: kind for kind in REQUESTS}
+"""What each path takes; its keys are all paths but /state."""
+
+_CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
+
+
+def encode_request(request: Request) -> bytes:
+    """The body of a request. Raises WireError where the robot would: nothing is sent that it cannot take."""
+    return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
+
+
+def decode_request(path: str, payload: bytes) -> Request:
+    """What was asked of a path (a key of PATHS). Raises WireError."""
+    kind = PATHS.get(path)
+    if kind is None:
+        raise WireError(f"there is no {path} here")
+    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
+    checks = _CHECKS[kind]
+    if not isinstance(body, list) or len(body) != len(checks):
+        names = ", ".join(name for name, _ in checks)
+        raise WireError(f"{path} takes a list of {len(checks)}: [{names}]")
+    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=True)})
+
+
+def encode_answer(answer: Mapping[str, Any]) -> bytes:
+    """An answer: a map with text keys."""
+    return encode_plainly(dict(answer))
+
+
+def decode_answer(payload: bytes) -> dict[str, Any]:
+    """An answer's map. Raises WireError."""
+    answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH)
+    if not isinstance(answer, dict) or not all(isinstance(key, str) for key in answer):
+        raise WireError("an answer has to be a map with text keys")
+    return answer
+
+
+_LINE = Text(512)
+_NAME = Text(LONGEST_TEXT)
+_NUMBER = Whole(0, LARGEST_NUMBER)
+_ANY_REAL = Real(math.inf)
+_FINITE = Real(1e9)
+
+_PLAIN: tuple[tuple[str, str, Check], ...] = (
+    ("b", "boot", Octets(BOOT_BYTES)),
+    ("t", "tick", _NUMBER),
+    ("ph", "phase", Whole(1, 5)),
+    ("ir", "infrared_counts", ManyOf(Whole(0, 65_535), most=64)),
+    ("ia", "infrared_age_s", _ANY_REAL),
+    ("bp", "bumpers", Whole(0, 2**32 - 1)),
+    ("by", "cause", _NAME),
+    ("act", "action", OrNone(_NAME)),
+    ("rla", "rla", OrNone(_NUMBER)),
+    ("n", "nearest", OrNone(_NUMBER)),
+    ("na", "nearest_action", OrNone(_NAME)),
+    ("d", "distance", _ANY_REAL),
+    ("r", "radius", _ANY_REAL),
+    ("tb", "taught_by", _NAME),
+    ("ta", "taught_at", _NAME),
+    ("who", "teacher", OrNone(_NAME)),
+    ("hand", "by_hand", Flag()),
+    ("st", "stopped_because", _LINE),
+    ("nr", "rlas", _NUMBER),
+    ("nl", "lessons", _NUMBER),
+    ("un", "unsaved", _NUMBER),
+    ("ses", "session", OrNone(_NAME)),
+    ("clk", "clock_s", _FINITE),
+    ("g", "guard", ManyOf(_LINE, most=16)),
+    ("tr", "trouble", _LINE),
+    ("lp", "late_p99_ms", _ANY_REAL),
+    ("ms", "missed_ticks", _NUMBER),
+)
+"""Key on the wire, field of State, check."""
+
+_WHEELS = Row((_FINITE, _FINITE))
+_QUESTION = ManyOf(Row((_NAME, _FINITE, _FINITE)), most=32)
+_PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
+
+
+def encode_state(state: State) -> bytes:
+    """The picture of the robot for /state. Texts are cut and tidied where the other side would refuse them."""
+    picture: dict[str, Any] = {key: _tidied(getattr(state, field), check) for key, field, check in _PLAIN}
+    picture["m"] = [state.left_m_s, state.right_m_s]
+    picture["ask"] = [[each.name, each.here, each.in_condition] for each in state.question]
+    place = state.place
+    picture["pl"] = (
+        None
+        if place is None
+        else [place.x_m, place.y_m, place.heading_rad, place.laps, place.collisions, place.world_version]
+    )
+    return encode_plainly(picture)
+
+
+def decode_state(payload: bytes) -> State:
+    """The picture of the robot. Keys that are not known here are left out: a newer robot may tell more.
+
+    Raises WireError.
+    """
+    picture = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_STATE_DEPTH)
+    if not isinstance(picture, dict):
+        raise WireError("a state has to be a map")
+    values = {field: check(field, _take(picture, key)) for key, field, check in _PLAIN}
+    left_m_s, right_m_s = _WHEELS("wheel speeds", _take(picture, "m"))
+    question = tuple(FeatureDifference(*each) for each in _QUESTION("question", _take(picture, "ask")))
+    place = _PLACE("place", _take(picture, "pl"))
+    return State(
+        left_m_s=left_m_s,
+        right_m_s=right_m_s,
+        question=question,
+        place=None if place is None else SimulatedPlace(*place),
+        **values,
+    )
+
+
+def _take(picture: dict[Any, Any], key: str) -> object:
+    try:
+        value: object = picture[key]
+    except KeyError:
+        raise WireError(f"the state has no {key!r}") from None
+    return value
+
+
+def _tidied(value: Any, check: Check) -> Any:
+    # A line break in the text of some error must not cost the teacher the whole picture.
+    match check:
+        case Text():
+            return check.cut(value)
+        case ManyOf(check=inner):
+            return [_tidied(each, inner) for each in value]
+        case OrNone(check=inner) if value is not None:
+            return _tidied(value, inner)
+        case _:
+            return value

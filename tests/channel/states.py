@@ -1,0 +1,47 @@
+"""Pictures of a robot for the stories of the channel."""
+
+from dataclasses import replace
+from typing import Any
+
+from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.teaching.question import FeatureDifference
+
+ASKING = State(
+    boot=b"boot",
+    tick=1234,
+    phase=2,
+    infrared_counts=tuple(range(100, 118)),
+    infrared_age_s=0.01,
+    bumpers=0,
+    left_m_s=0.0,
+    right_m_s=0.0,
+    cause="unknown",
+    action=None,
+    rla=None,
+    nearest=12,
+    nearest_action="forward",
+    distance=812.5,
+    radius=600.0,
+    taught_by="phone",
+    taught_at="2026-11-21T12:04:00Z",
+    question=(FeatureDifference("front now", 410.0, 120.0), FeatureDifference("left mean", 90.0, 300.0)),
+    teacher="phone",
+    by_hand=False,
+    stopped_because="",
+    rlas=12,
+    lessons=14,
+    unsaved=0,
+    session="morning",
+    clock_s=61.25,
+    guard=(),
+    trouble="",
+    late_p99_ms=0.2,
+    missed_ticks=0,
+    place=SimulatedPlace(1.0, 2.0, 0.5, 0.25, 1, 3),
+)
+"""A simulated robot that stands and asks; `phone` is its teacher."""
+
+
+def state(**changes: Any) -> State:
+    """The asking robot with a few things otherwise."""
+    return replace(ASKING, **changes)

@@ -1,0 +1,268 @@
+"""What goes over the wire comes back the same; what is not right is refused in a sentence, and in no other way."""
+
+import math
+from dataclasses import astuple
+from typing import Any
+
+import cbor2
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    DriveRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    PhaseRequest,
+    Request,
+    RewardRequest,
+    SessionRequest,
+    checks_of,
+)
+from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OrNone, Real, Row, Text, Whole
+from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.wire import (
+    PATHS,
+    WireError,
+    decode_answer,
+    decode_request,
+    decode_state,
+    encode_answer,
+    encode_request,
+    encode_state,
+)
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.question import FeatureDifference
+from tests.channel.states import state
+
+BOOT = b"boot"
+ID = b"12345678"
+NUMBERS = st.integers(0, 2**53)
+REALS = st.floats(allow_nan=False)
+FINITE = st.floats(-1e9, 1e9)
+PRINTABLE = st.characters(categories=("L", "N", "P", "S")) | st.just(" ")
+NAMES = st.text(PRINTABLE, max_size=64)
+
+
+def values(check: Check) -> st.SearchStrategy[Any]:
+    """Whatever a check lets pass."""
+    match check:
+        case Octets(length=length):
+            return st.binary(min_size=length, max_size=length)
+        case Whole(least=least, most=most):
+            return st.integers(least, most)
+        case Real(most=most):
+            return st.floats(-most, most)
+        case OneOf(numbers=numbers, kind=kind):
+            return st.sampled_from(numbers).map(kind)
+        case Text(most=most, least=least):
+            return st.text(PRINTABLE, min_size=least, max_size=most)
+        case OrNone(check=inner):
+            return st.none() | values(inner)
+    raise AssertionError(f"no strategy for {check}")
+
+
+REQUESTS = st.one_of(
+    [st.builds(kind, **{name: values(check) for name, check in checks_of(kind)}) for kind in PATHS.values()]
+)
+
+STATES = st.builds(
+    State,
+    boot=st.binary(min_size=4, max_size=4),
+    tick=NUMBERS,
+    phase=st.integers(1, 5),
+    infrared_counts=st.lists(st.integers(0, 1023), max_size=18).map(tuple),
+    infrared_age_s=REALS,
+    bumpers=st.integers(0, 255),
+    left_m_s=FINITE,
+    right_m_s=FINITE,
+    cause=NAMES,
+    action=st.none() | NAMES,
+    rla=st.none() | NUMBERS,
+    nearest=st.none() | NUMBERS,
+    nearest_action=st.none() | NAMES,
+    distance=REALS,
+    radius=REALS,
+    taught_by=NAMES,
+    taught_at=NAMES,
+    question=st.lists(st.builds(FeatureDifference, NAMES, FINITE, FINITE), max_size=5).map(tuple),
+    teacher=st.none() | NAMES,
+    by_hand=st.booleans(),
+    stopped_because=NAMES,
+    rlas=NUMBERS,
+    lessons=NUMBERS,
+    unsaved=NUMBERS,
+    session=st.none() | NAMES,
+    clock_s=FINITE,
+    guard=st.lists(NAMES, max_size=4).map(tuple),
+    trouble=NAMES,
+    late_p99_ms=REALS,
+    missed_ticks=NUMBERS,
+    place=st.none() | st.builds(SimulatedPlace, FINITE, FINITE, FINITE, FINITE, NUMBERS, NUMBERS),
+)
+
+ANYTHING = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**64), 2**64 - 1)
+    | st.floats()
+    | st.text(max_size=70)
+    | st.binary(max_size=9),
+    lambda inner: st.lists(inner, max_size=7) | st.dictionaries(st.text(max_size=3), inner, max_size=4),
+    max_leaves=9,
+)
+
+
+@given(REQUESTS)
+def test_every_request_comes_back_the_same(request_: Request) -> None:
+    assert decode_request(request_.path, encode_request(request_)) == request_
+
+
+@given(STATES)
+def test_every_state_comes_back_the_same(picture: State) -> None:
+    assert decode_state(encode_state(picture)) == picture
+
+
+@given(st.sampled_from(sorted(PATHS)), st.binary(max_size=80) | st.lists(ANYTHING, max_size=7).map(cbor2.dumps))
+@example("/hello", b"")
+@example("/hello", b"\x80")
+@example("/reward", b"\xd8\x1c\x81\xd8\x1d\x00")
+def test_any_bytes_are_a_valid_request_or_are_refused(path: str, payload: bytes) -> None:
+    try:
+        request = decode_request(path, payload)
+    except WireError:
+        return
+    assert decode_request(path, encode_request(request)) == request
+    for value in astuple(request):
+        assert not isinstance(value, float) or math.isfinite(value)
+
+
+@given(st.binary(max_size=80) | ANYTHING.map(cbor2.dumps))
+def test_any_bytes_are_a_valid_answer_or_are_refused(payload: bytes) -> None:
+    try:
+        answer = decode_answer(payload)
+    except WireError:
+        return
+    assert isinstance(answer, dict)
+
+
+@given(st.sampled_from(sorted(cbor2.loads(encode_state(state())))), ANYTHING)
+def test_a_state_with_anything_in_one_place_is_valid_or_is_refused(key: str, anything: object) -> None:
+    picture = cbor2.loads(encode_state(state())) | {key: anything}
+    try:
+        decoded = decode_state(cbor2.dumps(picture))
+    except WireError:
+        return
+    assert decode_state(encode_state(decoded)) == decoded
+
+
+@given(st.binary(max_size=80))
+def test_any_bytes_are_no_state(payload: bytes) -> None:
+    with pytest.raises(WireError):
+        decode_state(payload)
+
+
+def refusal(path: str, payload: bytes) -> str:
+    with pytest.raises(WireError) as refused:
+        decode_request(path, payload)
+    return str(refused.value)
+
+
+def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
+    good = cbor2.dumps([ID])
+    assert "not the CBOR" in refusal("/stop", b"")
+    assert "not the CBOR" in refusal("/stop", good[:-1])
+    assert "1 bytes too many" in refusal("/stop", good + b"\x00")
+    assert "a list of 1: [command_id]" in refusal("/stop", cbor2.dumps([ID, ID]))
+    assert "a list of 1: [command_id]" in refusal("/stop", cbor2.dumps({"id": ID}))
+    assert "nesting" in refusal("/stop", cbor2.dumps([[ID]]))
+    assert "indefinite" in refusal("/stop", b"\x9f" + good[1:] + b"\xff")
+    assert "tag 2: tagged values are not taken" in refusal("/lessons", b"\x81\xc2\x41\x01")
+    assert "2000 bytes are too many" in refusal("/stop", b"\x81" * 2000)
+    assert refusal("/fly", b"\x80") == "there is no /fly here"
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "sentence"),
+    [
+        ("/stop", [b"short"], "command_id has to be 8 bytes"),
+        ("/stop", ["12345678"], "command_id has to be 8 bytes"),
+        ("/lessons", [True], "count has to be a whole number from 0 to 20"),
+        ("/lessons", [21], "count has to be a whole number from 0 to 20"),
+        ("/lessons", [2.0], "count has to be a whole number from 0 to 20"),
+        ("/watch", [BOOT, -1, 0], "seq has to be a whole number from 0 to 9007199254740992"),
+        ("/drive", [BOOT, 0, 0, 0, math.nan, 0.0], "left_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0, 0.0, 2.01], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0, 0.0, True], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0, 0.0, 2**64 - 1], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/world/move", [BOOT, ID, 0, "north", 100.5, 0.0], "dx_m has to be a number from -100 to 100 m"),
+        ("/world/move", [BOOT, ID, 0, "north", 0.0, -math.inf], "dy_m has to be a number from -100 to 100 m"),
+        ("/reward", [BOOT, ID, 0, 0, None], "value has to be one of 1, -1"),
+        ("/reward", [BOOT, ID, 0, True, None], "value has to be one of 1, -1"),
+        ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
+        ("/answer", [BOOT, ID, 0, "", None], "action has to be text of 1 to 64 printable characters"),
+        ("/answer", [BOOT, ID, 0, "a\nb", None], "action has to be text of 1 to 64 printable characters"),
+        ("/answer", [BOOT, ID, 0, "x" * 65, None], "action has to be text of 1 to 64 printable characters"),
+        ("/session", [BOOT, ID, 0, 7], "name has to be text of 1 to 64 printable characters"),
+        ("/behaviour", [BOOT, ID, 0, "forward", 0], "ticks has to be a whole number from 1 to 60000"),
+    ],
+)
+def test_a_refusal_says_what_would_be_right(path: str, body: list[object], sentence: str) -> None:
+    assert refusal(path, cbor2.dumps(body)) == sentence
+
+
+def test_nothing_is_sent_that_the_robot_cannot_take() -> None:
+    with pytest.raises(WireError, match="value has to be one of"):
+        encode_request(RewardRequest(BOOT, ID, 0, 3, None))
+
+
+def test_the_bodies_are_the_lists_of_the_contract() -> None:
+    assert cbor2.loads(encode_request(DriveRequest(BOOT, 5, 90, 2, 0.25, -0.25))) == [BOOT, 5, 90, 2, 0.25, -0.25]
+    assert cbor2.loads(encode_request(AnswerRequest(BOOT, ID, 90, "forward", 88))) == [BOOT, ID, 90, "forward", 88]
+    assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
+    assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]
+    assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
+
+
+def test_a_whole_number_is_taken_for_a_way() -> None:
+    request = decode_request("/world/move", cbor2.dumps([BOOT, ID, 0, "north", 1, 0]))
+    assert request == MoveWallRequest(BOOT, ID, 0, "north", 1.0, 0.0)
+    assert isinstance(request, MoveWallRequest)
+    assert isinstance(request.dx_m, float)
+
+
+def test_a_state_leaves_room_in_its_datagram() -> None:
+    assert len(encode_state(state())) < 450
+
+
+def test_a_line_break_in_a_text_does_not_cost_the_teacher_the_picture() -> None:
+    untidy = state(trouble="disk full\n\tat " + "x" * 600, guard=("held\nback",), session="a\x00b")
+    picture = decode_state(encode_state(untidy))
+    assert picture.trouble == "disk full  at " + "x" * 498
+    assert picture.guard == ("held back",)
+    assert picture.session == "a b"
+
+
+def test_a_newer_robot_may_tell_more_but_not_less() -> None:
+    picture = cbor2.loads(encode_state(state()))
+    assert decode_state(cbor2.dumps(picture | {"weather": "fine"})) == state()
+    del picture["m"]
+    with pytest.raises(WireError, match="the state has no 'm'"):
+        decode_state(cbor2.dumps(picture))
+
+
+def test_an_answer_is_a_map() -> None:
+    answer = {"t": 12, "ok": True, "text": "RLA 7 taught: forward"}
+    assert decode_answer(encode_answer(answer)) == answer
+    with pytest.raises(WireError, match="a map"):
+        decode_answer(b"\x80")
+
+
+def test_rows_and_lists_count_what_they_hold() -> None:
+    with pytest.raises(WireError, match="place has to be a list of 2"):
+        Row((Flag(), Flag()))("place", [True])
+    with pytest.raises(WireError, match="place has to be true or false"):
+        Row((Flag(), Flag()))("place", [True, 1])
+    with pytest.raises(WireError, match="a list of up to 2"):
+        ManyOf(Flag(), most=2)("flags", [True] * 3)
