@@ -1,10 +1,12 @@
 """Nearest condition: one matrix product in float32, then an exact answer in float64."""
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Number = TypeVar("_Number", np.float32, np.float64)
 
 _DOUBT = 2 * float(np.finfo(np.float32).eps)
 """Each rough score is a sum of d products of numbers rounded to float32: wrong by less than (d + 4) times the unit
@@ -52,10 +54,11 @@ class ConditionIndex:
     def __init__(self, dimensions: int) -> None:
         self._dimensions = dimensions
         self._count = 0
-        self._largest_norm = _SMALLEST_NORM
         self._exact = np.zeros((64, dimensions))
         self._rough = np.zeros((64, dimensions), dtype=np.float32)
         self._half_squares = np.zeros(64, dtype=np.float32)
+        self._norms = np.zeros(64)
+        self._largest_norm = _SMALLEST_NORM
         self._narrow_views()
 
     def __len__(self) -> int:
@@ -63,6 +66,10 @@ class ConditionIndex:
 
     def append(self, condition: tuple[float, ...]) -> None:
         """Add a condition behind all others. Raises ValueError for a wrong length or a number that is not finite."""
+        self.insert(self._count, condition)
+
+    def insert(self, position: int, condition: tuple[float, ...]) -> None:
+        """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
         row = np.array(condition, dtype=np.float64)
         if row.shape != (self._dimensions,):
             raise ValueError(f"condition has {row.size} values, this system matches {self._dimensions}")
@@ -70,19 +77,26 @@ class ConditionIndex:
             raise ValueError("condition holds a value that is not finite")
         if self._count == len(self._exact):
             self._grow()
-        self._exact[self._count] = row
+        for array in (self._exact, self._rough, self._half_squares, self._norms):
+            array[position + 1 : self._count + 1] = array[position : self._count]
+        square = float(row @ row)
+        self._exact[position] = row
         with np.errstate(over="ignore"):  # beyond _FLOAT32_REACH nobody looks at these two
-            self._rough[self._count] = row
-            self._half_squares[self._count] = 0.5 * float(row @ row)
+            self._rough[position] = row
+            self._half_squares[position] = 0.5 * square
+        self._norms[position] = norm = math.sqrt(square)
+        self._largest_norm = max(self._largest_norm, norm)
         self._count += 1
-        self._largest_norm = max(self._largest_norm, float(np.sqrt(row @ row)))
         self._narrow_views()
 
     def remove(self, position: int) -> None:
         """Take one condition out; those behind it move up."""
-        for array in (self._exact, self._rough, self._half_squares):
+        norm = float(self._norms[position])
+        for array in (self._exact, self._rough, self._half_squares, self._norms):
             array[position : self._count - 1] = array[position + 1 : self._count]
         self._count -= 1
+        if norm >= self._largest_norm:  # a far one that was taken back leaves no doubt behind
+            self._largest_norm = float(self._norms[: self._count].max(initial=_SMALLEST_NORM))
         self._narrow_views()
 
     def nearest(self, situation: NDArray[np.float64]) -> Nearest | None:
@@ -124,12 +138,19 @@ class ConditionIndex:
         return math.sqrt(difference.dot(difference))
 
     def _grow(self) -> None:
-        more = len(self._exact)
-        self._exact = np.concatenate((self._exact, np.zeros((more, self._dimensions))))
-        self._rough = np.concatenate((self._rough, np.zeros((more, self._dimensions), dtype=np.float32)))
-        self._half_squares = np.concatenate((self._half_squares, np.zeros(more, dtype=np.float32)))
+        self._exact = _twice_as_long(self._exact)
+        self._rough = _twice_as_long(self._rough)
+        self._half_squares = _twice_as_long(self._half_squares)
+        self._norms = _twice_as_long(self._norms)
 
     def _narrow_views(self) -> None:
         self._rough_rows = self._rough[: self._count]
         self._half_squares_rows = self._half_squares[: self._count]
         self._scores = np.empty(self._count, dtype=np.float32)
+
+
+def _twice_as_long(array: NDArray[_Number]) -> NDArray[_Number]:
+    """The same rows with room behind them that is not filled: it costs its time when it is, not in this tick."""
+    longer = np.empty((2 * len(array), *array.shape[1:]), dtype=array.dtype)
+    longer[: len(array)] = array
+    return longer

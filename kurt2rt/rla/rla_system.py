@@ -1,14 +1,31 @@
 """The RLA system: a set of RLAs, of which the nearest one inside its radius answers a situation (paper, III)."""
 
 import hashlib
+from bisect import bisect_left
 from collections.abc import Iterable
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
 from kurt2rt.rla.matching import ConditionIndex
-from kurt2rt.rla.rla import ActionReplaced, Condition, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    Condition,
+    Lesson,
+    LessonUndone,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+
+_RLA_ID = attrgetter("rla_id")
 
 
 class Match(NamedTuple):
@@ -28,6 +45,13 @@ class Match(NamedTuple):
         return self.distance <= self.radius
 
 
+class Appraisal(NamedTuple):
+    """How often teachers praised and blamed what an RLA decided (paper, phase 3)."""
+
+    rewards: int = 0
+    punishments: int = 0
+
+
 class UnfitEventError(ValueError):
     """A teaching event does not fit the knowledge it should change."""
 
@@ -40,10 +64,15 @@ class RlaSystem:
         self.dimensions = dimensions
         self.radius = radius
         self.weights = np.ones(dimensions) if weights is None else weights
-        self._rlas: list[Rla] = []
-        self._position: dict[int, int] = {}
+        self.teaching_ticks = 0
+        """How long all sessions that have ended lasted, together."""
+        self._rlas: list[Rla] = []  # oldest first, and so in the order of their ids
         self._index = ConditionIndex(dimensions)
         self._last_id = 0
+        self._appraisals: dict[int, Appraisal] = {}
+        self._book = LessonBook()
+        self._before: dict[str, Rla] = {}
+        """The RLA as it was before a lesson that stands, which replaced its action or deleted it, by command id."""
 
     def __len__(self) -> int:
         return len(self._rlas)
@@ -55,13 +84,40 @@ class RlaSystem:
 
     @property
     def next_id(self) -> int:
-        """Id of the next RLA to be taught; ids of deleted RLAs are never given again."""
+        """Id of the next RLA to be taught; ids of deleted or undone RLAs are never given again."""
         return self._last_id + 1
 
     def get(self, rla_id: int) -> Rla | None:
         """The living RLA of that id."""
-        position = self._position.get(rla_id)
+        position = self._position(rla_id)
         return None if position is None else self._rlas[position]
+
+    def appraisal(self, rla_id: int) -> Appraisal:
+        """What teachers thought of an RLA; none and none where nobody said so."""
+        return self._appraisals.get(rla_id, Appraisal())
+
+    @property
+    def lessons(self) -> tuple[LessonRecord, ...]:
+        """All lessons, oldest first, those that were undone among them."""
+        return self._book.records
+
+    @property
+    def standing_lessons(self) -> int:
+        """Number of lessons that stand, rewards among them."""
+        return self._book.standing
+
+    @property
+    def last_standing_lesson(self) -> str | None:
+        """Command id of the newest lesson that stands."""
+        return self._book.last_standing
+
+    def lesson(self, command_id: str) -> LessonRecord | None:
+        """The lesson of that command."""
+        return self._book.get(command_id)
+
+    def why_not_undo(self, command_id: str) -> str | None:
+        """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
+        return self._book.why_not_undo(command_id)
 
     def match(self, situation: NDArray[np.float64]) -> Match | None:
         """The nearest RLA to a situation vector (d,), and the one behind it; None when nothing was taught yet."""
@@ -76,25 +132,21 @@ class RlaSystem:
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge as the event says. Raises UnfitEventError, and changes nothing, when it does not fit."""
         match event:
-            case RlaCreated(rla):
-                if rla.rla_id <= self._last_id:
-                    raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
-                try:
-                    self._index.append(self._weighted(rla.condition))
-                except ValueError as error:
-                    raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
-                self._position[rla.rla_id] = len(self._rlas)
-                self._rlas.append(rla)
-                self._last_id = rla.rla_id
-            case ActionReplaced(rla_id, action, _, origin):
-                position = self._living(rla_id)
-                old = self._rlas[position]
-                self._rlas[position] = Rla(old.rla_id, old.condition, action, old.radius, origin)
-            case RlaDeleted(rla_id, _):
-                position = self._living(rla_id)
-                self._index.remove(position)
-                del self._rlas[position]
-                self._position = {rla.rla_id: place for place, rla in enumerate(self._rlas)}
+            case LessonUndone(lesson, _):
+                problem = self._book.why_not_undo(lesson)
+                if problem is not None:
+                    raise UnfitEventError(problem)
+                self._take_back(self._book.strike(lesson))
+            case SessionBegun():
+                pass
+            case SessionEnded(lasted_ticks, _):
+                self.teaching_ticks += lasted_ticks
+            case _:
+                command_id = event.origin.command_id
+                if self._book.get(command_id) is not None:
+                    raise UnfitEventError(f"command {command_id!r} has taught a lesson already")
+                self._learn(event)
+                self._book.enter(event)
 
     def apply_all(self, events: Iterable[TeachingEvent]) -> None:
         """Apply events in order."""
@@ -109,13 +161,67 @@ class RlaSystem:
             digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
 
+    def _learn(self, lesson: Lesson) -> None:
+        match lesson:
+            case RlaCreated(rla):
+                if rla.rla_id <= self._last_id:
+                    raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
+                try:
+                    self._index.append(self._weighted(rla.condition))
+                except ValueError as error:
+                    raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
+                self._rlas.append(rla)
+                self._last_id = rla.rla_id
+            case ActionReplaced(rla_id, action, _, origin):
+                position = self._living(rla_id)
+                old = self._rlas[position]
+                self._rlas[position] = Rla(old.rla_id, old.condition, action, old.radius, origin)
+                self._before[origin.command_id] = old
+            case RlaDeleted(rla_id, origin):
+                position = self._living(rla_id)
+                self._index.remove(position)
+                self._before[origin.command_id] = self._rlas.pop(position)
+            case RlaRewarded(rla_id, value, _, _):
+                self._living(rla_id)
+                if value not in (1, -1):
+                    raise UnfitEventError(f"a reward of {value} for RLA {rla_id}: it must be 1 or -1")
+                self._count(rla_id, value, 1)
+
+    def _take_back(self, lesson: Lesson) -> None:
+        """Undo a lesson after which nothing that stands happened to its RLA."""
+        match lesson:
+            case RlaCreated(rla):
+                position = self._living(rla.rla_id)
+                self._index.remove(position)
+                del self._rlas[position]
+            case ActionReplaced(rla_id, _, _, origin):
+                self._rlas[self._living(rla_id)] = self._before.pop(origin.command_id)
+            case RlaDeleted(_, origin):
+                old = self._before.pop(origin.command_id)
+                position = bisect_left(self._rlas, old.rla_id, key=_RLA_ID)
+                self._index.insert(position, self._weighted(old.condition))
+                self._rlas.insert(position, old)
+            case RlaRewarded(rla_id, value, _, _):
+                self._count(rla_id, value, -1)
+
+    def _count(self, rla_id: int, value: int, more: int) -> None:
+        rewards, punishments = self.appraisal(rla_id)
+        self._appraisals[rla_id] = (
+            Appraisal(rewards + more, punishments) if value > 0 else Appraisal(rewards, punishments + more)
+        )
+
     def _weighted(self, condition: Condition) -> tuple[float, ...]:
         if len(condition) != self.dimensions:
             raise ValueError(f"condition has {len(condition)} values, this system matches {self.dimensions}")
         return tuple((np.array(condition, dtype=np.float64) * self.weights).tolist())
 
+    def _position(self, rla_id: int) -> int | None:
+        position = bisect_left(self._rlas, rla_id, key=_RLA_ID)
+        found = position < len(self._rlas) and self._rlas[position].rla_id == rla_id
+        return position if found else None
+
     def _living(self, rla_id: int) -> int:
-        position = self._position.get(rla_id)
+        position = self._position(rla_id)
         if position is None:
             raise UnfitEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
         return position

@@ -1,6 +1,17 @@
 """Teaching events in one line each."""
 
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+)
 
 
 def origin(command_id: str = "lesson-1", tick: int = 1) -> Origin:
@@ -8,14 +19,30 @@ def origin(command_id: str = "lesson-1", tick: int = 1) -> Origin:
 
 
 def created(
-    rla_id: int, condition: tuple[float, ...], action: str = "forward", radius: float | None = None
+    rla_id: int,
+    condition: tuple[float, ...],
+    action: str = "forward",
+    radius: float | None = None,
+    command_id: str | None = None,
 ) -> RlaCreated:
-    return RlaCreated(Rla(rla_id, condition, action, radius, origin(f"lesson-{rla_id}", rla_id)))
+    return RlaCreated(Rla(rla_id, condition, action, radius, origin(command_id or f"lesson-{rla_id}", rla_id)))
 
 
-def replaced(rla_id: int, action: str, instead_of: str) -> ActionReplaced:
-    return ActionReplaced(rla_id, action, instead_of, origin(f"correction-{rla_id}", 1000 + rla_id))
+def replaced(rla_id: int, action: str, instead_of: str, command_id: str | None = None) -> ActionReplaced:
+    return ActionReplaced(rla_id, action, instead_of, origin(command_id or f"correction-{rla_id}", 1000 + rla_id))
 
 
-def deleted(rla_id: int) -> RlaDeleted:
-    return RlaDeleted(rla_id, origin(f"deletion-{rla_id}", 2000 + rla_id))
+def deleted(rla_id: int, command_id: str | None = None) -> RlaDeleted:
+    return RlaDeleted(rla_id, origin(command_id or f"deletion-{rla_id}", 2000 + rla_id))
+
+
+def rewarded(rla_id: int, value: int = 1, command_id: str | None = None) -> RlaRewarded:
+    return RlaRewarded(rla_id, value, 2990, origin(command_id or f"reward-{rla_id}", 3000 + rla_id))
+
+
+def undone(lesson: str) -> LessonUndone:
+    return LessonUndone(lesson, origin(f"undo-{lesson}", 4000))
+
+
+def session(lasted_ticks: int) -> tuple[SessionBegun, SessionEnded]:
+    return SessionBegun("morning", origin("begin", 5000)), SessionEnded(lasted_ticks, origin("end", 5000))

@@ -59,30 +59,34 @@ KINDS_OF_VALUES: tuple[st.SearchStrategy[float], ...] = (
 
 
 @st.composite
-def worlds(draw: st.DrawFn) -> tuple[list[Point | int], list[Point]]:
-    """Appends (a point) and removals (which of the living), and situations to ask about."""
+def worlds(draw: st.DrawFn) -> tuple[list[tuple[Point, int] | int], list[Point]]:
+    """Inserts (a point, and where), removals (which of the living), and situations to ask about."""
     values = draw(st.sampled_from(KINDS_OF_VALUES))
     points: st.SearchStrategy[Point] = st.tuples(*[values] * draw(st.integers(1, 6)))
-    steps = draw(st.lists(st.one_of(points, points, points, st.integers(0, 1000)), max_size=40))
+    at_the_end = st.tuples(points, st.just(-1))  # as lessons come; elsewhere, as deletions are undone
+    somewhere = st.tuples(points, st.integers(0, 1000))
+    steps = draw(st.lists(st.one_of(at_the_end, at_the_end, somewhere, st.integers(0, 1000)), max_size=40))
     return steps, draw(st.lists(points, min_size=1, max_size=3))
 
 
 @given(worlds())
 @settings(max_examples=400)
-@example(([(1.5e19,), (2.7e19,)], [(1.3e19,)]))
-@example(([(0.3,), (0.6,)], [(1e16,)]))
-@example(([(2.1e-22,), (1.2e-22,)], [(1.7e-22,)]))
-@example(([(3e20, 0.0), (1.0, 0.0)], [(2.0, 0.0)]))
-def test_winner_is_that_of_a_brute_force_after_any_appends_and_removals(
-    world: tuple[list[Point | int], list[Point]],
+@example(([((1.5e19,), -1), ((2.7e19,), -1)], [(1.3e19,)]))
+@example(([((0.3,), -1), ((0.6,), -1)], [(1e16,)]))
+@example(([((2.1e-22,), -1), ((1.2e-22,), -1)], [(1.7e-22,)]))
+@example(([((3e20, 0.0), -1), ((1.0, 0.0), -1)], [(2.0, 0.0)]))
+def test_winner_is_that_of_a_brute_force_after_any_inserts_and_removals(
+    world: tuple[list[tuple[Point, int] | int], list[Point]],
 ) -> None:
     steps, situations = world
     index = ConditionIndex(len(situations[0]))
     living: list[Point] = []
     for step in steps:
         if isinstance(step, tuple):
-            index.append(step)
-            living.append(step)
+            point, place = step
+            position = len(living) if place < 0 else place % (len(living) + 1)
+            index.insert(position, point)
+            living.insert(position, point)
         elif living:
             index.remove(step % len(living))
             del living[step % len(living)]
@@ -139,6 +143,23 @@ def test_of_duplicates_the_older_wins_also_when_the_oldest_was_removed() -> None
     assert (first.position, first.runner_up) == (1, 2)
     assert (second.position, second.runner_up) == (1, 2)
     assert second.distance == second.runner_up_distance == 0.0
+
+
+def test_a_condition_that_comes_back_to_its_place_is_again_the_older_one() -> None:
+    index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0)])
+    index.remove(1)
+    index.insert(1, (1.0, 2.0))
+    assert index.nearest(np.array([1.0, 2.0])) == (1, 0.0, 2, 0.0)
+
+
+def test_a_far_condition_that_was_taken_out_leaves_no_trace() -> None:
+    near = clustered(200, 30.0)
+    rows = [tuple(row) for row in near.tolist()]
+    index, visited = index_of(rows), index_of(rows)
+    visited.append((1e30,) * 72)
+    visited.remove(200)
+    for situation in near[:20] + 1.0:
+        assert visited.nearest(situation) == index.nearest(situation)  # the runner-up's rough distance as well
 
 
 def test_a_situation_that_is_not_a_number_is_near_to_nothing() -> None:

@@ -11,13 +11,29 @@ from hypothesis import strategies as st
 from kurt2rt.rla.matching import exact_distances
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
-from tests.rla.helpers import created, deleted, origin, replaced
+from tests.rla.helpers import created, deleted, origin, replaced, rewarded, session, undone
 
 
 def system_of(*events: TeachingEvent, radius: float = 5.0) -> RlaSystem:
     system = RlaSystem(2, radius)
     system.apply_all(events)
     return system
+
+
+def everything(system: RlaSystem) -> tuple[object, ...]:
+    """All that can be told of a system, to see that it did not change."""
+    return (
+        system.rlas,
+        system.next_id,
+        system.knowledge_hash(),
+        system.match(np.zeros(2)),
+        system.lessons,
+        system.standing_lessons,
+        system.last_standing_lesson,
+        system.appraisal(1),
+        system.appraisal(2),
+        system.teaching_ticks,
+    )
 
 
 def actions(system: RlaSystem) -> dict[int, str]:
@@ -92,7 +108,7 @@ def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
     assert system.next_id == 4
     assert system.get(3) is None
     with pytest.raises(UnfitEventError, match="ids up to 3 are taken"):
-        system.apply(created(3, (9.5, 0.0)))
+        system.apply(created(3, (9.5, 0.0), command_id="again"))
     system.apply(deleted(1))
     match = system.match(np.array([0.0, 0.0]))
     assert match is not None
@@ -106,23 +122,31 @@ def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
 @pytest.mark.parametrize(
     ("event", "problem"),
     [
-        (created(2, (5.0, 5.0)), "RLA 2 cannot be created: ids up to 2 are taken"),
+        (created(2, (5.0, 5.0), command_id="again"), "RLA 2 cannot be created: ids up to 2 are taken"),
         (created(0, (5.0, 5.0)), "RLA 0 cannot be created"),
         (created(3, (5.0,)), "RLA 3: condition has 1 values, this system matches 2"),
         (created(3, (5.0, 5.0, 5.0)), "RLA 3: condition has 3 values"),
         (created(3, (5.0, math.nan)), "RLA 3: condition holds a value that is not finite"),
         (replaced(1, "back", "forward"), "there is no RLA 1"),
         (replaced(7, "back", "forward"), "there is no RLA 7"),
-        (deleted(1), "there is no RLA 1"),
+        (deleted(1, "again"), "there is no RLA 1"),
         (deleted(7), "there is no RLA 7"),
+        (rewarded(1), "there is no RLA 1"),
+        (rewarded(2, 0, "again"), "a reward of 0 for RLA 2: it must be 1 or -1"),
+        (created(3, (5.0, 5.0), command_id="lesson-2"), "command 'lesson-2' has taught a lesson already"),
+        (undone("lesson-9"), "there is no lesson 'lesson-9'"),
+        (undone("lesson-1"), r"lesson 'deletion-1' came after 'lesson-1' \(RLA 1 deleted\); undo that one first"),
+        (undone("reward-2"), "lesson 'reward-2' was undone already"),
     ],
 )
 def test_an_event_that_does_not_fit_is_refused_and_changes_nothing(event: TeachingEvent, problem: str) -> None:
-    system = system_of(created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), deleted(1))
-    before = (system.rlas, system.next_id, system.knowledge_hash(), system.match(np.zeros(2)))
+    system = system_of(
+        created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), deleted(1), rewarded(2), undone("reward-2"), *session(7)
+    )
+    before = everything(system)
     with pytest.raises(UnfitEventError, match=problem):
         system.apply(event)
-    assert (system.rlas, system.next_id, system.knowledge_hash(), system.match(np.zeros(2))) == before
+    assert everything(system) == before
 
 
 _ACTS = st.lists(
@@ -133,14 +157,14 @@ _ACTS = st.lists(
 @given(_ACTS, st.integers(0, 9))
 def test_any_lesson_folds_to_what_a_plain_dictionary_of_rlas_holds(acts: list[tuple[str, int, str]], at: int) -> None:
     system, living, taught = system_of(radius=100.0), dict[int, tuple[float, str]](), 0
-    for act, number, action in acts:
+    for count, (act, number, action) in enumerate(acts):
         rla_id = number % (taught + 1) + 1
         if act == "c":
             taught += 1
             system.apply(created(taught, (float(number), 0.0), action))
             living[taught] = (float(number), action)
         elif act == "r" and rla_id in living:
-            system.apply(replaced(rla_id, action, living[rla_id][1]))
+            system.apply(replaced(rla_id, action, living[rla_id][1], f"act-{count}"))
             living[rla_id] = (living[rla_id][0], action)
         elif act == "d" and rla_id in living:
             system.apply(deleted(rla_id))
@@ -169,7 +193,7 @@ def test_the_knowledge_hash_tells_every_difference_in_what_is_known() -> None:
 
 def test_the_knowledge_hash_does_not_depend_on_who_taught_or_on_the_way_there() -> None:
     direct = system_of(created(2, (1.0, 2.0), "back"))
-    by_bob = replace(origin(), teacher="Bob", phase=Phase.CORRECTIONS, tick=99)
+    by_bob = replace(origin("bobs"), teacher="Bob", phase=Phase.CORRECTIONS, tick=99)
     detour = system_of(created(1, (5.0, 5.0)), created(2, (1.0, 2.0)), deleted(1))
     detour.apply(replace(replaced(2, "back", "forward"), origin=by_bob))
     assert detour.knowledge_hash() == direct.knowledge_hash()

@@ -1,0 +1,95 @@
+"""Which lessons were taught, and which of them still stand: what an undo may take back."""
+
+from dataclasses import dataclass
+
+from kurt2rt.rla.rla import ActionReplaced, Lesson, RlaCreated, RlaDeleted, RlaRewarded
+
+
+@dataclass(frozen=True, slots=True)
+class LessonRecord:
+    """A lesson, and whether it was taken back."""
+
+    event: Lesson
+    undone: bool = False
+
+
+def rla_of(lesson: Lesson) -> int:
+    """Id of the RLA that a lesson is about."""
+    return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
+
+
+def lesson_text(lesson: Lesson) -> str:
+    """A lesson in a few words, for a teacher."""
+    match lesson:
+        case RlaCreated(rla):
+            return f"RLA {rla.rla_id} taught: {rla.action}"
+        case ActionReplaced(rla_id, action, instead_of, _):
+            return f"RLA {rla_id} corrected: {action} instead of {instead_of}"
+        case RlaDeleted(rla_id, _):
+            return f"RLA {rla_id} deleted"
+        case RlaRewarded(rla_id, value, _, _):
+            return f"RLA {rla_id} {'rewarded' if value > 0 else 'punished'}"
+
+
+class LessonBook:
+    """All lessons by their command id. The lessons of one RLA are undone in the order of a pile, the newest first."""
+
+    def __init__(self) -> None:
+        self.standing = 0
+        """Number of lessons that stand."""
+        self._records: list[LessonRecord] = []
+        self._place: dict[str, int] = {}
+        self._standing_of: dict[int, list[int]] = {}
+        self._newest: list[int] = []
+        """Places of all lessons but the undone ones at the end: each is put on and taken off once."""
+
+    @property
+    def records(self) -> tuple[LessonRecord, ...]:
+        """All lessons, oldest first, those that were undone among them."""
+        return tuple(self._records)
+
+    @property
+    def last_standing(self) -> str | None:
+        """Command id of the newest lesson that stands."""
+        return self._records[self._newest[-1]].event.origin.command_id if self._newest else None
+
+    def get(self, command_id: str) -> LessonRecord | None:
+        """The lesson of that command."""
+        place = self._place.get(command_id)
+        return None if place is None else self._records[place]
+
+    def enter(self, lesson: Lesson) -> None:
+        """Put a lesson behind all others. Its command id must be new."""
+        place = len(self._records)
+        self._place[lesson.origin.command_id] = place
+        self._standing_of.setdefault(rla_of(lesson), []).append(place)
+        self._newest.append(place)
+        self._records.append(LessonRecord(lesson))
+        self.standing += 1
+
+    def why_not_undo(self, command_id: str) -> str | None:
+        """Why the lesson of that command cannot be taken back now, in a sentence; None where it can."""
+        record = self.get(command_id)
+        if record is None:
+            return f"there is no lesson {command_id!r}"
+        if record.undone:
+            return f"lesson {command_id!r} was undone already"
+        newest = self._records[self._standing_of[rla_of(record.event)][-1]].event
+        if newest is not record.event:
+            later = newest.origin.command_id
+            return f"lesson {later!r} came after {command_id!r} ({lesson_text(newest)}); undo that one first"
+        return None
+
+    def strike(self, command_id: str) -> Lesson:
+        """Mark a lesson as undone, for which `why_not_undo` has no reason against it; returns it."""
+        place = self._place[command_id]
+        lesson = self._records[place].event
+        pile = self._standing_of[rla_of(lesson)]
+        pile.pop()
+        if not pile:
+            del self._standing_of[rla_of(lesson)]
+        self._records[place] = LessonRecord(lesson, undone=True)
+        self.standing -= 1
+        while self._newest and self._records[self._newest[-1]].undone:
+            self._newest.pop()
+        return lesson
