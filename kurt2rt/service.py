@@ -66,9 +66,10 @@ async def serve(
     """
     last: Status | None = None
     with TimerfdClock() as clock:
-        journal, events, counter = go_on_teaching(Path(service.knowledge), settings, task)
-        with JournalWriter(journal, utc_now) as writer:
-            runtime = build_runtime(robot, settings, task, events, writer, clock, statistics=counter)
+        opened = go_on_teaching(Path(service.knowledge), settings, task)
+        counter = opened.counter
+        with JournalWriter(opened.journal, utc_now) as writer:
+            runtime = build_runtime(robot, settings, task, opened.events, writer, clock, statistics=counter)
             if stopped:
                 runtime.school.stop("the robot program was started")
             period_s = settings.can.cycle_s

@@ -55,8 +55,8 @@ async def run_lesson(
     Raises KnowledgeError, SettingsError, LessonLostError.
     """
     world, whole_s = task.teaching.world, task.teaching.duration_s
-    journal, events, counter = go_on_teaching(knowledge, settings, task)
-    with JournalWriter(journal, utc_now) as writer:
+    opened = go_on_teaching(knowledge, settings, task)
+    with JournalWriter(opened.journal, utc_now) as writer:
 
         def on_progress(done_s: float) -> None:
             for acknowledgement in writer.acknowledged():
@@ -68,7 +68,14 @@ async def run_lesson(
         arena = stage.open(world, seed, "lesson")
         try:
             lesson = await teach(
-                arena, settings, task, writer, events, seed=seed, on_progress=on_progress, statistics=counter
+                arena,
+                settings,
+                task,
+                writer,
+                opened.events,
+                seed=seed,
+                on_progress=on_progress,
+                statistics=opened.counter,
             )
         finally:
             arena.close()

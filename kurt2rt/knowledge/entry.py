@@ -33,6 +33,8 @@ class Receipt:
 
     command_id: str
     sequence: int
+    stamped_at: str
+    """Stamp of the row: when the lesson was first written, however often its command came."""
     new: bool
     """False: the command was written before, and was not written again."""
     agrees: bool

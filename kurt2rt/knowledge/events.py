@@ -5,16 +5,35 @@ import math
 from typing import Any
 
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
 
-EVENT_VERSION = 1
-"""Raise it when the fields below change, and keep reading the older ones: journals live as long as robots."""
+EVENT_VERSION = 2
+"""Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
+
+Version 1 knew created, replaced and deleted, with the same fields.
+"""
 
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
     "created": ("rla_id", "condition", "action", "radius", *_ORIGIN),
     "replaced": ("rla_id", "action", "instead_of", *_ORIGIN),
     "deleted": ("rla_id", *_ORIGIN),
+    "rewarded": ("rla_id", "value", "decided_at_tick", *_ORIGIN),
+    "undone": ("lesson", *_ORIGIN),
+    "session begun": ("name", *_ORIGIN),
+    "session ended": ("lasted_ticks", *_ORIGIN),
 }
 
 
@@ -52,6 +71,14 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
             own = {"kind": "replaced", "rla_id": rla_id, "action": action, "instead_of": instead_of}
         case RlaDeleted(rla_id, _):
             own = {"kind": "deleted", "rla_id": rla_id}
+        case RlaRewarded(rla_id, value, decided_at_tick, _):
+            own = {"kind": "rewarded", "rla_id": rla_id, "value": value, "decided_at_tick": decided_at_tick}
+        case LessonUndone(lesson, _):
+            own = {"kind": "undone", "lesson": lesson}
+        case SessionBegun(name, _):
+            own = {"kind": "session begun", "name": name}
+        case SessionEnded(lasted_ticks, _):
+            own = {"kind": "session ended", "lasted_ticks": lasted_ticks}
     origin = event.origin
     own.update(command_id=origin.command_id, teacher=origin.teacher, phase=origin.phase, tick=origin.tick)
     return own
@@ -75,6 +102,17 @@ def _event(content: object) -> TeachingEvent:
         Phase(_whole(content, "phase", least=1)),
         _whole(content, "tick", least=0),
     )
+    match kind:
+        case "undone":
+            return LessonUndone(_text(content, "lesson"), origin)
+        case "session begun":
+            return SessionBegun(_text(content, "name"), origin)
+        case "session ended":
+            return SessionEnded(_whole(content, "lasted_ticks", least=0), origin)
+    return _about_an_rla(kind, content, origin)
+
+
+def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> TeachingEvent:
     rla_id = _whole(content, "rla_id", least=1)
     match kind:
         case "created":
@@ -87,6 +125,11 @@ def _event(content: object) -> TeachingEvent:
             return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin))
         case "replaced":
             return ActionReplaced(rla_id, _text(content, "action"), _text(content, "instead_of"), origin)
+        case "rewarded":
+            value = _whole(content, "value", least=-1)
+            if value not in (1, -1):
+                raise ValueError(f"value must be 1 or -1, not {value}")
+            return RlaRewarded(rla_id, value, _whole(content, "decided_at_tick", least=0), origin)
         case _:
             return RlaDeleted(rla_id, origin)
 

@@ -1,5 +1,8 @@
 """From the journal to the RLA system that it is the history of."""
 
+from collections.abc import Iterable
+
+from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
@@ -7,8 +10,13 @@ from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:
     """The RLA system that all lessons together make. Raises KnowledgeError that names file and row of an unfit one."""
+    return fold_entries(journal, journal.entries(), radius)
+
+
+def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:
+    """The RLA system that entries read from the journal make. Raises as `fold_journal`."""
     system = RlaSystem(len(journal.binding.feature_names), radius)
-    for entry in journal.entries():
+    for entry in entries:
         try:
             system.apply(entry.event)
         except UnfitEventError as error:

@@ -12,7 +12,7 @@ from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
 from kurt2rt.knowledge.error import KnowledgeError, explained
-from kurt2rt.knowledge.events import encode_event
+from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
 
@@ -77,17 +77,18 @@ class Journal:
         text = encode_event(entry.event)
         command_id = entry.event.origin.command_id
         known = self._connection.execute(
-            "SELECT sequence, event FROM lesson WHERE command_id = ?", (command_id,)
+            "SELECT sequence, stamped_at, event FROM lesson WHERE command_id = ?", (command_id,)
         ).fetchone()
         if known is not None:
-            return Receipt(command_id, known[0], new=False, agrees=known[1] == text)
+            sequence, stamped_at, written = known
+            return Receipt(command_id, sequence, stamped_at, new=False, agrees=_as_written_now(written) == text)
         cursor = self._connection.execute(
             "INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)",
             (command_id, entry.stamped_at, text, checksum(command_id, entry.stamped_at, text)),
         )
         if cursor.lastrowid is None:
             raise KnowledgeError(f"{self.path}: SQLite gave no row for command {command_id!r}; teach it again")
-        return Receipt(command_id, cursor.lastrowid, new=True, agrees=True)
+        return Receipt(command_id, cursor.lastrowid, entry.stamped_at, new=True, agrees=True)
 
     def entries(self) -> list[StoredEntry]:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
@@ -185,3 +186,11 @@ class Journal:
             yield
         except sqlite3.Error as error:
             raise explained(error, self.path) from error
+
+
+def _as_written_now(text: str) -> str | None:
+    """An event's text as this version writes it; None for one that cannot be read."""
+    try:
+        return encode_event(decode_event(text, "row"))
+    except KnowledgeError:
+        return None

@@ -1,17 +1,40 @@
 """Opens the knowledge of a task on a robot."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.fold import fold_journal
+from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedKnowledge:
+    """A journal to teach on with, and what it holds already."""
+
+    journal: Journal
+    entries: tuple[StoredEntry, ...]
+    """In the order of writing."""
+    counter: StatisticsCounter
+    """Goes on from the counts of the last checkpoint."""
+
+    @property
+    def events(self) -> list[TeachingEvent]:
+        """What the RLA system is the fold of."""
+        return [entry.event for entry in self.entries]
+
+    @property
+    def stamps(self) -> dict[str, str]:
+        """When each command was written, UTC, ISO 8601, by command id."""
+        return {entry.event.origin.command_id: entry.stamped_at for entry in self.entries}
 
 
 def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> Journal:
@@ -27,26 +50,25 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
     return Journal.open(path, binding)
 
 
-def go_on_teaching(
-    path: Path, settings: RobotSettings, task: TaskSettings
-) -> tuple[Journal, list[TeachingEvent], StatisticsCounter]:
+def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
     """The journal at `path`, what it holds already, and its counts to count on from. Raises as `open_knowledge`."""
     journal = open_knowledge(path, settings, task)
     try:
-        fold_journal(journal, radius=math.inf)  # one that does not fold is refused, with file and row
-        events, saved = journal.events(), journal.statistics()
+        entries, saved = tuple(journal.entries()), journal.statistics()
+        fold_entries(journal, entries, radius=math.inf)  # one that does not fold is refused, with file and row
     except BaseException:
         journal.close()
         raise
-    return journal, events, StatisticsCounter(dict(saved.uses), dict(saved.transitions))
+    return OpenedKnowledge(journal, entries, StatisticsCounter(dict(saved.uses), dict(saved.transitions)))
 
 
 def read_lessons(path: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:
     """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError."""
     with Journal.read_only(path) as journal:
         require_same(journal.binding, _binding(settings, task), path)
-        fold_journal(journal, radius=math.inf)
-        return journal.events()
+        entries = journal.entries()
+        fold_entries(journal, entries, radius=math.inf)
+        return [entry.event for entry in entries]
 
 
 def _binding(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:

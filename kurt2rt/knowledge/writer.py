@@ -14,7 +14,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import ActionReplaced, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import TeachingEvent
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,8 @@ class Acknowledgement:
     command_id: str
     sequence: int | None
     error: str | None
+    stamped_at: str
+    """When its row was written, UTC, ISO 8601; empty where there is an error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,20 +187,20 @@ class JournalWriter:
                     self._flushes.append(item)
                 case Statistics():
                     self._statistics = item
-                case RlaCreated() | ActionReplaced() | RlaDeleted():
-                    self._take_lesson(item)
                 case None:  # only at the start of a pause
                     pass
+                case _:
+                    self._take_event(item)
             try:
                 item = self._inbox.get(timeout=max(0.0, until_s - time.monotonic()))
             except queue.Empty:
                 return False
 
-    def _take_lesson(self, event: TeachingEvent) -> None:
+    def _take_event(self, event: TeachingEvent) -> None:
         try:
             encode_event(event)
         except KnowledgeError as error:  # trying again would not help, and hold up all that come after
-            self._settle(Acknowledgement(event.origin.command_id, None, str(error)))
+            self._settle(_refused(event.origin.command_id, str(error)))
         else:
             self._waiting.append(JournalEntry(event, self._now()))
 
@@ -223,9 +225,12 @@ class JournalWriter:
 
 def _acknowledgement(receipt: Receipt) -> Acknowledgement:
     if receipt.agrees:
-        return Acknowledgement(receipt.command_id, receipt.sequence, None)
-    return Acknowledgement(
+        return Acknowledgement(receipt.command_id, receipt.sequence, None, receipt.stamped_at)
+    return _refused(
         receipt.command_id,
-        None,
         f"command {receipt.command_id!r}: another lesson of this id stands in row {receipt.sequence}; teach it again",
     )
+
+
+def _refused(command_id: str, error: str) -> Acknowledgement:
+    return Acknowledgement(command_id, None, error, stamped_at="")

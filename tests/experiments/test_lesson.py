@@ -124,7 +124,7 @@ def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: 
 
 def test_a_lesson_that_the_journal_refuses_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(self: Journal, entries: Sequence[JournalEntry]) -> list[Receipt]:  # noqa: ARG001
-        return [Receipt(each.event.origin.command_id, 7, new=False, agrees=False) for each in entries]
+        return [Receipt(each.event.origin.command_id, 7, each.stamped_at, new=False, agrees=False) for each in entries]
 
     monkeypatch.setattr(Journal, "append", refuse)
     with pytest.raises(LessonLostError, match="knowledge: command 'lesson-1-after-0-1': another lesson of this id"):

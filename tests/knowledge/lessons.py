@@ -7,7 +7,18 @@ from pathlib import Path
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+)
 
 BINDING = KnowledgeBinding(
     feature_hash="0123456789abcdef",
@@ -34,6 +45,18 @@ def replaced(rla_id: int, action: str, instead_of: str) -> ActionReplaced:
 
 def deleted(rla_id: int) -> RlaDeleted:
     return RlaDeleted(rla_id, origin(f"delete-{rla_id}", 300, Phase.CORRECTIONS))
+
+
+def rewarded(rla_id: int, value: int = 1, command_id: str | None = None) -> RlaRewarded:
+    return RlaRewarded(rla_id, value, 390, origin(command_id or f"reward-{rla_id}", 400, Phase.REINFORCEMENT))
+
+
+def undone(lesson: str, teacher: str = "Joachim") -> LessonUndone:
+    return LessonUndone(lesson, Origin(f"undo-{lesson}", teacher, Phase.CORRECTIONS, 500))
+
+
+def session(lasted_ticks: int, name: str = "morning") -> tuple[SessionBegun, SessionEnded]:
+    return SessionBegun(name, origin(f"begin-{name}", 0)), SessionEnded(lasted_ticks, origin(f"end-{name}", 600))
 
 
 def entry(rla_id: int) -> JournalEntry:

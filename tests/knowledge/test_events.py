@@ -8,8 +8,20 @@ from hypothesis import strategies as st
 
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
-from tests.knowledge.lessons import created, deleted, replaced
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+from tests.knowledge.lessons import created, deleted, replaced, rewarded, session, undone
 
 texts = st.text(st.characters(codec="utf-8"), max_size=20)
 numbers = st.floats(allow_nan=False, allow_infinity=False)
@@ -21,6 +33,10 @@ events = st.one_of(
     st.builds(RlaCreated, rlas),
     st.builds(ActionReplaced, ids, texts, texts, origins),
     st.builds(RlaDeleted, ids, origins),
+    st.builds(RlaRewarded, ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
+    st.builds(LessonUndone, texts, origins),
+    st.builds(SessionBegun, texts, origins),
+    st.builds(SessionEnded, st.integers(0, 2**62), origins),
 )
 
 
@@ -56,9 +72,13 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("version", 2, "its version 2 is of a newer kurt2rt"),
+        ("version", 3, "its version 3 is of a newer kurt2rt"),
         ("version", True, "version must be a whole number"),
-        ("kind", "dreamt", "kind is 'dreamt', known are created, replaced, deleted"),
+        (
+            "kind",
+            "dreamt",
+            "kind is 'dreamt', known are created, replaced, .*, session ended",
+        ),
         ("rla_id", 0, "rla_id must be a whole number from 1"),
         ("rla_id", 1.0, "rla_id must be a whole number"),
         ("tick", -1, "tick must be a whole number from 0"),
@@ -81,7 +101,38 @@ def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
         decode_event(json.dumps(content), "row 1")
 
 
+@pytest.mark.parametrize(
+    ("event", "key", "value", "problem"),
+    [
+        (rewarded(1), "value", 0, "value must be 1 or -1, not 0"),
+        (rewarded(1), "value", 2, "value must be 1 or -1, not 2"),
+        (rewarded(1), "value", True, "value must be a whole number"),
+        (rewarded(1), "decided_at_tick", -1, "decided_at_tick must be a whole number from 0"),
+        (undone("create-1"), "lesson", 1, "lesson must be a text"),
+        (undone("create-1"), "rla_id", 1, "undone has no 'rla_id'"),
+        (session(10)[0], "name", None, "name must be a text"),
+        (session(10)[1], "lasted_ticks", -1, "lasted_ticks must be a whole number from 0"),
+    ],
+)
+def test_each_field_of_the_other_events_is_checked(event: TeachingEvent, key: str, value: object, problem: str) -> None:
+    content = json.loads(encode_event(event)) | {key: value}
+
+    with pytest.raises(KnowledgeError, match=problem):
+        decode_event(json.dumps(content), "row 1")
+
+
 @pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1)])
+def test_the_events_of_version_1_are_still_read(event: TeachingEvent) -> None:
+    text = encode_event(event)
+    assert '"version":2' in text
+
+    assert decode_event(text.replace('"version":2', '"version":1'), "row 1") == event
+
+
+@pytest.mark.parametrize(
+    "event",
+    [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1), undone("create-1"), *session(10)],
+)
 def test_a_missing_field_is_named(event: TeachingEvent) -> None:
     whole = json.loads(encode_event(event))
     for key in whole:

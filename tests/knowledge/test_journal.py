@@ -7,8 +7,9 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.entry import JournalEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
@@ -47,6 +48,32 @@ def test_another_lesson_under_a_known_command_is_not_passed_off_as_written(path:
 
         assert (receipt.sequence, receipt.new, receipt.agrees) == (1, False, False)
         assert journal.events() == [created(1)]
+
+
+def test_a_receipt_tells_the_stamp_of_the_row_not_that_of_a_command_that_comes_again(path: Path) -> None:
+    later = "2004-04-27T08:00:00.000+00:00"
+    with Journal.open(begun(path, lessons=1), BINDING) as journal:
+        known, fresh = journal.append([JournalEntry(created(1), later), JournalEntry(created(2), later)])
+
+        assert (known.stamped_at, known.new, known.agrees) == (STAMP, False, True)
+        assert (fresh.stamped_at, fresh.new, fresh.agrees) == (later, True, True)
+
+
+def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        written_as_version_1(journal, created(1))
+        again, another = journal.append([entry(1), JournalEntry(created(2, command_id="create-1"), STAMP)])
+
+        assert (again.sequence, again.new, again.agrees) == (1, False, True)
+        assert (another.sequence, another.new, another.agrees) == (1, False, False)
+
+
+def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
+    """A row as the first kurt2rt wrote it."""
+    text = encode_event(event).replace('"version":2', '"version":1')
+    command_id = event.origin.command_id
+    row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
+    journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)
 
 
 def test_a_batch_is_written_whole_or_not_at_all(path: Path) -> None:
@@ -103,6 +130,7 @@ def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
     look = """
 import os, sys
 from pathlib import Path
+from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 os.getuid() or os.setuid(65534)
 print(len(Journal.read_only(Path(sys.argv[1])).events()))

@@ -8,10 +8,15 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
-from tests.knowledge.lessons import BINDING, begun, created, entry, tamper
+from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import Rla, RlaCreated
+from tests.experiments.helpers import ROBOT, short_task
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, entry, origin, rewarded, tamper, undone
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -200,6 +205,44 @@ def test_lessons_that_do_not_fit_together_are_found(path: Path) -> None:
         (problem,) = check_knowledge(journal)
 
     assert problem.startswith(f"{path}: row 2: does not fit the lessons before it: RLA 1 cannot be created")
+
+
+def test_an_undo_that_does_not_fit_is_found(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1), *(JournalEntry(event, STAMP) for event in (rewarded(1), undone("create-1")))])
+        (problem,) = check_knowledge(journal)
+
+    assert problem.startswith(
+        f"{path}: row 3: does not fit the lessons before it: lesson 'reward-1' came after 'create-1' (RLA 1 rewarded)"
+    )
+
+
+def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: Path) -> None:
+    task = short_task()
+    with open_knowledge(path, ROBOT, task) as journal:
+        assert journal.binding.system == task.name
+        lessons = [
+            RlaCreated(Rla(number, (0.0,) * len(journal.binding.feature_names), "forward", None, origin(f"c{number}")))
+            for number in (1, 2)
+        ]
+        journal.append([JournalEntry(lesson, f"stamp {lesson.rla.rla_id}") for lesson in lessons])
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}))
+
+    opened = go_on_teaching(path, ROBOT, task)
+    with opened.journal as journal:
+        assert opened.events == journal.events() == lessons
+        assert opened.stamps == {"c1": "stamp 1", "c2": "stamp 2"}
+        assert [stored.sequence for stored in opened.entries] == [1, 2]
+        assert (opened.counter.uses, opened.counter.transitions) == ({1: 5}, {(1, 2): 3})
+
+
+def test_lessons_that_do_not_fit_together_are_not_taught_on_with_and_the_file_is_free_again(path: Path) -> None:
+    task = short_task()
+    with open_knowledge(path, ROBOT, task) as journal:
+        journal.append([JournalEntry(undone("create-1"), STAMP)])
+    for _ in range(2):
+        with pytest.raises(KnowledgeError, match=r"row 1: does not fit .*: there is no lesson 'create-1'; keep the"):
+            go_on_teaching(path, ROBOT, task)
 
 
 def test_a_damaged_binding_is_refused(path: Path) -> None:

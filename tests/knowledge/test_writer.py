@@ -13,8 +13,8 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
-from kurt2rt.rla.rla import RlaCreated
-from tests.knowledge.lessons import BINDING, STAMP, begun, created
+from kurt2rt.rla.rla import RlaCreated, TeachingEvent
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, rewarded, session, undone
 
 SOON = RetryDelays(first_s=0.001, longest_s=0.004)
 
@@ -52,7 +52,7 @@ def test_lessons_are_acknowledged_in_order_when_they_are_durable(path: Path) -> 
         assert writer.unwritten == 0
         assert writer.trouble is None
 
-    assert acknowledged == [Acknowledgement(f"create-{number}", number, None) for number in range(1, 31)]
+    assert acknowledged == [Acknowledgement(f"create-{number}", number, None, STAMP) for number in range(1, 31)]
 
 
 def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> None:
@@ -65,10 +65,28 @@ def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> 
     assert utc_now().endswith("+00:00")
 
 
+def test_an_acknowledgement_tells_when_the_lesson_was_first_written_not_when_it_came_again(path: Path) -> None:
+    later = "2004-04-27T08:00:00.000+00:00"
+    with JournalWriter(Journal.open(begun(path, lessons=1), BINDING), now=lambda: later) as writer:
+        writer.submit(created(1))
+        writer.submit(created(2))
+        assert [each.stamped_at for each in settled(writer)] == [STAMP, later]
+
+
+def test_every_kind_of_event_is_written(path: Path) -> None:
+    events: list[TeachingEvent] = [created(1), rewarded(1), undone("reward-1"), *session(6000)]
+    with writer_of(path) as writer:
+        for event in events:
+            writer.submit(event)
+        assert [each.sequence for each in settled(writer)] == [1, 2, 3, 4, 5]
+    with Journal.read_only(path) as journal:
+        assert journal.events() == events
+
+
 def test_a_command_sent_again_is_acknowledged_again_with_its_row(path: Path) -> None:
     with writer_of(begun(path, lessons=2)) as writer:
         writer.submit(created(2))
-        assert settled(writer) == [Acknowledgement("create-2", 2, None)]
+        assert settled(writer) == [Acknowledgement("create-2", 2, None, STAMP)]
     assert stored(path) == [created(1), created(2)]
 
 
@@ -84,6 +102,7 @@ def test_a_lesson_that_can_never_be_written_does_not_hold_up_the_others(path: Pa
     assert "condition must be made of finite numbers; teach it again" in refused.error
     assert (written.sequence, written.error) == (1, None)
     assert clashing.error is not None
+    assert [each.stamped_at for each in (refused, written, clashing)] == ["", STAMP, ""]
     assert "another lesson of this id stands in row 1" in clashing.error
     assert stored(path) == [created(1, command_id="once more")]
 
@@ -154,7 +173,7 @@ def test_a_locked_file_makes_lessons_wait_until_it_is_free(path: Path) -> None:
         writer.submit(created(1))
         assert wait_for_trouble(writer).startswith(f"{path}: another program holds it locked; close that program")
         other.execute("ROLLBACK")
-        assert settled(writer) == [Acknowledgement("create-1", 1, None)]
+        assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
 
 
 def test_nothing_is_acknowledged_into_a_file_that_was_moved_away(path: Path) -> None:
@@ -165,7 +184,7 @@ def test_nothing_is_acknowledged_into_a_file_that_was_moved_away(path: Path) -> 
         assert "was moved, deleted or replaced while in use; put the same files back" in wait_for_trouble(writer)
         assert writer.acknowledged() == []
         aside.rename(path)
-        assert settled(writer) == [Acknowledgement("create-1", 1, None)]
+        assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
     assert stored(path) == [created(1)]
 
 
