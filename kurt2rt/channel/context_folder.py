@@ -1,0 +1,79 @@
+"""The folder of one OSCORE context, held open: nobody else uses it, and nobody can put another one in its place."""
+
+import fcntl
+import json
+import os
+from pathlib import Path
+
+from kurt2rt.channel.error import CredentialsError
+
+Received = dict[str, int] | str
+"""Replay window as it is stored: index and bit field, or `UNKNOWN`."""
+
+UNKNOWN = "unknown"
+"""Stored while the context is in use: after a crash the other side has to prove that it is fresh (RFC 8613, B.1.2)."""
+
+SEQUENCE = "sequence.json"
+SECRET = "secret.json"
+_LOCK = "lock"
+_UNBORN = ".sequence.unborn"
+
+
+class ContextFolder:
+    """A folder that is locked until `release`, or until the process is gone.
+
+    It is held by its file descriptor, not by its name: where a pairing was renewed meanwhile, what the old one still
+    writes must not get into the new one, whose key it would break.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Take the lock, the same as aiocoap takes, so that its own tools respect it. Raises CredentialsError."""
+        self.path = path
+        name = path.name
+        try:
+            self._folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        except OSError as error:
+            raise CredentialsError(
+                f"{path}: there is no pairing to open ({error.strerror}); make one: kurt2rt pair {name}"
+            ) from error
+        try:
+            self._lock = os.open(_LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600, dir_fd=self._folder)
+        except OSError as error:
+            os.close(self._folder)
+            raise CredentialsError(
+                f"{path}: cannot be locked ({error.strerror}); give write permission for this folder"
+            ) from error
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # aiocoap's own tools unlink the file when they are done: a lock on what is gone keeps nobody out.
+            if not os.path.samestat(os.fstat(self._lock), os.stat(_LOCK, dir_fd=self._folder)):
+                raise BlockingIOError
+        except OSError as error:
+            self.release()
+            raise CredentialsError(
+                f"{path}: another program uses this pairing; end that one, or make another: kurt2rt pair NAME"
+            ) from error
+
+    def still_there(self) -> bool:
+        """Whether the folder still stands where it stood when it was opened."""
+        try:
+            return os.path.samestat(self.path.stat(), os.fstat(self._folder))
+        except OSError:
+            return False
+
+    def write_sequence(self, next_to_send: int, received: Received) -> None:
+        """Store the next sequence number and the replay window; durable when this returns. Raises OSError."""
+        image = json.dumps({"next-to-send": next_to_send, "received": received}).encode()
+        flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC
+        with open(os.open(_UNBORN, flags, 0o600, dir_fd=self._folder), "wb") as file:  # noqa: PTH123 - a descriptor
+            file.write(image)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(_UNBORN, SEQUENCE, src_dir_fd=self._folder, dst_dir_fd=self._folder)
+        # Without this a power cut may bring the old file back, and numbers would be used a second time.
+        os.fsync(self._folder)
+
+    def release(self) -> None:
+        """Let go of folder and lock."""
+        os.close(self._lock)
+        os.close(self._folder)

@@ -1,0 +1,52 @@
+"""Both sides of a pairing in one process, and what goes over the wire between them."""
+
+from pathlib import Path
+from typing import Any
+
+import aiocoap
+from aiocoap import oscore
+from aiocoap.message import Direction
+
+from kurt2rt.channel.oscore_context import OscoreContext
+
+
+def carried(message: Any) -> Any:
+    """The message as the other side gets it, byte for byte."""
+    message.mid, message.mtype = 7, aiocoap.NON
+    received = aiocoap.Message.decode(message.encode())
+    received.direction = Direction.INCOMING
+    return received
+
+
+def ask(device: OscoreContext, robot: OscoreContext, text: str, *, echo: bytes | None = None) -> str:
+    """Send a request that the robot unprotects; returns what it reads."""
+    request = aiocoap.Message(code=aiocoap.POST, payload=text.encode(), uri_path=("lesson",), echo=echo)
+    protected, _ = device.protect(request)
+    unprotected, _ = robot.unprotect(carried(protected))
+    payload: bytes = unprotected.payload
+    return payload.decode()
+
+
+def ask_until_fresh(device: OscoreContext, robot: OscoreContext, text: str) -> str:
+    """As `ask`, but the device answers the robot's challenge as RFC 8613, B.1.2, has it."""
+    request = aiocoap.Message(code=aiocoap.POST, payload=text.encode(), uri_path=("lesson",))
+    protected, request_id = device.protect(request)
+    try:
+        unprotected, _ = robot.unprotect(carried(protected))
+    except oscore.ReplayErrorWithEcho as challenge:
+        answer, _ = device.unprotect(carried(challenge.to_message()), request_id)
+        return ask(device, robot, text, echo=answer.opt.echo)
+    payload: bytes = unprotected.payload
+    return payload.decode()
+
+
+def header_of(context: OscoreContext) -> dict[int, bytes]:
+    """aiocoap's OSCORE header of a request that this context sends."""
+    protected, _ = context.protect(aiocoap.Message(code=aiocoap.POST, uri_path=("hello",)))
+    header: dict[int, bytes] = oscore.verify_start(carried(protected))
+    return header
+
+
+def sequence_of(folder: Path) -> str:
+    """What is stored of the context's state."""
+    return (folder / "sequence.json").read_text(encoding="utf-8")
