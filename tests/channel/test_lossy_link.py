@@ -1,0 +1,153 @@
+"""The bad link does what it says, the same each time."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from typing import cast
+
+import pytest
+
+from tests.channel.lossy_link import LossyLink, Weather
+
+
+class Mailbox(asyncio.DatagramProtocol):
+    """Keeps what arrives, and answers each with the same in capitals where it is an echo."""
+
+    def __init__(self, *, echo: bool) -> None:
+        self.arrived: list[bytes] = []
+        self.news = asyncio.Event()
+        self._echo = echo
+        self.transport: asyncio.DatagramTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self.transport = cast(asyncio.DatagramTransport, transport)
+
+    def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
+        self.arrived.append(data)
+        self.news.set()
+        if self._echo:
+            assert self.transport is not None
+            self.transport.sendto(data.upper(), addr)
+
+    def send(self, *datagrams: bytes) -> None:
+        assert self.transport is not None
+        for each in datagrams:
+            self.transport.sendto(each)
+
+    async def until(self, count: int) -> list[bytes]:
+        async with asyncio.timeout(5.0):
+            while len(self.arrived) < count:
+                self.news.clear()
+                await self.news.wait()
+        return self.arrived
+
+    @property
+    def port(self) -> int:
+        assert self.transport is not None
+        port: int = self.transport.get_extra_info("sockname")[1]
+        return port
+
+
+@pytest.fixture
+async def robot() -> AsyncIterator[Mailbox]:
+    loop = asyncio.get_running_loop()
+    transport, mailbox = await loop.create_datagram_endpoint(lambda: Mailbox(echo=True), local_addr=("127.0.0.1", 0))
+    yield mailbox
+    transport.close()
+
+
+async def client_of(link: LossyLink) -> Mailbox:
+    _, mailbox = await asyncio.get_running_loop().create_datagram_endpoint(
+        lambda: Mailbox(echo=False), remote_addr=("127.0.0.1", link.port)
+    )
+    return mailbox
+
+
+def close(mailbox: Mailbox) -> None:
+    assert mailbox.transport is not None
+    mailbox.transport.close()
+
+
+async def test_in_fair_weather_everything_passes_both_ways_and_clients_stay_apart(robot: Mailbox) -> None:
+    async with LossyLink(robot.port) as link:
+        ann, ben = await client_of(link), await client_of(link)
+        ann.send(b"a", b"b")
+        ben.send(b"c")
+        assert await ann.until(2) == [b"A", b"B"]
+        assert await ben.until(1) == [b"C"]
+        assert link.clients == 2
+        assert (link.up.came, link.up.delivered, link.down.delivered) == (3, 3, 3)
+        close(ann)
+        close(ben)
+
+
+async def fates(robot: Mailbox, weather: Weather, seed: int) -> list[bytes]:
+    async with LossyLink(robot.port, down=weather, seed=seed) as link:
+        client = await client_of(link)
+        for number in range(100):
+            client.send(b"%d" % number)
+            await link.until(lambda: link.down.came == number + 1)  # noqa: B023 - called only in this round
+        link.change_weather(down=Weather())
+        client.send(b"end")
+        async with asyncio.timeout(5.0):
+            while b"END" not in client.arrived:
+                client.news.clear()
+                await client.news.wait()
+        close(client)
+        return client.arrived
+
+
+async def test_the_same_seed_loses_the_same_ones(robot: Mailbox) -> None:
+    first = await fates(robot, Weather(loss=0.3), seed=1)
+    assert 55 < len(first) < 85
+    assert await fates(robot, Weather(loss=0.3), seed=1) == first
+    assert await fates(robot, Weather(loss=0.3), seed=2) != first
+
+
+async def test_some_come_twice(robot: Mailbox) -> None:
+    arrived = await fates(robot, Weather(doubled=0.5), seed=1)
+    assert 130 < len(arrived) < 170
+
+
+async def test_late_ones_are_overtaken(robot: Mailbox) -> None:
+    async with LossyLink(robot.port, down=Weather(overtaken=1.0, overtaken_s=0.05)) as link:
+        client = await client_of(link)
+        client.send(b"first")
+        await link.until(lambda: link.down.came == 1)
+        link.change_weather(down=Weather())
+        client.send(b"second")
+        assert await client.until(2) == [b"SECOND", b"FIRST"]
+        close(client)
+
+
+async def test_what_is_held_back_comes_in_the_end(robot: Mailbox) -> None:
+    async with LossyLink(robot.port, up=Weather(held_back=1.0, held_back_s=0.1)) as link:
+        client = await client_of(link)
+        client.send(b"old")
+        await link.until(lambda: link.up.came == 1)
+        assert robot.arrived == []
+        assert await robot.until(1) == [b"old"]
+        close(client)
+
+
+async def test_a_cut_link_is_a_black_hole_until_it_is_mended(robot: Mailbox) -> None:
+    async with LossyLink(robot.port) as link:
+        client = await client_of(link)
+        link.cut()
+        client.send(b"lost")
+        await link.until(lambda: link.up.lost == 1)
+        link.mend()
+        client.send(b"found")
+        assert await client.until(1) == [b"FOUND"]
+        assert robot.arrived == [b"found"]
+        close(client)
+
+
+async def test_a_robot_that_is_not_there_is_only_silent(robot: Mailbox) -> None:
+    async with LossyLink(robot.port) as link:
+        client = await client_of(link)
+        close(robot)
+        await asyncio.sleep(0)
+        client.send(b"a", b"b")
+        await link.until(lambda: link.up.came == 2)
+        assert client.arrived == []
+        close(client)
