@@ -2,16 +2,25 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
+from kurt2rt.channel.ground import Ground
 
 SIMULATED = "sim"
 
 
+class OpenedRobot(NamedTuple):
+    """A robot, and the ground it stands on where that is simulated."""
+
+    robot: Kurt2
+    ground: Ground | None
+
+
 @contextmanager
-def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iterator[Kurt2]:
+def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iterator[OpenedRobot]:
     """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
 
     Raises BusError, SettingsError, and on leaving whatever ended the simulation.
@@ -20,12 +29,12 @@ def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iter
         # Here, because a robot carries no simulator: the packages it needs are an extra.
         from kurt2rt.simulated import simulated_robot
 
-        with simulated_robot(settings, world, seed) as robot:
-            yield robot
+        with simulated_robot(settings, world, seed) as (simulated, ground):
+            yield OpenedRobot(simulated, ground)
         return
     robot = Kurt2(settings, open_bus(bus))
     try:
         with robot.watchdog:
-            yield robot
+            yield OpenedRobot(robot, None)
     finally:
         robot.close()

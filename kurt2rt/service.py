@@ -1,7 +1,8 @@
 """The service: the runtime in real time, until somebody ends it."""
 
 import signal
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,42 +11,31 @@ import anyio.abc
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
+from kurt2rt.channel.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.teachers import Teachers
+from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.knowledge.opening import go_on_teaching
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
+from kurt2rt.knowledge.safe import Safe
+from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.rounds import Rounds, Screen, Status, Watcher
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.question import Question, ask
-from kurt2rt.tick import TickRecord
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.timerfd import TimerfdClock
 
-Watcher = Callable[[TickRecord], Command | None]
-"""Sees each tick's record and may answer with a command: a scripted teacher's `watch`."""
-
 
 @dataclass(frozen=True, slots=True)
-class Status:
-    """How the service stands, for the one who looks at it."""
+class Openness:
+    """How the robot is open to teachers over the network."""
 
-    record: TickRecord
-    runtime: Runtime
-    unsaved_lessons: int
-    trouble: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class Screen:
-    """What the service tells. Called from the loop: none of these may wait."""
-
-    status: Callable[[Status], None]
-    """Once per status period."""
-    question: Callable[[Question], None]
-    """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
-    settled: Callable[[Acknowledgement], None]
-    """A lesson is durable, or never can be, and why."""
+    bus_trouble: Callable[[], str]
+    """What is wrong with the robot's bus, in a line; empty when nothing is."""
+    ground: Ground | None
+    """Of a simulated robot."""
+    listening: Callable[[Channel], None]
+    """Called when the channel is open."""
 
 
 async def serve(
@@ -55,65 +45,75 @@ async def serve(
     task: TaskSettings,
     screen: Screen,
     *,
-    teacher: Watcher | None,
+    teacher: Watcher | None = None,
+    openness: Openness | None = None,
     duration_s: float | None,
     stopped: bool = False,
 ) -> Status | None:
     """Run until SIGTERM, SIGINT or SIGHUP, or for `duration_s`; the wheels stand before anything else ends.
 
+    `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
     `stopped`: stand until the teacher says resume, as after a stop.
-    Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError.
+    Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
+    ChannelError.
     """
-    last: Status | None = None
+    path = Path(service.knowledge)
     with TimerfdClock() as clock:
-        opened = go_on_teaching(Path(service.knowledge), settings, task)
-        counter = opened.counter
+        opened = go_on_teaching(path, settings, task)
+        stamps = opened.stamps
         with JournalWriter(opened.journal, utc_now) as writer:
-            runtime = build_runtime(robot, settings, task, opened.events, writer, clock, statistics=counter)
+            runtime = build_runtime(
+                robot,
+                settings,
+                task,
+                opened.events,
+                writer,
+                clock,
+                statistics=opened.counter,
+                attended=openness is not None,
+            )
             if stopped:
                 runtime.school.stop("the robot program was started")
-            period_s = settings.can.cycle_s
-            checkpoint_ticks = round(service.checkpoint_period_s / period_s)
-            status_ticks = round(service.status_period_s / period_s)
-            ticks_per_second = round(1 / period_s)
-            asking = False
-            asked_at = -ticks_per_second
-
-            def after_tick(record: TickRecord) -> None:
-                nonlocal last, asking, asked_at
-                if teacher is not None:
-                    command = teacher(record)
-                    if command is not None:
-                        runtime.inbox.put(command)
-                if not record.decision.asking:
-                    asking = False
-                elif not asking and record.tick - asked_at >= ticks_per_second:
-                    asking = True
-                    asked_at = record.tick
-                    weights, names = runtime.level.system.weights, runtime.definition.names
-                    screen.question(ask(record.decision.match, record.situation.vector, weights, names))
-                for acknowledgement in writer.acknowledged():
-                    screen.settled(acknowledgement)
-                ticks = runtime.ledger.ticks
-                if ticks % checkpoint_ticks == 0:
-                    writer.submit_statistics(Statistics(dict(counter.uses), dict(counter.transitions)))
-                if ticks % status_ticks == 0:
-                    last = Status(record, runtime, writer.unwritten, writer.trouble)
-                    screen.status(last)
-
-            async with anyio.create_task_group() as tasks:
+            async with (
+                anyio.create_task_group() as tasks,
+                _channel(runtime, writer, stamps, service, openness) as channel,
+            ):
+                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel)
                 await tasks.start(_end_on_signal, runtime)
-                ticks = None if duration_s is None else round(duration_s / period_s)
+                ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 with quiet_gc():
                     try:
-                        await runtime.scheduler.run(ticks, after_tick)
+                        await runtime.scheduler.run(ticks, rounds)
                     finally:
                         robot.emergency_stop("the service ends")
                 tasks.cancel_scope.cancel()
-            writer.submit_statistics(Statistics(dict(counter.uses), dict(counter.transitions)))
+            rounds.save_statistics()
         for acknowledgement in writer.acknowledged():
             screen.settled(acknowledgement)
-    return last
+    return rounds.last
+
+
+@asynccontextmanager
+async def _channel(
+    runtime: Runtime, writer: JournalWriter, stamps: dict[str, str], service: ServiceSettings, openness: Openness | None
+) -> AsyncIterator[Channel | None]:
+    if openness is None:
+        yield None
+        return
+    safekeeping = Safekeeping(
+        unsaved=lambda: writer.unwritten,
+        trouble=lambda: writer.trouble,
+        stamp_of=lambda command_id: stamps.get(command_id, ""),
+    )
+    safe = Safe(Path(service.knowledge), writer)
+    surroundings = Surroundings(safekeeping, safe, openness.bus_trouble, openness.ground)
+    teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
+    try:
+        async with open_channel(runtime, teachers, service.port, surroundings) as channel:
+            openness.listening(channel)
+            yield channel
+    finally:
+        teachers.close()
 
 
 async def _end_on_signal(runtime: Runtime, *, task_status: anyio.abc.TaskStatus[None]) -> None:

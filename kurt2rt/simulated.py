@@ -11,6 +11,7 @@ from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Position
+from kurt2rt.simulated_ground import SimulatedGround
 from simbridge.drawing import draw_world
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
@@ -72,10 +73,10 @@ class SimulatedArena:
         self.simulation.place(min(self._starts, key=squared_distance))
 
     @contextmanager
-    def live(self) -> Iterator[None]:
+    def live(self) -> Iterator[RealtimeSimulation]:
         """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
-        with RealtimeSimulation(self.simulation, self._cycle_s), self.robot.watchdog:
-            yield
+        with RealtimeSimulation(self.simulation, self._cycle_s) as simulation, self.robot.watchdog:
+            yield simulation
 
     def close(self) -> None:
         """Stop the robot and shut both ends of the bus."""
@@ -104,15 +105,18 @@ class SimulatedStage:
 
 
 @contextmanager
-def simulated_robot(settings: RobotSettings, world: str, seed: int) -> Iterator[Kurt2]:
-    """The simulated robot in real time, its second guard awake.
+def simulated_robot(settings: RobotSettings, world: str, seed: int) -> Iterator[tuple[Kurt2, SimulatedGround]]:
+    """The simulated robot in real time, its second guard awake, and the ground that it stands on.
 
     Raises SettingsError, and on leaving whatever ended the simulation.
     """
     arena = SimulatedArena(settings, world, seed, "run")
     try:
-        with arena.live():
-            yield arena.robot
+        with arena.live() as simulation:
+            yield (
+                arena.robot,
+                SimulatedGround(arena.simulation, load_world(world, settings), settings.geometry, simulation),
+            )
             # While the simulation still runs, so that the last frame finds a listener.
             arena.robot.emergency_stop("the run is over")
     finally:

@@ -2,6 +2,8 @@
 
 import threading
 import time
+from collections import deque
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -18,6 +20,7 @@ class RealtimeSimulation:
         self._robot = robot
         self._cycle_ns = round(cycle_s * 1e9)
         self._stopping = threading.Event()
+        self._asked: deque[Callable[[], object]] = deque()
         self._thread = threading.Thread(target=self._run, name="simulated-robot", daemon=True)
         self.missed_cycles = 0
         self.error: Exception | None = None
@@ -32,6 +35,10 @@ class RealtimeSimulation:
         self._end()
         if self.error is not None:
             raise self.error
+
+    def ask(self, job: Callable[[], object]) -> None:
+        """Have something done before the next step, by the thread that steps; from any thread. An error ends it."""
+        self._asked.append(job)
 
     def wait(self, timeout_s: float) -> bool:
         """Wait until the thread has ended, by `stop` or by an error; False when it still runs."""
@@ -72,4 +79,6 @@ class RealtimeSimulation:
                 deadline_ns += missed * self._cycle_ns
             if self._stopping.wait(max(0.0, (deadline_ns - time.monotonic_ns()) / 1e9)):
                 return
+            while self._asked:
+                self._asked.popleft()()
             self._robot.step()

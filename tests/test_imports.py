@@ -37,7 +37,8 @@ def roots_imported(path: Path) -> set[str]:
 def may_know_the_simulator(path: Path) -> bool:
     """The composition root and the command line alone know both the runtime and the simulator."""
     parts = path.relative_to(ROOT).parts
-    return parts in (("kurt2rt", "app.py"), ("kurt2rt", "simulated.py")) or parts[:2] == ("kurt2rt", "cli")
+    roots = ("app.py", "simulated.py", "simulated_ground.py")
+    return (parts[0] == "kurt2rt" and parts[1:] in [(root,) for root in roots]) or parts[:2] == ("kurt2rt", "cli")
 
 
 @pytest.mark.parametrize("package", sorted(PACKAGES))

@@ -1,8 +1,8 @@
 """`kurt2rt run`."""
 
 import math
-import sys
-import uuid
+from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,20 +10,18 @@ import anyio
 import typer
 from rich.console import Console
 
-from behaviors.repertoire import load_repertoire
 from hal.health import Health
-from hal.robot_settings import RobotSettings, load_robot
-from kurt2rt.app import SIMULATED, open_robot
+from hal.robot_settings import load_robot
+from kurt2rt.app import SIMULATED, OpenedRobot, open_robot
+from kurt2rt.channel.channel import Channel
+from kurt2rt.channel.credentials import AUTO, LOCAL, local_pairing
+from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.printer import Printer
-from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.rla.rla import Phase
-from kurt2rt.service import Screen, Status, Watcher, serve
-from kurt2rt.service_settings import load_service
-from kurt2rt.tasks.settings import TaskSettings, load_task
-from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
-from kurt2rt.tick import TickRecord
+from kurt2rt.rounds import Screen, Status
+from kurt2rt.service import Openness, serve
+from kurt2rt.service_settings import ServiceSettings, load_service
+from kurt2rt.tasks.settings import load_task
 from kurt2rt.timing.priority import take_real_time_priority
 
 
@@ -41,12 +39,22 @@ def run(
         str | None, typer.Option(help="World of the simulated robot. Default: as the settings say.")
     ] = None,
     teacher: Annotated[
-        Literal["none", "terminal", "scripted"],
+        Literal["channel", "none"],
+        typer.Option(help="channel: teachers come over UDP; none: nobody, the robot drives where it knows the way."),
+    ] = "channel",
+    page: Annotated[
+        bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")
+    ] = False,
+    auto: Annotated[
+        bool,
         typer.Option(
-            help="terminal: type actions and commands here; scripted: the task's reference policy answers and "
-            "corrects, for the simulated robot only; none: nobody."
+            "--auto", help="Let the scripted teacher of the task teach, over the channel; simulated robot only."
         ),
-    ] = "terminal",
+    ] = False,
+    port: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, help="UDP port of the channel; 0: any. Default: as the settings say."),
+    ] = None,
     seconds: Annotated[
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
@@ -57,11 +65,18 @@ def run(
     The robot drives where it was taught to and stands where it was not: then
     it asks. Each lesson is in the knowledge file before it is acknowledged. A
     status line tells once a second what drives the wheels, which rule says so,
-    and how punctual the loop is. Type an action to answer the robot's question,
-    or to correct it while it drives; "help" lists what else can be typed.
+    and how punctual the loop is.
+
+    Teach it from a browser or from another terminal:
+
+        kurt2rt run --page
+        kurt2rt teach --terminal
+
+    Without a paired device (kurt2rt pair) only this machine is listened to. In
+    phases 1 to 4 the robot drives only while its teacher is there.
 
     With --robot can0 set the interface up first; the robot then stands until
-    you type resume, whatever it knows:
+    its teacher says resume, whatever it knows:
 
         sudo ip link set can0 up type can bitrate 1000000
 
@@ -71,89 +86,78 @@ def run(
     """
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
-    service = load_service(settings)
-    changes: dict[str, str] = {}
-    if knowledge is not None:
-        changes["knowledge"] = str(knowledge)
-    if world is not None:
-        changes["world"] = world
-    service = service.model_copy(update=changes)
+    if auto and robot != SIMULATED:
+        raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--auto")
+    if (page or auto) and teacher == "none":
+        raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
+    service = _changed(load_service(settings), knowledge, world, port)
     robot_settings, task = load_robot(service.robot), load_task(service.task)
-    if teacher == "scripted" and robot != "sim":
-        raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--teacher")
     console = Console()
-    console.print(
-        f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends",
-        markup=False,
-        highlight=False,
-        soft_wrap=True,
-    )
+
+    def tell(text: str, style: str | None = None) -> None:
+        console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+    tell(f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends")
     if service.real_time_priority:
-        console.print(take_real_time_priority(service.real_time_priority), highlight=False)
-    printer = Printer()
+        tell(take_real_time_priority(service.real_time_priority))
+    with ExitStack() as ending:
+        companions = ending.enter_context(Companions(settings))
+        printer = ending.enter_context(Printer())
 
-    def say(text: str, style: str | None = None) -> None:
-        printer.put(lambda: console.print(text, style=style, markup=False, highlight=False, soft_wrap=True))
+        def say(text: str, style: str | None = None) -> None:
+            printer.put(lambda: tell(text, style))
 
-    def settled(acknowledgement: Acknowledgement) -> None:
-        if acknowledgement.error is not None:
-            say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
-        elif teacher == "terminal":
-            say("saved", "cyan")
+        def settled(acknowledgement: Acknowledgement) -> None:
+            if acknowledgement.error is not None:
+                say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
 
-    watch: Watcher | None = None
-    if teacher == "scripted":
-        watch = scripted_watch(task, robot_settings, seed)
-    elif teacher == "terminal":
-        actions = tuple(load_repertoire(task.repertoire, robot_settings))
-        person = TerminalTeacher(
-            sys.stdin,
-            actions,
-            lambda text: say(text, "cyan"),
-            session=new_session("terminal"),
-        )
-        console.print(person.help, style="cyan", highlight=False)
-        person.start()
-        watch = person.watch
-    with printer, open_robot(robot_settings, robot, service.world, seed) as opened:
+        opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed))
 
         def show(status: Status) -> None:
             # The line is made by the printer as well: the percentiles in it cost more than a tick.
-            printer.put(
-                lambda: console.print(status_line(status, opened.health), markup=False, highlight=False, soft_wrap=True)
-            )
+            printer.put(lambda: tell(status_line(status, opened.robot.health)))
 
-        screen = Screen(status=show, question=lambda question: say(str(question), "yellow"), settled=settled)
+        def listening(channel: Channel) -> None:
+            say(f"teachers are listened to on UDP port {channel.endpoint.port}", "cyan")
+            if page:
+                companions.start("teach", "--port", str(channel.endpoint.port))
+            if auto:
+                companions.start("teach", "--auto", "--port", str(channel.endpoint.port))
+
+        openness = None if teacher == "none" else _open(service, opened, listening)
 
         async def serve_it() -> Status | None:
             return await serve(
-                opened,
+                opened.robot,
                 robot_settings,
                 service,
                 task,
-                screen,
-                teacher=watch,
+                Screen(status=show, question=lambda question: say(str(question), "yellow"), settled=settled),
+                openness=openness,
                 duration_s=seconds,
-                stopped=robot != SIMULATED and teacher == "terminal",
+                stopped=robot != SIMULATED and teacher == "channel",
             )
 
         last = anyio.run(serve_it)
     count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
-    console.print(f"the robot stands{count}", markup=False, highlight=False, soft_wrap=True)
+    tell(f"the robot stands{count}")
 
 
-def scripted_watch(task: TaskSettings, robot: RobotSettings, seed: int) -> Watcher:
-    """The scripted teacher for a run in real time: answers, and corrects after the task's time of phase 1."""
-    actions = tuple(load_repertoire(task.repertoire, robot))
-    teacher = teacher_of(task, robot, actions, seed=seed, session=new_session("scripted"))
-    corrections_from = round(task.teaching.supervised_s / robot.can.cycle_s)
+def _changed(service: ServiceSettings, knowledge: Path | None, world: str | None, port: int | None) -> ServiceSettings:
+    given = {"knowledge": None if knowledge is None else str(knowledge), "world": world, "port": port}
+    return service.model_copy(update={key: value for key, value in given.items() if value is not None})
 
-    def watch(record: TickRecord) -> Command | None:
-        if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:
-            return teacher.enter(Phase.CORRECTIONS)
-        return teacher.watch(picture_of(record))
 
-    return watch
+def _open(service: ServiceSettings, opened: OpenedRobot, listening: Callable[[Channel], None]) -> Openness:
+    """Open to teachers, the one at this machine's own keyboard among them."""
+    for name in (LOCAL, AUTO):
+        local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
+
+    def bus_trouble() -> str:
+        health = opened.robot.health
+        return health.bus_trouble if health.latched is not None else ""
+
+    return Openness(bus_trouble, opened.ground, listening)
 
 
 def status_line(status: Status, health: Health) -> str:
@@ -186,8 +190,3 @@ def status_line(status: Status, health: Health) -> str:
     if health.foreign_control:
         parts.append(f"{health.foreign_control} CONTROL frames from somebody else on the bus: find and end it")
     return " | ".join(parts)
-
-
-def new_session(teacher: str) -> str:
-    """A name that no earlier session has, for the ids of this session's commands."""
-    return f"{teacher}-{uuid.uuid4().hex[:12]}"

@@ -64,16 +64,17 @@ class Authority:
         """Whether the teacher is there; always where none is needed."""
         return not self.attended or tick < self._there_until
 
-    def drive(self, command: Drive, tick: int, seen_tick: int) -> str | None:
-        """Take or keep the wheels; a refusal for a press that a stop has ended."""
-        if command.hold <= self._ended_hold.get(command.teacher, -1):
-            return "this press was ended by a stop; let go and press anew"
+    def is_over(self, command: Drive) -> bool:
+        """Whether a stop, or silence, has ended this press."""
+        return command.hold <= self._ended_hold.get(command.teacher, -1)
+
+    def drive(self, command: Drive, tick: int) -> None:
+        """Take or keep the wheels; for the teacher, with a press that is not over."""
         self._hold[command.teacher] = command.hold
         self._behaviour = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
-        self._driven_until = self._until(tick, seen_tick)
-        self.watch(command.teacher, tick, seen_tick)
-        return None
+        self._driven_until = self._until(tick, command.seen_tick)
+        self.watch(command.teacher, tick, command.seen_tick)
 
     def run(self, action: str, tick: int, ticks: int) -> None:
         """Let an action of the repertoire drive for so many ticks, while the teacher is there."""

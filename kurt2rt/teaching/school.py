@@ -105,19 +105,26 @@ class School:
     def follow(self, command: Watch | Drive, tick: int) -> str | None:
         """Take in a message of a stream, of which only the newest counts; a refusal in words."""
         authority = self.authority
-        refusal = authority.held_by_another(command.teacher) or self._stopped_by_another(command)
+        refusal = authority.held_by_another(command.teacher) or self.why_not_by_hand(command)
         if refusal is not None:
             return refusal
         if isinstance(command, Watch):
             authority.watch(command.teacher, tick, command.seen_tick)
             return None
         authority.claim(command.teacher)
-        refusal = authority.drive(command, tick, command.seen_tick)
-        if refusal is None:
-            # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
-            self.stopped_because = f"{command.teacher} drove by hand and let go"
-            self._stopped_by = command.teacher
-        return refusal
+        authority.drive(command, tick)
+        # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
+        self.stopped_because = f"{command.teacher} drove by hand and let go"
+        self._stopped_by = command.teacher
+        return None
+
+    def why_not_by_hand(self, command: Watch | Drive) -> str | None:
+        """Why this press does not drive the robot, in a sentence; None when it does. Being there is always allowed."""
+        if isinstance(command, Watch):
+            return None
+        if self.authority.is_over(command):
+            return "this press was ended by a stop; let go and press anew"
+        return self._stopped_by_another(command.teacher)
 
     def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
@@ -178,7 +185,7 @@ class School:
 
     def _run(self, command: RunBehaviour, tick: int) -> str:
         self._require_action(command.action)
-        self._refuse(self._stopped_by_another(command))
+        self._refuse(self._stopped_by_another(command.teacher))
         self.stop(f"{command.action} is over", command.teacher)
         self.authority.run(command.action, tick, command.ticks)
         return f"{command.action} for {command.ticks} ticks"
@@ -267,8 +274,8 @@ class School:
         if not self.recent.knows(tick):
             raise _RefusedError(f"the decision of tick {tick} is not remembered any more; look at the newest picture")
 
-    def _stopped_by_another(self, command: Watch | Drive | RunBehaviour) -> str | None:
-        if isinstance(command, Watch) or self._stopped_by in (None, command.teacher):
+    def _stopped_by_another(self, teacher: str) -> str | None:
+        if self._stopped_by in (None, teacher):
             return None
         return f"{self._stopped_by} stopped the robot; say resume first"
 

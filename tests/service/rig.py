@@ -8,16 +8,19 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import load_robot
-from kurt2rt.cli.run import scripted_watch
 from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.service import Screen, Status, serve
+from kurt2rt.rla.rla import Phase
+from kurt2rt.rounds import Screen, Status
+from kurt2rt.service import serve
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Command
 from kurt2rt.teaching.question import Question
+from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
@@ -114,8 +117,18 @@ def rig(seed: int = 1) -> Iterator[Rig]:
 
 
 def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickRecord], Command | None]:
-    """The scripted teacher as `kurt2rt run --teacher scripted` puts it there."""
-    return scripted_watch(task or eager_task(), SETTINGS, seed)
+    """The scripted teacher in the robot's own program: answers, and corrects after the task's time of phase 1."""
+    task = task or eager_task()
+    actions = tuple(load_repertoire(task.repertoire, SETTINGS))
+    teacher = teacher_of(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
+    corrections_from = round(task.teaching.supervised_s / SETTINGS.can.cycle_s)
+
+    def watch(record: TickRecord) -> Command | None:
+        if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:
+            return teacher.enter(Phase.CORRECTIONS)
+        return teacher.watch(picture_of(record))
+
+    return watch
 
 
 def end_service(number: signal.Signals = signal.SIGTERM) -> None:

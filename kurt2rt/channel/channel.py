@@ -1,0 +1,137 @@
+"""The teacher's channel in the robot's loop: opened beside the scheduler, fed after each tick."""
+
+import secrets
+from collections.abc import AsyncIterator, Callable, Sequence
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import anyio
+
+from kurt2rt.channel.endpoint import Endpoint, open_endpoint
+from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.reception import Copies, Reception
+from kurt2rt.channel.reply import done, refusal, unsaved
+from kurt2rt.channel.requests import BOOT_BYTES
+from kurt2rt.channel.site import RobotSite
+from kurt2rt.channel.teachers import Teachers
+from kurt2rt.channel.telling import Safekeeping, Telling
+from kurt2rt.channel.wire import encode_state
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.rla.rla import Phase
+from kurt2rt.runtime import Runtime
+from kurt2rt.tick import TickRecord
+
+VERSION = 1
+PICTURES_PER_S = 20
+LOOPBACK, EVERYWHERE = "127.0.0.1", "::"
+_REFRESH_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What of the service the channel needs."""
+
+    safekeeping: Safekeeping
+    copies: Copies
+    bus_trouble: Callable[[], str]
+    ground: Ground | None
+
+
+class Channel:
+    """Hands what teachers send to the next tick, and tells them what became of it and what the robot does."""
+
+    def __init__(
+        self, runtime: Runtime, reception: Reception, site: RobotSite, telling: Telling, endpoint: Endpoint
+    ) -> None:
+        self._reception = reception
+        self._site = site
+        self._telling = telling
+        self._texts: dict[str, str] = {}
+        self._every_ticks = max(1, round(1 / (PICTURES_PER_S * runtime.robot.can.cycle_s)))
+        self._ticks = 0
+        self.endpoint = endpoint
+
+    @property
+    def failures(self) -> int:
+        """Requests that ended in an error of ours; none should."""
+        return self._site.failures
+
+    @property
+    def observers(self) -> int:
+        """How many devices get the pictures."""
+        return self._site.observers
+
+    def after_tick(self, record: TickRecord) -> None:
+        """Answer the commands that the tick took, and show the picture when it is time. Never waits."""
+        reception, tick = self._reception, record.tick
+        reception.tick = tick
+        for result in record.results:
+            if not result.accepted:
+                reception.settle(result.command_id, refusal("refused", result.text, tick))
+            elif result.lesson:
+                self._texts[result.command_id] = result.text
+            else:
+                reception.settle(result.command_id, done(tick, result.text))
+        self._ticks += 1
+        if self._ticks % self._every_ticks == 0:
+            self._site.show(encode_state(self._telling.picture(record)))
+
+    def settled(self, acknowledgement: Acknowledgement) -> None:
+        """A lesson is durable, or never can be."""
+        command_id, tick = acknowledgement.command_id, self._reception.tick
+        text = self._texts.pop(command_id, "")
+        if acknowledgement.error is None:
+            self._reception.settle(command_id, done(tick, text, row=acknowledgement.sequence))
+        else:
+            self._reception.settle(command_id, unsaved(acknowledgement.error, tick))
+
+
+@asynccontextmanager
+async def open_channel(
+    runtime: Runtime, teachers: Teachers, port: int, surroundings: Surroundings
+) -> AsyncIterator[Channel]:
+    """Listen for the teachers of `teachers`: on this machine only while none is paired. Raises ChannelError."""
+    boot = secrets.token_bytes(BOOT_BYTES)
+    hello = describe(runtime, boot, simulated=surroundings.ground is not None)
+    stamp_of = surroundings.safekeeping.stamp_of
+    reception = Reception(runtime, boot, hello, stamp_of, surroundings.copies, surroundings.ground)
+    telling = Telling(runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground)
+    site = RobotSite(teachers, reception)
+    endpoint = await open_endpoint(site, LOOPBACK if teachers.only_local else EVERYWHERE, port)
+    site.doorkeeper = endpoint
+    try:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(_refresh, teachers)
+            yield Channel(runtime, reception, site, telling, endpoint)
+            tasks.cancel_scope.cancel()
+    finally:
+        with anyio.CancelScope(shield=True):
+            await endpoint.close()
+
+
+async def _refresh(teachers: Teachers) -> None:
+    """New pairings are taken in and revoked ones thrown out while the robot runs."""
+    while True:
+        await anyio.sleep(_REFRESH_S)
+        await teachers.refresh()
+
+
+def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:
+    """What robot this is, for a page that has never seen one."""
+    robot, sensors = runtime.robot, runtime.robot.infrared.sensors
+    actions: Sequence[str] = list(runtime.level.repertoire)
+    return {
+        "v": VERSION,
+        "boot": boot,
+        "robot": robot.name,
+        "task": runtime.task.name,
+        "radius": runtime.level.system.radius,
+        "period_s": robot.can.cycle_s,
+        "actions": actions,
+        "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
+        "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
+        "max_m_s": robot.guard.maximum_speed_m_s,
+        "simulated": simulated,
+        "phases": {int(phase): phase.name.lower() for phase in Phase},
+    }

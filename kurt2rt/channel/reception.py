@@ -1,0 +1,326 @@
+"""The rules by which the robot takes what its teachers send. Who sent it is certain here; when and why is not."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+from typing import Any, Protocol
+
+from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.outcomes import Outcomes
+from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    DriveRequest,
+    ExportRequest,
+    HelloRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    PhaseRequest,
+    PlaceRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    Request,
+    ResumeRequest,
+    RewardRequest,
+    SaveRequest,
+    SessionRequest,
+    StopRequest,
+    StreamRequest,
+    TakeRequest,
+    UndoRequest,
+    WorldRequest,
+)
+from kurt2rt.knowledge.copy import SavedCopy
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    Lesson,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+)
+from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.commands import (
+    BeginSession,
+    Command,
+    Correct,
+    DeleteRla,
+    Drive,
+    EndSession,
+    HandOver,
+    ReplaceAction,
+    Resume,
+    Reward,
+    RunBehaviour,
+    SetPhase,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
+from kurt2rt.teaching.inbox import InboxFullError
+
+STREAM_TICKS = 40
+"""A message of a stream on an older picture is refused: it was held back on its way."""
+MOVING_TICKS = 100
+COMMAND_TICKS = 300
+_MOVING = (BehaviourRequest, ResumeRequest, TakeRequest)
+LONGEST_WAIT_S = 3.0
+"""Then a lesson that is not durable yet is answered as unsaved."""
+
+
+class Copies(Protocol):
+    """Makes copies of the knowledge on the robot, outside the loop."""
+
+    def save(self, label: str) -> Awaitable[SavedCopy]:
+        """A copy of the knowledge file. Raises KnowledgeError."""
+        ...
+
+    def export(self) -> Awaitable[SavedCopy]:
+        """The RLAs as a table. Raises KnowledgeError."""
+        ...
+
+
+class Reception:
+    """Takes requests in the robot's own loop, between two ticks."""
+
+    def __init__(
+        self,
+        runtime: Runtime,
+        boot: bytes,
+        hello: Mapping[str, Any],
+        stamp_of: Callable[[str], str],
+        copies: Copies,
+        ground: Ground | None,
+    ) -> None:
+        """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing."""
+        self._runtime = runtime
+        self._boot = boot
+        self._hello = hello
+        self._stamp_of = stamp_of
+        self._copies = copies
+        self._ground = ground
+        self._outcomes = Outcomes()
+        self._newest: dict[str, int] = {}
+        self._under_way: set[asyncio.Task[None]] = set()
+        self.tick = 0
+        """Of the newest picture."""
+
+    def settle(self, command_id: str, reply: Reply) -> None:
+        """What became of a command that had come in."""
+        self._outcomes.settle(command_id, reply)
+
+    async def answer(self, device: str, number: int, request: Request) -> Reply:
+        """The reply to a request of a device. `number` grows with each message that the device made."""
+        match request:
+            case StreamRequest():
+                return self._stream(device, number, request)
+            case StopRequest(command_id=identity):
+                return await self._stop(device, f"{device}-{identity.hex()}")
+            case CommandRequest():
+                return await self._command(device, request)
+            case HelloRequest():
+                return Reply(Verdict.DONE, {**self._hello, "tick": self.tick})
+            case LessonsRequest(count=count):
+                return Reply(Verdict.DONE, {"lessons": self._lessons(count)})
+            case WorldRequest():
+                return self._world()
+        return Reply(Verdict.NOT_HERE)
+
+    def _stream(self, device: str, number: int, request: StreamRequest) -> Reply:
+        tick, school = self.tick, self._runtime.school
+        stale = self._stale(request.boot, request.seen, STREAM_TICKS)
+        if stale is not None:
+            return stale
+        if number <= self._newest.get(device, -1):
+            return refusal("old", "a newer message came before this one", tick)
+        self._newest[device] = number
+        command: Watch | Drive = Watch(device, request.seen)
+        if isinstance(request, DriveRequest):
+            command = Drive(device, request.seen, request.hold, request.left_m_s, request.right_m_s)
+        held = school.authority.held_by_another(device)
+        if held is not None:
+            return refusal("held", held, tick)
+        ended = school.why_not_by_hand(command)
+        if ended is not None:
+            return refusal("stopped", ended, tick)
+        return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
+
+    async def _stop(self, device: str, command_id: str) -> Reply:
+        # Each copy stops again, whatever came of the one before: the robot may have been told to drive meanwhile.
+        if not self._hand_in(Stop(command_id, device)):
+            return self._too_many()
+        return await (self._outcomes.get(command_id) or self._outcomes.begin(command_id))
+
+    async def _command(self, device: str, request: CommandRequest) -> Reply:
+        command_id = f"{device}-{request.command_id.hex()}"
+        waiting = self._outcomes.get(command_id)
+        if waiting is None:
+            if self._runtime.school.has_taken(command_id):  # before this start of the program, or long ago
+                return done(self.tick, "had been taken already; counted once")
+            longest = MOVING_TICKS if isinstance(request, _MOVING) else COMMAND_TICKS
+            stale = self._stale(request.boot, request.seen, longest)
+            if stale is not None:
+                return stale
+            reply = self._begin(device, command_id, request)
+            if reply is not None:
+                return reply
+            waiting = self._outcomes.get(command_id)
+            assert waiting is not None
+        try:
+            return await asyncio.wait_for(asyncio.shield(waiting), LONGEST_WAIT_S)
+        except TimeoutError:
+            return unsaved("not saved yet; it may still count: look at the lessons", self.tick)
+
+    def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
+        """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
+        match request:
+            case SaveRequest() | ExportRequest():
+                held = self._runtime.school.authority.held_by_another(device)
+                if held is not None:
+                    return refusal("held", held, self.tick)
+                self._outcomes.begin(command_id)
+                copying = (
+                    self._copies.save(request.label) if isinstance(request, SaveRequest) else self._copies.export()
+                )
+                task = asyncio.get_running_loop().create_task(self._copy(command_id, copying))
+                self._under_way.add(task)
+                task.add_done_callback(self._under_way.discard)
+                return None
+            case MoveWallRequest() | PlaceRequest():
+                reply = self._change_world(device, request)
+                self._outcomes.begin(command_id).set_result(reply)
+                return None
+        held = self._runtime.school.authority.held_by_another(device)
+        if held is not None and not isinstance(request, TakeRequest):
+            return refusal("held", held, self.tick)
+        self._outcomes.begin(command_id)
+        if not self._hand_in(command_of(device, command_id, request)):
+            reply = self._too_many()
+            self._outcomes.settle(command_id, reply)
+        return None
+
+    async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
+        try:
+            copy = await copying
+        except KnowledgeError as error:
+            self._outcomes.settle(command_id, unsaved(str(error), self.tick))
+        else:
+            text = f"{copy.name}, {copy.size_bytes} bytes"
+            self._outcomes.settle(command_id, done(self.tick, text, name=copy.name, sha256=copy.sha256))
+
+    def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest) -> Reply:
+        if self._ground is None:
+            return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+        held = self._runtime.school.authority.held_by_another(device)
+        if held is not None:
+            return refusal("held", held, self.tick)
+        try:
+            if isinstance(request, MoveWallRequest):
+                self._ground.move_wall(request.name, request.dx_m, request.dy_m)
+                return done(self.tick, f"{request.name} moved")
+            self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
+        except ValueError as error:
+            return refusal("refused", str(error), self.tick)
+        return done(self.tick, "the robot stands elsewhere")
+
+    def _stale(self, boot: bytes, seen: int, longest: int) -> Reply | None:
+        if boot != self._boot:
+            return refusal(
+                "boot", "the robot program was started anew; look at the robot, then say it again", self.tick
+            )
+        if not 0 <= self.tick - seen <= longest:
+            return refusal("stale", "given on an old picture; look at the robot, then say it again", self.tick)
+        return None
+
+    def _hand_in(self, command: Command) -> bool:
+        try:
+            self._runtime.inbox.put(command)
+        except InboxFullError:
+            return False
+        return True
+
+    def _too_many(self) -> Reply:
+        return refusal("refused", "too many commands wait; say it again", self.tick)
+
+    def _lessons(self, count: int) -> list[list[object]]:
+        rows: list[list[object]] = []
+        if count:
+            for record in reversed(self._runtime.level.system.lessons[-count:]):
+                origin = record.event.origin
+                stamp = self._stamp_of(origin.command_id)
+                rows.append(
+                    [
+                        origin.command_id,
+                        lesson_text(record.event),
+                        origin.teacher,
+                        int(origin.phase),
+                        origin.tick,
+                        stamp,
+                        record.undone,
+                    ]
+                )
+        return rows
+
+    def _world(self) -> Reply:
+        if self._ground is None:
+            return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+        view = self._ground.world()
+        body = {
+            "version": view.version,
+            "name": view.name,
+            "size": list(view.size_m),
+            "outline": [list(corner) for corner in view.outline],
+            "walls": [[wall.name, [list(corner) for corner in wall.corners]] for wall in view.walls],
+            "round": [list(post) for post in view.posts],
+        }
+        return Reply(Verdict.DONE, body)
+
+
+def command_of(device: str, command_id: str, request: CommandRequest) -> Command:
+    """The command that a request asks for."""
+    match request:
+        case BehaviourRequest(action=action, ticks=ticks):
+            return RunBehaviour(command_id, device, action, ticks)
+        case AnswerRequest(action=action, decision_tick=tick):
+            return Teach(command_id, device, action, tick)
+        case CorrectRequest(action=action, decision_tick=tick):
+            return Correct(command_id, device, action, tick)
+        case RewardRequest(value=value, decision_tick=tick):
+            return Reward(command_id, device, value, tick)
+        case ReplaceRequest(rla_id=rla_id, action=action):
+            return ReplaceAction(command_id, device, rla_id, action)
+        case DeleteRequest(rla_id=rla_id):
+            return DeleteRla(command_id, device, rla_id)
+        case UndoRequest(lesson=lesson):
+            return Undo(command_id, device, lesson)
+        case PhaseRequest(phase=phase):
+            return SetPhase(command_id, device, phase)
+        case SessionRequest(name=None):
+            return EndSession(command_id, device)
+        case SessionRequest(name=str(name)):
+            return BeginSession(command_id, device, name)
+        case ResumeRequest():
+            return Resume(command_id, device)
+        case TakeRequest():
+            return Take(command_id, device)
+        case ReleaseRequest(to=to):
+            return HandOver(command_id, device, to)
+    raise AssertionError(f"{request.path} is no command for the tick")
+
+
+def lesson_text(lesson: Lesson) -> str:
+    """A lesson in words."""
+    match lesson:
+        case RlaCreated(rla):
+            return f"RLA {rla.rla_id}: {rla.action}"
+        case ActionReplaced(rla_id, action, instead_of, _):
+            return f"RLA {rla_id}: {action} instead of {instead_of}"
+        case RlaDeleted(rla_id, _):
+            return f"RLA {rla_id} deleted"
+        case RlaRewarded(rla_id, value, _, _):
+            return f"RLA {rla_id} {'rewarded' if value > 0 else 'punished'}"

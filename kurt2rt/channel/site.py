@@ -1,0 +1,199 @@
+"""The robot's resources: everything but discovery is for teachers whose device has a key."""
+
+import asyncio
+from typing import Any, Protocol
+
+import aiocoap
+from aiocoap import oscore
+from aiocoap.error import RenderableError
+from aiocoap.numbers.constants import TransportTuning
+
+from kurt2rt.channel.reception import Reception
+from kurt2rt.channel.reply import Reply, Verdict, malformed
+from kurt2rt.channel.wire import CONTENT_FORMAT, PATHS, WireError, decode_request, encode_answer
+
+_CODES = {
+    Verdict.DONE: aiocoap.CHANGED,
+    Verdict.MALFORMED: aiocoap.BAD_REQUEST,
+    Verdict.NOT_HERE: aiocoap.NOT_FOUND,
+    Verdict.CONFLICT: aiocoap.CONFLICT,
+    Verdict.UNSAVED: aiocoap.SERVICE_UNAVAILABLE,
+}
+_STATE = "/state"
+_DISCOVERY = ("GET", "/.well-known/core")
+_LINK_FORMAT = 40
+_CONFIRMED_EVERY_S = 1.0
+_OBSERVE_MASK = 0xFFFFFF
+"""An Observe number has 24 bits (RFC 7641, 4.4); some clients refuse longer ones."""
+
+
+class _Loose(TransportTuning):  # type: ignore[misc]  # aiocoap has no types
+    """A picture: the next one is better than this one again."""
+
+    reliability = False
+
+
+class _Confirmed(TransportTuning):  # type: ignore[misc]
+    """Once a second, so that an observer who is gone is noticed."""
+
+    reliability = True
+    ACK_TIMEOUT = 0.3
+    MAX_RETRANSMIT = 3
+
+
+class Keys(Protocol):
+    """The robot's side of all pairings."""
+
+    def find(self, unprotected: Any) -> Any:
+        """The security context that a message names. Raises KeyError."""
+        ...
+
+
+class Doorkeeper(Protocol):
+    """Is told which senders are no strangers."""
+
+    def proved(self, remote: Any) -> None:
+        """This sender has just sent something that only a key holder can make."""
+        ...
+
+
+class _Observer:
+    """One who gets every picture; a slow one misses the older ones."""
+
+    def __init__(self) -> None:
+        self._next: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+
+    def show(self, picture: bytes) -> None:
+        if self._next.done():
+            self._next = asyncio.get_running_loop().create_future()
+        self._next.set_result(picture)
+
+    async def picture(self) -> bytes:
+        picture = await self._next
+        self._next = asyncio.get_running_loop().create_future()
+        return picture
+
+
+class RobotSite:
+    """Answers requests (what aiocoap calls a site). One place checks the key, for every path."""
+
+    def __init__(self, keys: Keys, reception: Reception) -> None:
+        self._keys = keys
+        self._reception = reception
+        self._observers: set[_Observer] = set()
+        self._picture = b""
+        self.doorkeeper: Doorkeeper | None = None
+        """To be set once the endpoint is open; before that nothing arrives."""
+        self.failures = 0
+        """Requests that ended in an error of ours; none should."""
+
+    @property
+    def observers(self) -> int:
+        """How many get the pictures."""
+        return len(self._observers)
+
+    def show(self, picture: bytes) -> None:
+        """A new encoded picture for everyone who looks."""
+        self._picture = picture
+        for observer in self._observers:
+            observer.show(picture)
+
+    async def render_to_pipe(self, pipe: Any) -> None:
+        """Answer one request; called by aiocoap in a task of its own."""
+        try:
+            unprotected = oscore.verify_start(pipe.request)
+        except oscore.NotAProtectedMessage:
+            pipe.add_response(_to_a_stranger(pipe.request), is_last=True)
+            return
+        except oscore.ProtectionInvalid:
+            return
+        try:
+            keys = self._keys.find(unprotected)
+            request, request_id = keys.unprotect(pipe.request)
+        except RenderableError as error:  # after a restart: prove that this message is new (RFC 8613, B.1.2)
+            pipe.add_response(error.to_message(), is_last=True)
+            return
+        except (KeyError, oscore.ProtectionInvalid):
+            # Silence, also to a confirmable message: a stranger learns nothing, and nothing is to be amplified.
+            return
+        if self.doorkeeper is not None:
+            self.doorkeeper.proved(pipe.request.remote)
+        number = int.from_bytes(request_id.partial_iv, "big")
+        device = keys.authenticated_claims[0]
+        if (request.code, path_of(request)) == (aiocoap.GET, _STATE):
+            await self._show_state(pipe, request, keys, request_id)
+            return
+        response = await self._respond(request, device, number)
+        pipe.add_response(_protected(keys, response, request_id), is_last=True)
+
+    async def _respond(self, request: Any, device: str, number: int) -> aiocoap.Message:
+        path = path_of(request)
+        if (str(request.code), path) == _DISCOVERY:
+            return _discovery()
+        if path not in PATHS:
+            return aiocoap.Message(code=aiocoap.NOT_FOUND)
+        if request.code != aiocoap.POST:
+            return aiocoap.Message(code=aiocoap.METHOD_NOT_ALLOWED)
+        try:
+            wanted = decode_request(path, request.payload)
+        except WireError as error:
+            return _message(malformed(str(error)))
+        try:
+            return _message(await self._reception.answer(device, number, wanted))
+        except Exception:  # noqa: BLE001 - whatever a key holder sends, the loop goes on; counted and shown
+            self.failures += 1
+            return aiocoap.Message(code=aiocoap.INTERNAL_SERVER_ERROR)
+
+    async def _show_state(self, pipe: Any, request: Any, keys: Any, request_id: Any) -> None:
+        if request.opt.observe != 0:
+            pipe.add_response(_protected(keys, _state(self._picture), request_id), is_last=True)
+            return
+        observer = _Observer()
+        self._observers.add(observer)
+        loop = asyncio.get_running_loop()
+        try:
+            confirm_at = loop.time()
+            picture = self._picture or await observer.picture()
+            while True:
+                message = _state(picture)
+                message.opt.observe = 0
+                message.transport_tuning = _Loose()
+                if loop.time() >= confirm_at:
+                    confirm_at = loop.time() + _CONFIRMED_EVERY_S
+                    message.transport_tuning = _Confirmed()
+                outer = _protected(keys, message, request_id)
+                outer.opt.observe = keys.sender_sequence_number & _OBSERVE_MASK
+                pipe.add_response(outer, is_last=False)
+                picture = await observer.picture()
+        finally:  # aiocoap cancels this task when the other side is gone
+            self._observers.discard(observer)
+
+
+def path_of(request: Any) -> str:
+    """The path that a request names."""
+    return "/" + "/".join(request.opt.uri_path)
+
+
+def _to_a_stranger(request: Any) -> aiocoap.Message:
+    if (str(request.code), path_of(request)) == _DISCOVERY:
+        return _discovery()
+    return aiocoap.Message(code=aiocoap.UNAUTHORIZED)
+
+
+def _discovery() -> aiocoap.Message:
+    links = ",".join([f"<{_STATE}>;obs;osc;ct={CONTENT_FORMAT}", *(f"<{path}>;osc" for path in PATHS)])
+    return aiocoap.Message(code=aiocoap.CONTENT, payload=links.encode(), content_format=_LINK_FORMAT)
+
+
+def _state(picture: bytes) -> aiocoap.Message:
+    return aiocoap.Message(code=aiocoap.CONTENT, payload=picture, content_format=CONTENT_FORMAT)
+
+
+def _message(reply: Reply) -> aiocoap.Message:
+    return aiocoap.Message(code=_CODES[reply.verdict], payload=encode_answer(reply.body), content_format=CONTENT_FORMAT)
+
+
+def _protected(keys: Any, message: aiocoap.Message, request_id: Any) -> aiocoap.Message:
+    outer, _ = keys.context_for_response().protect(message, request_id)
+    protected: aiocoap.Message = outer
+    return protected

@@ -1,0 +1,88 @@
+"""Makes the picture of the robot that its teachers get."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.state import State
+from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.question import FeatureDifference, ask
+from kurt2rt.tick import TickRecord
+
+_LATENESS_EVERY = 20
+"""Pictures; percentiles cost more than a picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Safekeeping:
+    """How lessons fare on the disk."""
+
+    unsaved: Callable[[], int]
+    trouble: Callable[[], str | None]
+    stamp_of: Callable[[str], str]
+    """When the lesson of a command became durable; empty before it is."""
+
+
+class Telling:
+    """Turns the record of a tick into the picture that teachers see."""
+
+    def __init__(
+        self,
+        runtime: Runtime,
+        boot: bytes,
+        safekeeping: Safekeeping,
+        bus_trouble: Callable[[], str],
+        ground: Ground | None,
+    ) -> None:
+        self._runtime = runtime
+        self._boot = boot
+        self._safekeeping = safekeeping
+        self._bus_trouble = bus_trouble
+        self._ground = ground
+        self._pictures = 0
+        self._late_p99_ms = 0.0
+
+    def picture(self, record: TickRecord) -> State:
+        """The robot after a tick."""
+        runtime, decision, match = self._runtime, record.decision, record.decision.match
+        school, system = runtime.school, runtime.level.system
+        if self._pictures % _LATENESS_EVERY == 0:
+            self._late_p99_ms = runtime.ledger.lateness().p99_us / 1000.0
+        self._pictures += 1
+        question: tuple[FeatureDifference, ...] = ()
+        if decision.asking and match is not None:
+            question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
+        nearest = None if match is None else match.rla
+        return State(
+            boot=self._boot,
+            tick=record.tick,
+            phase=int(school.phase),
+            infrared_counts=record.senses.infrared_counts,
+            infrared_age_s=record.senses.infrared_age_s,
+            bumpers=record.senses.bumpers,
+            left_m_s=record.grant.wheel_speeds.left_m_s,
+            right_m_s=record.grant.wheel_speeds.right_m_s,
+            cause=decision.cause.value,
+            action=decision.action,
+            rla=decision.rla_id,
+            nearest=None if nearest is None else nearest.rla_id,
+            nearest_action=None if nearest is None else nearest.action,
+            distance=float("inf") if match is None else match.distance,
+            radius=system.radius if match is None else match.radius,
+            taught_by="" if nearest is None else nearest.origin.teacher,
+            taught_at="" if nearest is None else self._safekeeping.stamp_of(nearest.origin.command_id),
+            question=question,
+            teacher=school.authority.teacher,
+            by_hand=school.authority.hand_on_wheel(record.tick),
+            stopped_because=school.stopped_because,
+            rlas=len(system),
+            lessons=system.standing_lessons,
+            unsaved=self._safekeeping.unsaved(),
+            session=school.session,
+            clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
+            guard=record.grant.reasons,
+            trouble=self._safekeeping.trouble() or self._bus_trouble(),
+            late_p99_ms=self._late_p99_ms,
+            missed_ticks=runtime.ledger.missed_ticks,
+            place=None if self._ground is None else self._ground.place(),
+        )

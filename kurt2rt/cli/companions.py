@@ -1,0 +1,43 @@
+"""Programs that run beside the robot's: the teacher's page, the scripted teacher."""
+
+import subprocess
+import sys
+from types import TracebackType
+from typing import Self
+
+_ENDING_S = 5.0
+
+
+class Companions:
+    """Starts kurt2rt commands as processes of their own and ends them with this one.
+
+    In sessions of their own, so that Ctrl-C reaches the robot first. Their standard input is a pipe from here: it ends
+    when this process is gone, however that came, and so do they.
+    """
+
+    def __init__(self, settings: str) -> None:
+        """`settings`: runtime settings, as given on the command line."""
+        self._settings = settings
+        self._processes: list[subprocess.Popen[bytes]] = []
+
+    def start(self, *words: str) -> None:
+        """Start `kurt2rt WORDS`."""
+        command = [sys.executable, "-m", "kurt2rt.cli.main", *words, "--settings", self._settings, "--while-stdin"]
+        self._processes.append(subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for process in self._processes:
+            assert process.stdin is not None
+            process.stdin.close()
+            process.terminate()
+        for process in self._processes:
+            try:
+                process.wait(_ENDING_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()

@@ -1,0 +1,111 @@
+"""What the service does after each tick, when the wheels have been told: watch, ask, acknowledge, save, tell."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from kurt2rt.channel.channel import Channel
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.runtime import Runtime
+from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.teaching.commands import Command
+from kurt2rt.teaching.question import Question, ask
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.quiet_gc import sweep
+
+Watcher = Callable[[TickRecord], Command | None]
+"""Sees each tick's record and may answer with a command, inside the robot's own program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """How the service stands, for the one who looks at it."""
+
+    record: TickRecord
+    runtime: Runtime
+    unsaved_lessons: int
+    trouble: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class Screen:
+    """What the service tells. Called from the loop: none of these may wait."""
+
+    status: Callable[[Status], None]
+    """Once per status period."""
+    question: Callable[[Question], None]
+    """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
+    settled: Callable[[Acknowledgement], None]
+    """A lesson is durable, or never can be, and why."""
+
+
+class Rounds:
+    """One round after each tick. Nothing here waits."""
+
+    def __init__(
+        self,
+        runtime: Runtime,
+        writer: JournalWriter,
+        stamps: dict[str, str],
+        service: ServiceSettings,
+        screen: Screen,
+        teacher: Watcher | None,
+        channel: Channel | None,
+    ) -> None:
+        """`stamps`: when each lesson was written, by command id; goes on here."""
+        self._runtime = runtime
+        self._writer = writer
+        self._stamps = stamps
+        self._screen = screen
+        self._teacher = teacher
+        self._channel = channel
+        period_s = runtime.robot.can.cycle_s
+        self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
+        self._status_ticks = round(service.status_period_s / period_s)
+        self._ticks_per_second = round(1 / period_s)
+        self._asking = False
+        self._asked_at = -self._ticks_per_second
+        self.last: Status | None = None
+        """The last status that was shown."""
+
+    def __call__(self, record: TickRecord) -> None:
+        """The round after one tick."""
+        runtime, writer, ticks = self._runtime, self._writer, self._runtime.ledger.ticks
+        if self._teacher is not None:
+            command = self._teacher(record)
+            if command is not None:
+                runtime.inbox.put(command)
+        if self._channel is not None:
+            self._channel.after_tick(record)
+        self._ask(record)
+        for acknowledgement in writer.acknowledged():
+            self.settled(acknowledgement)
+        if ticks % self._checkpoint_ticks == 0:
+            self.save_statistics()
+        if ticks % self._status_ticks == 0:
+            self.last = Status(record, runtime, writer.unwritten, writer.trouble)
+            self._screen.status(self.last)
+        if ticks % self._ticks_per_second == 0:
+            sweep()
+
+    def settled(self, acknowledgement: Acknowledgement) -> None:
+        """A lesson is durable, or never can be."""
+        if acknowledgement.stamped_at:
+            self._stamps[acknowledgement.command_id] = acknowledgement.stamped_at
+        if self._channel is not None:
+            self._channel.settled(acknowledgement)
+        self._screen.settled(acknowledgement)
+
+    def save_statistics(self) -> None:
+        """Hand the counts to the journal's thread."""
+        counted = self._runtime.statistics
+        self._writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
+
+    def _ask(self, record: TickRecord) -> None:
+        if not record.decision.asking:
+            self._asking = False
+        elif not self._asking and record.tick - self._asked_at >= self._ticks_per_second:
+            self._asking = True
+            self._asked_at = record.tick
+            weights, names = self._runtime.level.system.weights, self._runtime.definition.names
+            self._screen.question(ask(record.decision.match, record.situation.vector, weights, names))

@@ -1,0 +1,56 @@
+"""The simulated world for a teacher who looks at it from above and reaches into it (kurt2rt.channel.ground.Ground)."""
+
+from hal.robot_settings import GeometrySettings
+from kurt2rt.channel.ground import Post, Wall, WorldView
+from kurt2rt.channel.state import SimulatedPlace
+from simbridge.pose import Pose
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world_settings import WorldSettings
+
+
+class SimulatedGround:
+    """Reads what the simulation's thread writes, and hands changes to that thread."""
+
+    def __init__(
+        self, robot: SimulatedRobot, world: WorldSettings, geometry: GeometrySettings, simulation: RealtimeSimulation
+    ) -> None:
+        self._robot = robot
+        self._world = world
+        self._geometry = geometry
+        self._simulation = simulation
+        self._version = 0
+
+    def place(self) -> SimulatedPlace:
+        """Where the robot is."""
+        pose = self._robot.pose
+        return SimulatedPlace(
+            pose.x_m, pose.y_m, pose.heading_rad, self._robot.laps, self._robot.collisions, self._version
+        )
+
+    def world(self) -> WorldView:
+        """The world as it is as soon as the simulation has taken its next step."""
+        world = self._world
+        walls = [Wall(each.name, each.corners) for each in world.walls]
+        walls += [Wall(each.name, each.corners) for each in world.polygon_obstacles]
+        posts = [Post(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles]
+        return WorldView(self._version, world.name, world.size_m, world.outline, tuple(walls), tuple(posts))
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        """Shift a wall or obstacle; not onto the robot. Raises ValueError."""
+        try:
+            world = self._world.moved(name, dx_m, dy_m)
+        except KeyError as error:
+            raise ValueError(error.args[0]) from error
+        if world.clearance_m(self._robot.pose, self._geometry) == 0.0:
+            raise ValueError(f"{name} would stand where the robot is")
+        self._world = world
+        self._version += 1
+        self._simulation.ask(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        """Put the robot down elsewhere, wheels still. Raises ValueError."""
+        pose = Pose(x_m, y_m, heading_rad)
+        if self._world.clearance_m(pose, self._geometry) == 0.0:
+            raise ValueError("there is no room for the robot there")
+        self._simulation.ask(lambda: self._robot.place(pose))
