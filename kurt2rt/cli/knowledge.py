@@ -6,16 +6,29 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kurt2rt.knowledge import journal_file
+from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import render_knowledge
+from kurt2rt.knowledge.show import render_knowledge, render_lessons
+from kurt2rt.knowledge.undo import undo_lesson
+from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.rla.lesson_book import lesson_text
 
 knowledge = typer.Typer(
-    help="Look after what the robot was taught. Reads the file also while a robot runs on it; changes nothing.",
+    help="Look after what the robot was taught. Only undo changes the file, and only while no robot runs on it; "
+    "the others read it also while one does.",
     no_args_is_help=True,
 )
 _WIDE = 140
+_TEACHER = "command line"
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+
+
+def _console() -> Console:
+    console = Console()
+    # Into a file or a pager a table goes at its full width.
+    return console if console.is_terminal else Console(width=_WIDE)
 
 
 @knowledge.command()
@@ -25,10 +38,18 @@ def show(
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
-        console = Console()
-        if not console.is_terminal:
-            console = Console(width=_WIDE)  # into a file or a pager the table goes at its full width
+        console = _console()
         console.print(render_knowledge(journal, limit, wide=console.width >= _WIDE))
+
+
+@knowledge.command()
+def lessons(
+    file: KnowledgeFile,
+    limit: Annotated[int, typer.Option(min=1, help="Show only the newest so many lessons.")] = 20,
+) -> None:
+    """List the lessons, newest first, with their ids and who undid them."""
+    with Journal.read_only(file) as journal:
+        _console().print(render_lessons(journal, limit))
 
 
 @knowledge.command()
@@ -41,3 +62,29 @@ def check(file: KnowledgeFile) -> None:
     if faults:
         raise typer.Exit(1)
     typer.echo(f"{file}: every lesson can be read and fits")
+
+
+@knowledge.command()
+def undo(
+    file: KnowledgeFile,
+    lesson: Annotated[
+        str | None,
+        typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the last one that stands."),
+    ] = None,
+) -> None:
+    """Take a lesson back: what it made, changed, ended or rewarded is as it was before."""
+    undone = undo_lesson(file, lesson, teacher=_TEACHER, stamp=utc_now()).event
+    by = f"lesson {undone.origin.command_id} by {undone.origin.teacher}"
+    Console(highlight=False).print(f"{file}: undone: {lesson_text(undone)} ({by})", markup=False, soft_wrap=True)
+
+
+@knowledge.command()
+def export(
+    file: KnowledgeFile,
+    out: Annotated[Path, typer.Option(help="Folder for the table; made where it is missing.")] = Path("results/export"),
+) -> None:
+    """Write the RLAs as a table (CSV): one row each, with its condition, who taught it and how it was used."""
+    journal_file.require_ours(file)
+    saved = export_table(file, out, utc_now())
+    Console(highlight=False).print(f"table  {out / saved.name}", markup=False, soft_wrap=True)
+    Console(highlight=False).print(f"sha256  {saved.sha256}", markup=False, soft_wrap=True)

@@ -3,7 +3,7 @@
 import os
 import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
@@ -53,13 +53,24 @@ class Journal:
 
     @classmethod
     def read_only(cls, path: Path) -> Self:
-        """Open to look at it, also while a robot writes it. What is read then may be a lesson behind."""
+        """Open to look at it, also while another process writes it. What is read then may be a lesson behind."""
         path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
+        return cls.beside_its_writer(path)
+
+    @classmethod
+    def beside_its_writer(cls, path: Path) -> Self:
+        """Open to look at a file that this very process may be writing.
+
+        Nothing but SQLite opens it here: closing a handle that SQLite does not know of would silently drop the locks
+        of the writer, and another program could then take its log away.
+        """
+        path = Path(os.path.realpath(path))
         # Beside a file in a folder that may not be written SQLite cannot put its log; without a log, none is needed.
         quiet = not os.access(path.parent, os.W_OK) and not journal_file.is_there(journal_file.log_of(path))
         connection = journal_file.connect(path, "mode=ro&immutable=1" if quiet else "mode=ro")
         try:
+            journal_file.require_our_mark(connection, path)
             return cls(path, connection)
         except BaseException:
             connection.close()
@@ -98,6 +109,15 @@ class Journal:
     def events(self) -> list[TeachingEvent]:
         """All teaching events in order: what an RLA system is the fold of."""
         return [entry.event for entry in self.entries()]
+
+    def image(self) -> bytes:
+        """All of the file as it stands at one moment, SQLite's log folded in, as bytes that are a file by themselves.
+
+        Does not keep the one who writes it waiting.
+        """
+        with self._reading(), closing(sqlite3.connect(":memory:")) as copy:
+            self._connection.backup(copy)
+            return journal_file.without_log(copy.serialize())
 
     def checkpoint(self, statistics: Statistics) -> None:
         """Replace the statistics, in one transaction. Only rows that changed are written, to spare the flash disk."""

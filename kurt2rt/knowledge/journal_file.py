@@ -23,6 +23,7 @@ BUSY_TIMEOUT_S = 0.2
 _MAGIC = b"SQLite format 3\x00"
 _HEADER_BYTES = 100
 _APPLICATION_ID_AT = 68
+_LOG_VERSIONS_AT = slice(18, 20)
 
 _SCHEMA = f"""
 PRAGMA application_id = {APPLICATION_ID};
@@ -131,6 +132,23 @@ def require_ours(path: Path) -> None:
         raise KnowledgeError(f"{path}: is not a knowledge file (no SQLite file); {what_to_do}")
     if int.from_bytes(header[_APPLICATION_ID_AT : _APPLICATION_ID_AT + 4], "big") != APPLICATION_ID:
         raise KnowledgeError(f"{path}: is an SQLite file of another program; {what_to_do}")
+
+
+def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
+    """Ask SQLite whose file it is. Raises KnowledgeError if it is no knowledge file."""
+    try:
+        (application_id,) = connection.execute("PRAGMA application_id").fetchone()
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    if application_id != APPLICATION_ID:
+        raise KnowledgeError(f"{path}: is an SQLite file of another program; give the path of a kurt2rt knowledge file")
+
+
+def without_log(image: bytes) -> bytes:
+    """The same database, marked as one that has no write-ahead log beside it (SQLite's file format, offset 18)."""
+    header = bytearray(image[:_HEADER_BYTES])
+    header[_LOG_VERSIONS_AT] = b"\x01\x01"
+    return bytes(header) + image[_HEADER_BYTES:]
 
 
 def connect(path: Path, options: str) -> sqlite3.Connection:

@@ -7,10 +7,10 @@ from rich.console import Console, RenderableType
 
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import render_knowledge
+from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics, follow_ups
 from kurt2rt.rla.rla import TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced
+from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced, rewarded, session, undone
 
 
 def printed(what: RenderableType) -> list[str]:
@@ -53,6 +53,58 @@ def test_every_rla_is_shown_with_who_taught_it_when_and_instead_of_what(path: Pa
         "2 (75 %), 1 (25 %)",
     ]
     assert second[:7] == ["2", "left", "forward", when, "2", "200", "7"]
+
+
+def test_rewards_undone_lessons_and_sessions_are_shown(path: Path) -> None:
+    events: list[TeachingEvent] = [
+        *session(6000, "morning"),
+        *(created(number) for number in (1, 2, 3, 4)),
+        rewarded(1, -1, "blame"),
+        *(rewarded(1, 1, f"praise-{number}") for number in range(3)),
+        rewarded(2, -1),
+        *session(1234, "evening"),
+        deleted(3),
+        undone("praise-2"),
+        undone("delete-3", teacher="Ann"),
+        undone("create-4"),
+    ]
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        lines = printed(render_knowledge(journal))
+
+    assert lines[1].startswith(
+        "3 RLAs from 10 lessons (0 corrections, 1 deletions, 5 rewards, 3 undone by Ann, Joachim) by Hertha, "
+    )
+    assert lines[1].endswith("; 2 sessions, 1 min 12 s of teaching")
+    assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]
+
+
+def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in (created(1, action="spin_right"), rewarded(1))])
+        console = Console(width=80, color_system=None)
+        with console.capture() as capture:
+            console.print(render_knowledge(journal, wide=False))
+
+    lines = capture.get().splitlines()
+    assert max(len(line) for line in lines) <= 80
+    assert (
+        " ".join(lines[lines.index(" " * 80) + 2].split()) == "RLA action instead of (UTC), by phase tick uses rewards"
+    )
+    (row,) = rows(lines)
+    assert (row[1], row[-1]) == ("spin_right", "+1")
+
+
+def test_lessons_are_listed_newest_first_with_their_ids_and_who_undid_them(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        events = (created(1), replaced(1, "left", "forward"), *session(10), created(2), undone("create-2"))
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        lines = [re.split(r"\s{2,}", line.strip()) for line in printed(render_lessons(journal, limit=2))]
+
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    assert ["RLA 2 taught: forward", "create-2", when, "Joachim"] in lines
+    assert ["RLA 1 corrected: left instead of forward", "replace-1-left", when] in lines
+    assert lines[-1] == ["and 1 older lessons"]
 
 
 def test_the_rest_is_counted_where_a_limit_is_given(path: Path) -> None:

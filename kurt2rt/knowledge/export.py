@@ -1,0 +1,51 @@
+"""The RLAs that stand as a table for spreadsheets and scripts: one row each, comma-separated."""
+
+import csv
+import io
+import math
+from pathlib import Path
+
+from kurt2rt.knowledge.fold import fold_entries
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.saved_copy import SavedCopy, plain_part, save_whole, stamp_part
+
+_COLUMNS = ("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "uses", "rewards", "punishments")
+
+
+def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
+    """Save `<task>-<stamp>-rlas.csv`: a row per RLA, oldest first, with a column per feature of its condition.
+
+    An empty radius is that of the system. Numbers are exact. UTF-8. Waits and raises as `save_copy`.
+    """
+    with Journal.beside_its_writer(journal_path) as journal:
+        task = journal.binding.system
+        content = _table(journal).encode()
+    return save_whole(content, folder, (plain_part(task), stamp_part(stamp), "rlas"), ".csv")
+
+
+def _table(journal: Journal) -> str:
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    entries = journal.entries()
+    system = fold_entries(journal, entries, radius=math.inf)
+    uses = journal.statistics().uses
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    text = io.StringIO(newline="")
+    table = csv.writer(text)
+    table.writerow((*_COLUMNS, *journal.binding.feature_names))
+    for rla in system.rlas:
+        origin = rla.origin
+        table.writerow(
+            (
+                rla.rla_id,
+                rla.action,
+                rla.radius,
+                origin.teacher,
+                origin.phase.value,
+                origin.tick,
+                stamps[origin.command_id],
+                uses.get(rla.rla_id, 0),
+                *system.appraisal(rla.rla_id),
+                *rla.condition,
+            )
+        )
+    return text.getvalue()

@@ -1,0 +1,67 @@
+"""The RLAs as a table."""
+
+import csv
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.export import export_table
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import RlaCreated, TeachingEvent
+from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced, rewarded, undone
+
+LATER = "2004-04-27T08:00:00.000+00:00"
+
+
+def exported(path: Path, folder: Path) -> list[list[str]]:
+    saved = export_table(path, folder, STAMP)
+    assert saved.name == "wall-following-20040426T100000-rlas.csv"
+    content = (folder / saved.name).read_bytes()
+    assert (saved.sha256, saved.size_bytes) == (hashlib.sha256(content).hexdigest(), len(content))
+    with (folder / saved.name).open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+def test_a_row_for_each_rla_that_stands(path: Path, tmp_path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        events: list[TeachingEvent] = [
+            *(created(number) for number in (1, 2, 3, 4)),
+            rewarded(1, 1, "r1"),
+            rewarded(1, 1, "r2"),
+            rewarded(1, -1, "r3"),
+            deleted(3),
+            undone("create-4"),
+        ]
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
+        journal.checkpoint(Statistics({1: 41, 3: 7}))
+        heading, *rows = exported(path, tmp_path / "out")  # while it is written
+
+    assert heading == [
+        *("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "uses", "rewards", "punishments"),
+        *("s1", "s2", "maximum front", "wheel speed left"),
+    ]
+    assert rows == [
+        ["1", "forward", "", "Hertha", "1", "1", STAMP, "41", "2", "1", "0.3333333333333333", "0.1", "81.0", "-5.0"],
+        ["2", "left", "", "Hertha", "2", "200", LATER, "0", "0", "0", "0.6666666666666666", "0.2", "82.0", "-5.0"],
+    ]
+
+
+def test_numbers_and_names_come_back_exactly(path: Path, tmp_path: Path) -> None:
+    condition = (0.1 + 0.2, 1 / 3, -0.0, 5e-324)
+    rla = replace(created(1).rla, condition=condition, action='left, "hard"\n;', radius=1e300)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    (_, row) = exported(path, tmp_path)
+
+    assert (row[1], float(row[2])) == (rla.action, rla.radius)
+    assert tuple(float(number) for number in row[10:]) == condition
+    assert row[12] == "-0.0"
+
+
+def test_where_nothing_was_taught_there_is_a_heading(path: Path, tmp_path: Path) -> None:
+    Journal.open(path, BINDING).close()
+
+    assert len(exported(path, tmp_path)) == 1
