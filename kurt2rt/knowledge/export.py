@@ -7,6 +7,7 @@ from pathlib import Path
 
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.saved_copy import SavedCopy, plain_part, save_whole, stamp_part
 
 _COLUMNS = ("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "uses", "rewards", "punishments")
@@ -25,14 +26,14 @@ def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
 
 def _table(journal: Journal) -> str:
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = journal.entries()
-    system = fold_entries(journal, entries, radius=math.inf)
+    entries = list(politely(journal.each_entry()))
+    system = fold_entries(journal, politely(entries), radius=math.inf)
     uses = journal.statistics().uses
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     text = io.StringIO(newline="")
     table = csv.writer(text)
     table.writerow((*_COLUMNS, *journal.binding.feature_names))
-    for rla in system.rlas:
+    for rla in politely(system.rlas):
         origin = rla.origin
         table.writerow(
             (

@@ -103,8 +103,13 @@ class Journal:
 
     def entries(self) -> list[StoredEntry]:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
+        return list(self.each_entry())
+
+    def each_entry(self) -> Iterator[StoredEntry]:
+        """The same one by one, all of one moment. Raises as `entries`."""
         with self._reading():
-            return [read_row(row, self._where(row)) for row in self._connection.execute(_ROWS)]
+            for row in self._connection.execute(_ROWS):
+                yield read_row(row, self._where(row))
 
     def events(self) -> list[TeachingEvent]:
         """All teaching events in order: what an RLA system is the fold of."""
