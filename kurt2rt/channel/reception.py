@@ -33,8 +33,8 @@ from kurt2rt.channel.requests import (
     UndoRequest,
     WorldRequest,
 )
-from kurt2rt.knowledge.copy import SavedCopy
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.rla.rla import (
     ActionReplaced,
     Lesson,
@@ -96,6 +96,8 @@ class Reception:
         stamp_of: Callable[[str], str],
         copies: Copies,
         ground: Ground | None,
+        *,
+        longest_wait_s: float = LONGEST_WAIT_S,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing."""
         self._runtime = runtime
@@ -104,6 +106,7 @@ class Reception:
         self._stamp_of = stamp_of
         self._copies = copies
         self._ground = ground
+        self._longest_wait_s = longest_wait_s
         self._outcomes = Outcomes()
         self._newest: dict[str, int] = {}
         self._under_way: set[asyncio.Task[None]] = set()
@@ -120,7 +123,7 @@ class Reception:
             case StreamRequest():
                 return self._stream(device, number, request)
             case StopRequest(command_id=identity):
-                return await self._stop(device, f"{device}-{identity.hex()}")
+                return await self._stop(device, number, f"{device}-{identity.hex()}")
             case CommandRequest():
                 return await self._command(device, request)
             case HelloRequest():
@@ -150,11 +153,14 @@ class Reception:
             return refusal("stopped", ended, tick)
         return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
 
-    async def _stop(self, device: str, command_id: str) -> Reply:
+    async def _stop(self, device: str, number: int, command_id: str) -> Reply:
+        # What of a press was sent before the stop and comes after it is over, too.
+        self._newest[device] = max(number, self._newest.get(device, -1))
         # Each copy stops again, whatever came of the one before: the robot may have been told to drive meanwhile.
         if not self._hand_in(Stop(command_id, device)):
             return self._too_many()
-        return await (self._outcomes.get(command_id) or self._outcomes.begin(command_id))
+        # Shielded: the end of one copy's request must not end what the next copy waits for.
+        return await asyncio.shield(self._outcomes.get(command_id) or self._outcomes.begin(command_id))
 
     async def _command(self, device: str, request: CommandRequest) -> Reply:
         command_id = f"{device}-{request.command_id.hex()}"
@@ -172,7 +178,7 @@ class Reception:
             waiting = self._outcomes.get(command_id)
             assert waiting is not None
         try:
-            return await asyncio.wait_for(asyncio.shield(waiting), LONGEST_WAIT_S)
+            return await asyncio.wait_for(asyncio.shield(waiting), self._longest_wait_s)
         except TimeoutError:
             return unsaved("not saved yet; it may still count: look at the lessons", self.tick)
 
