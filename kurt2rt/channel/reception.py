@@ -35,13 +35,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
-from kurt2rt.rla.rla import (
-    ActionReplaced,
-    Lesson,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-)
+from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
     BeginSession,
@@ -317,16 +311,3 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
         case ReleaseRequest(to=to):
             return HandOver(command_id, device, to)
     raise AssertionError(f"{request.path} is no command for the tick")
-
-
-def lesson_text(lesson: Lesson) -> str:
-    """A lesson in words."""
-    match lesson:
-        case RlaCreated(rla):
-            return f"RLA {rla.rla_id}: {rla.action}"
-        case ActionReplaced(rla_id, action, instead_of, _):
-            return f"RLA {rla_id}: {action} instead of {instead_of}"
-        case RlaDeleted(rla_id, _):
-            return f"RLA {rla_id} deleted"
-        case RlaRewarded(rla_id, value, _, _):
-            return f"RLA {rla_id} {'rewarded' if value > 0 else 'punished'}"

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
+from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.rla.rla import (
     ActionReplaced,
     LessonUndone,
@@ -70,7 +71,7 @@ class School:
         self.phase = Phase.SUPERVISED
         self.stopped_because = ""
         """Empty while nobody stopped the robot."""
-        self._stopped_by: str | None = None
+        self._stopped_by: set[str] = set()
         self.corrections = 0
         self.session: str | None = None
         """Name of the session that is on."""
@@ -82,10 +83,14 @@ class School:
         return command_id in self._taken
 
     def stop(self, because: str, by: str | None = None) -> None:
-        """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not."""
+        """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
+
+        Stopped by two, neither may: a late copy of one's stop must not lift the other's.
+        """
         self.authority.end_hand()
         self.stopped_because = because
-        self._stopped_by = by
+        if by is not None:
+            self._stopped_by.add(by)
 
     def teaching_ticks(self, tick: int) -> int:
         """How long the session that is on has lasted at `tick`, or how long the last one did."""
@@ -115,7 +120,7 @@ class School:
         authority.drive(command, tick)
         # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
         self.stopped_because = f"{command.teacher} drove by hand and let go"
-        self._stopped_by = command.teacher
+        self._stopped_by = {command.teacher}
         return None
 
     def why_not_by_hand(self, command: Watch | Drive) -> str | None:
@@ -158,7 +163,8 @@ class School:
                 authority.hand_over(to)
                 return "nobody teaches now" if to is None else f"{to} teaches now", None
             case Resume():
-                self.stopped_because, self._stopped_by = "", None
+                self.stopped_because = ""
+                self._stopped_by.clear()
                 authority.end_hand()
                 return "the robot may drive", None
             case SetPhase():
@@ -209,6 +215,8 @@ class School:
         meant = situation.vector
         if command.decision_tick is not None:
             self._require_known(command.decision_tick)
+            if not self.recent.saw(command.decision_tick):
+                raise _RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
             meant = self.recent.situation(command.decision_tick)
         # On the very condition of an RLA a second one would never win: the older one does.
         replace_within_share = 0.0
@@ -244,7 +252,7 @@ class School:
     def _reward(self, command: Reward, tick: int) -> tuple[str, TeachingEvent]:
         meant = command.decision_tick
         if meant is None:
-            meant = tick - 1
+            meant = self.recent.newest  # not the tick before this one, which may have been missed
         self._require_known(meant)
         rla_id = self.recent.rla(meant)
         if rla_id is None:
@@ -257,7 +265,11 @@ class School:
         lesson = command.lesson or self._level.system.last_standing_lesson
         if lesson is None:
             raise _RefusedError("there is no lesson to undo")
-        return "undone", LessonUndone(lesson, self._origin(command, tick))
+        why_not = self._level.system.why_not_undo(lesson)
+        self._refuse(why_not)
+        record = self._level.system.lesson(lesson)
+        assert record is not None
+        return f"undone: {lesson_text(record.event)}", LessonUndone(lesson, self._origin(command, tick))
 
     def _require_action(self, action: str) -> None:
         if action not in self._level.repertoire:
@@ -275,9 +287,8 @@ class School:
             raise _RefusedError(f"the decision of tick {tick} is not remembered any more; look at the newest picture")
 
     def _stopped_by_another(self, teacher: str) -> str | None:
-        if self._stopped_by in (None, teacher):
-            return None
-        return f"{self._stopped_by} stopped the robot; say resume first"
+        others = sorted(self._stopped_by - {teacher})
+        return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
 
     def _refuse(self, reason: str | None) -> None:
         if reason is not None:
