@@ -155,10 +155,11 @@ class _NoTags(Mapping[int, Any]):
         return 0
 
 
-def decode_strictly(payload: bytes, *, most_bytes: int, most_depth: int) -> Any:
-    """One CBOR item: null, bool, int, float, text, bytes, and lists and maps (with text keys, each once) of these.
+def decode_strictly(payload: bytes, *, most_bytes: int, most_depth: int, text_keys: bool = True) -> Any:
+    """One CBOR item: null, bool, int, float, text, bytes, and lists and maps of these, each key once.
 
-    Tags, indefinite lengths, further bytes behind it and nesting beyond `most_depth` are refused. Raises WireError.
+    Tags, indefinite lengths, further bytes behind it and nesting beyond `most_depth` are refused; keys that are neither
+    text nor bytes only where `text_keys` says so. Raises WireError.
     """
     if len(payload) > most_bytes:
         raise WireError(f"{len(payload)} bytes are too many; {most_bytes} are taken")
@@ -169,7 +170,7 @@ def decode_strictly(payload: bytes, *, most_bytes: int, most_depth: int) -> Any:
         max_depth=most_depth,
         allow_indefinite=False,
         allow_duplicate_keys=False,
-        strict_hashable_types=True,
+        strict_hashable_types=text_keys,
     )
     try:
         item = decoder.decode()

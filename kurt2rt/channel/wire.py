@@ -77,7 +77,8 @@ def encode_answer(answer: Mapping[str, Any]) -> bytes:
 
 def decode_answer(payload: bytes) -> dict[str, Any]:
     """An answer's map. Raises WireError."""
-    answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH)
+    # Keys that are numbers cannot hurt here: an answer comes from the robot, and phases have numbers.
+    answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH, text_keys=False)
     if not isinstance(answer, dict) or not all(isinstance(key, str) for key in answer):
         raise WireError("an answer has to be a map with text keys")
     return answer

@@ -253,10 +253,12 @@ def test_a_newer_robot_may_tell_more_but_not_less() -> None:
 
 
 def test_an_answer_is_a_map() -> None:
-    answer = {"t": 12, "ok": True, "text": "RLA 7 taught: forward"}
+    answer = {"t": 12, "ok": True, "text": "RLA 7 taught: forward", "phases": {1: "supervised"}}
     assert decode_answer(encode_answer(answer)) == answer
     with pytest.raises(WireError, match="a map"):
         decode_answer(b"\x80")
+    with pytest.raises(WireError, match="a map with text keys"):
+        decode_answer(cbor2.dumps({1: 2}))
 
 
 def test_rows_and_lists_count_what_they_hold() -> None:

@@ -1,0 +1,183 @@
+"""The teacher's presence and the hand at the wheels: a stream of small messages of which the newest counts."""
+
+import itertools
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from kurt2rt.channel.requests import DriveRequest, WatchRequest
+from kurt2rt.channel.state import State
+from kurt2rt.channel.wire import WireError, decode_answer, encode_request
+from kurt2rt.teaching.answer import answer_of
+from kurt2rt.teaching.link import LinkMeter
+from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response
+from kurt2rt.teaching.pictures import Pictures
+
+BEAT_S = 0.03
+"""Between two messages. The robot lets go of the wheels 0.3 s after the last one that it took."""
+BLIND_AFTER_S = 0.5
+"""Nothing is sent on a picture that came longer ago than this."""
+_FORGOTTEN_AFTER_S = 1.0
+"""An answer that comes later is none."""
+
+
+@dataclass(slots=True)
+class _Press:
+    hold: int
+    boot: bytes
+    left_m_s: float
+    right_m_s: float
+    taken: int = -1
+    """Largest sequence number that the robot took."""
+
+
+@dataclass(slots=True)
+class _Sent:
+    seq: int
+    at_s: float
+    press: _Press | None
+    exchange: Exchange | None = None
+    answered: bool = False
+
+
+class Hand:
+    """Says that the teacher is there while he is in charge and watches, and drives while a press is on."""
+
+    def __init__(
+        self,
+        name: str,
+        pictures: Pictures,
+        requests: OscoreRequests,
+        *,
+        now: Callable[[], float],
+        first_number: int,
+    ) -> None:
+        """`name` is the teacher's; `now` is a monotonic clock in seconds.
+
+        `first_number` of presses and messages has to be larger than any that this device used before.
+        """
+        self.watching = True
+        """Whether the teacher looks at the robot."""
+        self.refused = ""
+        """Why the last press was not begun, or ended by itself; empty while all is well."""
+        self.meter = LinkMeter()
+        self._name = name
+        self._pictures = pictures
+        self._requests = requests
+        self._now = now
+        self._numbers = itertools.count(first_number)
+        self._press: _Press | None = None
+        self._under_way: deque[_Sent] = deque()
+
+    @property
+    def pressing(self) -> bool:
+        """Whether a press is on."""
+        return self._press is not None
+
+    @property
+    def hold(self) -> int | None:
+        """Number of the press that is on."""
+        return None if self._press is None else self._press.hold
+
+    def press(self, left_m_s: float, right_m_s: float) -> bool:
+        """Begin a press, or change the speeds of the one that is on; whether one is on now.
+
+        Raises WireError for speeds that no robot takes.
+        """
+        state = self._fresh_picture()
+        if state is None:
+            self.end("no picture of the robot: nothing is sent to it")
+            return False
+        press = self._press
+        begins = press is None
+        if press is None:
+            press = _Press(next(self._numbers), state.boot, left_m_s, right_m_s)
+        encode_request(_drive(press, state, 0, left_m_s, right_m_s))
+        press.left_m_s, press.right_m_s = left_m_s, right_m_s
+        if begins:
+            self.refused = ""
+            self._press = press
+            self.beat()
+        return self.pressing
+
+    def end(self, because: str = "") -> None:
+        """End the press; nothing more of it is sent. `because` is for one that ends by itself."""
+        self._press = None
+        self.refused = because
+
+    def beat(self) -> None:
+        """Send what is due; call it every BEAT_S."""
+        self._forget_old_ones()
+        state = self._fresh_picture()
+        press = self._press
+        if press is None:
+            if state is not None and self.watching and state.teacher == self._name:
+                self._send_watch(state)
+        elif state is None:
+            self.end("no picture of the robot: the press is over")
+        elif state.boot != press.boot:
+            self.end("the robot program was started anew: the press is over")
+        else:
+            self._send_drive(state, press)
+
+    def forget(self) -> None:
+        """End the press, and wait for no answer any more."""
+        self.end(self.refused)
+        while self._under_way:
+            self._end_exchange(self._under_way.popleft())
+
+    def _fresh_picture(self) -> State | None:
+        return self._pictures.newest if self._pictures.age_s <= BLIND_AFTER_S else None
+
+    def _send_watch(self, state: State) -> None:
+        seq = next(self._numbers)
+        request = WatchRequest(boot=state.boot, seq=seq, seen=state.tick)
+        self._send(_Sent(seq, self._now(), None), request.path, encode_request(request))
+
+    def _send_drive(self, state: State, press: _Press) -> None:
+        seq = next(self._numbers)
+        request = _drive(press, state, seq, press.left_m_s, press.right_m_s)
+        self._send(_Sent(seq, self._now(), press), request.path, encode_request(request))
+
+    def _send(self, sent: _Sent, path: str, payload: bytes) -> None:
+        self._under_way.append(sent)
+        sent.exchange = self._requests.post(path, payload, partial(self._on_response, sent))
+
+    def _on_response(self, sent: _Sent, response: Response) -> None:
+        sent.answered = True
+        self.meter.answer(self._now() - sent.at_s)
+        press = sent.press
+        if press is None or press is not self._press:
+            return
+        if response.successful:
+            press.taken = max(press.taken, sent.seq)
+            return
+        # One that was late on its way is refused, too; the press goes on while newer ones are taken.
+        if sent.seq < press.taken:
+            return
+        try:
+            answer = answer_of(response.code, decode_answer(response.payload) if response.payload else {})
+        except WireError as error:
+            self.end(f"the robot refused to be driven: {error}")
+            return
+        if answer.why != "old":
+            self.end(answer.text or answer.why)
+
+    def _forget_old_ones(self) -> None:
+        before_s = self._now() - _FORGOTTEN_AFTER_S
+        while self._under_way and (self._under_way[0].answered or self._under_way[0].at_s < before_s):
+            sent = self._under_way.popleft()
+            if not sent.answered:
+                self.meter.silence()
+            self._end_exchange(sent)
+
+    def _end_exchange(self, sent: _Sent) -> None:
+        if sent.exchange is not None:
+            sent.exchange.end()
+
+
+def _drive(press: _Press, state: State, seq: int, left_m_s: float, right_m_s: float) -> DriveRequest:
+    return DriveRequest(
+        boot=press.boot, seq=seq, seen=state.tick, hold=press.hold, left_m_s=left_m_s, right_m_s=right_m_s
+    )

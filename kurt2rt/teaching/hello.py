@@ -1,0 +1,76 @@
+"""What robot this is, for a teacher's device that has never seen it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER
+from kurt2rt.channel.schema import Flag, ManyOf, Octets, Real, Row, Text, Whole, WireError
+
+_NAME = Text(64)
+_METRES = Real(1000.0, "m")
+_VERSION = Whole(1, 1)
+_NUMBER = Whole(0, LARGEST_NUMBER)
+_BOOT = Octets(BOOT_BYTES)
+_SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))), most=64)
+_OUTLINE = Row((_METRES, _METRES))
+
+
+class SensorPlace(NamedTuple):
+    """Where an infra-red sensor sits and looks, in the robot's frame: x forward, y to the left."""
+
+    name: str
+    label: str
+    x_m: float
+    y_m: float
+    heading_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Hello:
+    """The robot introduces itself."""
+
+    version: int
+    """Of the wire contract."""
+    boot: bytes
+    tick: int
+    robot: str
+    task: str
+    radius: float
+    """R of the RLA system."""
+    period_s: float
+    """Of a tick."""
+    actions: tuple[str, ...]
+    """The repertoire."""
+    sensors: tuple[SensorPlace, ...]
+    outline: tuple[float, float]
+    """Length and width of the robot in metres."""
+    max_m_s: float
+    simulated: bool
+    phases: tuple[str, ...]
+    """Names of the training phases; the first one's number is 1."""
+
+
+def hello_of(body: Mapping[str, Any]) -> Hello:
+    """The introduction in a decoded body. Raises WireError."""
+    try:
+        phases = body["phases"]
+        if not isinstance(phases, Mapping) or set(phases) != set(range(1, len(phases) + 1)):
+            raise WireError("phases have to be a map from 1, 2, 3 ... to names")
+        return Hello(
+            version=_VERSION("version of the wire contract", body["v"]),
+            boot=_BOOT("boot", body["boot"]),
+            tick=_NUMBER("tick", body["tick"]),
+            robot=_NAME("robot", body["robot"]),
+            task=_NAME("task", body["task"]),
+            radius=Real(1e9)("radius", body["radius"]),
+            period_s=Real(10.0, "s")("period_s", body["period_s"]),
+            actions=ManyOf(_NAME, most=256)("actions", body["actions"]),
+            sensors=tuple(SensorPlace(*each) for each in _SENSORS("sensors", body["sensors"])),
+            outline=_OUTLINE("outline", body["outline"]),
+            max_m_s=Real(10.0, "m/s")("max_m_s", body["max_m_s"]),
+            simulated=Flag()("simulated", body["simulated"]),
+            phases=ManyOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
+        )
+    except KeyError as error:
+        raise WireError(f"the robot's introduction has no {error}") from error

@@ -1,0 +1,712 @@
+"""A teacher's device over real sockets and real keys, against a robot whose mind is the test's."""
+
+import asyncio
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import AsyncExitStack, asynccontextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import cast
+
+import anyio
+import pytest
+
+import kurt2rt.teaching
+from kurt2rt.channel.credentials import Pairing, pair
+from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    DriveRequest,
+    ExportRequest,
+    HelloRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    PhaseRequest,
+    PlaceRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    Request,
+    ResumeRequest,
+    RewardRequest,
+    SaveRequest,
+    SessionRequest,
+    StopRequest,
+    TakeRequest,
+    UndoRequest,
+    WatchRequest,
+    WorldRequest,
+)
+from kurt2rt.channel.wire import WireError
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.lesson_line import LessonLine
+from tests.channel.lossy_link import LossyLink, Weather
+from tests.teaching.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
+
+HELLO = {
+    "v": 1,
+    "boot": b"boot",
+    "tick": 7,
+    "robot": "kurt2-indoor",
+    "task": "wall_following",
+    "radius": 700.0,
+    "period_s": 0.01,
+    "actions": ["forward", "spin_left"],
+    "sensors": [["front", "F", 0.2, 0.0, 0.0]],
+    "outline": [0.434, 0.33],
+    "max_m_s": 0.6,
+    "simulated": True,
+    "phases": {1: "supervised", 2: "corrections"},
+}
+
+
+class Clock:
+    """A clock that can be put forward."""
+
+    def __init__(self) -> None:
+        self.ahead_s = 0.0
+
+    def __call__(self) -> float:
+        return time.monotonic() + self.ahead_s
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+@pytest.fixture
+async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
+    async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
+        yield robot
+
+
+@pytest.fixture
+async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[TeacherClient]:
+    async with in_a_task_of_its_own(TeacherClient(pairing.device.folder, port=robot.port)) as client:
+        await first_state(client)
+        yield client
+
+
+async def first_state(client: TeacherClient) -> None:
+    await seen(client, lambda: True)
+
+
+async def seen(client: TeacherClient, holds: Callable[[], bool]) -> None:
+    """Wait for a picture with which something holds."""
+    with anyio.fail_after(10.0):
+        async for _ in client.states():
+            if holds():
+                return
+
+
+async def eventually(holds: Callable[[], bool]) -> None:
+    """Wait for something that tells nobody."""
+    with anyio.fail_after(10.0):
+        while not holds():  # noqa: ASYNC110
+            await anyio.sleep(0.005)
+
+
+async def be_in_charge(client: TeacherClient, robot: StandInRobot) -> None:
+    robot.show(teacher="phone")
+    await seen(client, lambda: client.state is not None and client.state.teacher == "phone")
+
+
+# Seeing
+
+
+async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    assert client.name == "phone"
+    await seen(client, lambda: client.state == robot.state)
+    assert client.state_age_s < 10.0
+    assert client.link.pictures_per_s > 0.0
+    assert client.trouble == ""
+    assert client.restarts == 0
+
+
+async def test_a_slow_reader_gets_the_newest_picture_and_misses_those_between(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.showing = False
+    states = client.states()
+    first = await anext(states)
+    for _ in range(3):
+        newest = robot.show()
+        await seen(client, lambda: client.state == newest)  # noqa: B023 - called only in this round
+    assert (await anext(states)) == newest
+    assert newest.tick >= first.tick + 15
+
+
+async def test_the_pictures_end_with_the_client(pairing: Pairing, robot: StandInRobot) -> None:
+    async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+        states = client.states()
+        await anext(states)
+    assert [each async for each in states] == []
+
+
+async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pairing, robot: StandInRobot) -> None:
+    bad = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
+    ticks = []
+    async with (
+        LossyLink(robot.port, down=bad) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+    ):
+        async for state in client.states():
+            ticks.append(state.tick)
+            if len(ticks) == 20:
+                break
+    assert ticks == sorted(set(ticks))
+
+
+async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(_: Request) -> Reply:
+        return Reply(Verdict.DONE, HELLO)
+
+    robot.mind = introduces_itself
+    hello = await client.hello()
+    assert (hello.robot, hello.actions, hello.outline) == ("kurt2-indoor", ("forward", "spin_left"), (0.434, 0.33))
+    assert hello.sensors[0].label == "F"
+    assert hello.phases == ("supervised", "corrections")
+    assert robot.orders() == [HelloRequest()]
+
+
+async def test_a_robot_of_another_version_is_not_understood(client: TeacherClient, robot: StandInRobot) -> None:
+    async def speaks_otherwise(_: Request) -> Reply:
+        return Reply(Verdict.DONE, {**HELLO, "v": 2})
+
+    robot.mind = speaks_otherwise
+    with pytest.raises(NoAnswerError, match="version of the wire contract"):
+        await client.hello()
+
+
+async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
+    async def tells(request: Request) -> Reply:
+        if isinstance(request, LessonsRequest):
+            return Reply(Verdict.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
+        corners = [[0.0, 0.0], [1.0, 0.0]]
+        world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}
+        return Reply(Verdict.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})
+
+    robot.mind = tells
+    assert await client.lessons(5) == (LessonLine("phone-01", "RLA 7: forward", "phone", 1, 42, "", False),)
+    world = await client.world()
+    assert world is not None
+    assert (world.version, world.walls[0].name, world.round[0].radius_m) == (3, "north", 0.1)
+    assert robot.orders() == [LessonsRequest(5), WorldRequest()]
+
+
+async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot: StandInRobot) -> None:
+    async def is_real(_: Request) -> Reply:
+        return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+
+    robot.mind = is_real
+    assert await client.world() is None
+
+
+# Commands
+
+
+async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(request: Request) -> Reply:
+        return Reply(Verdict.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+
+    robot.mind = introduces_itself
+    robot.showing = False
+    picture = robot.show()
+    await seen(client, lambda: client.state == picture)
+    await client.answer("forward", of=88)
+    await client.correct("spin_right")
+    await client.reward(-1, of=80)
+    await client.replace(7, "forward")
+    await client.delete(7)
+    await client.undo()
+    await client.undo("phone-01")
+    await client.set_phase(Phase.CORRECTIONS)
+    await client.begin_session("morning")
+    await client.end_session()
+    await client.resume()
+    await client.take()
+    await client.hand_over("laptop")
+    await client.save("after lunch")
+    await client.export()
+    await client.run("quarter_turn_left", seconds=3.0)
+    await client.move_wall("north", 0.5, -0.25)
+    await client.place(1.0, 2.0, 0.5)
+    heard = [each for each in robot.orders() if isinstance(each, CommandRequest)]
+    expected: list[tuple[type[CommandRequest], dict[str, object]]] = [
+        (AnswerRequest, {"action": "forward", "decision_tick": 88}),
+        (CorrectRequest, {"action": "spin_right", "decision_tick": None}),
+        (RewardRequest, {"value": -1, "decision_tick": 80}),
+        (ReplaceRequest, {"rla_id": 7, "action": "forward"}),
+        (DeleteRequest, {"rla_id": 7}),
+        (UndoRequest, {"lesson": None}),
+        (UndoRequest, {"lesson": "phone-01"}),
+        (PhaseRequest, {"phase": Phase.CORRECTIONS}),
+        (SessionRequest, {"name": "morning"}),
+        (SessionRequest, {"name": None}),
+        (ResumeRequest, {}),
+        (TakeRequest, {}),
+        (ReleaseRequest, {"to": "laptop"}),
+        (SaveRequest, {"label": "after lunch"}),
+        (ExportRequest, {}),
+        (BehaviourRequest, {"action": "quarter_turn_left", "ticks": 300}),
+        (MoveWallRequest, {"name": "north", "dx_m": 0.5, "dy_m": -0.25}),
+        (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+    ]
+    assert heard == [
+        kind(boot=b"boot", command_id=each.command_id, seen=picture.tick, **fields)
+        for (kind, fields), each in zip(expected, heard, strict=True)
+    ]
+    assert len({each.command_id for each in heard}) == len(heard)
+
+
+async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: StandInRobot) -> None:
+    async def saves(_: Request) -> Reply:
+        return done(99, "saved", name="a.db", sha256="ab12")
+
+    robot.mind = saves
+    assert await client.save("x") == Answer(True, "", "saved", 99, {"name": "a.db", "sha256": "ab12"})
+
+
+@pytest.mark.parametrize(
+    ("reply", "answer"),
+    [
+        (refusal("held", "Ann teaches now", 5), Answer(False, "held", "Ann teaches now", 5)),
+        (unsaved("the disk is full", 5), Answer(False, "unsaved", "the disk is full", 5)),
+        (Reply(Verdict.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
+    ],
+)
+async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
+    async def refuses(_: Request) -> Reply:
+        return reply
+
+    robot.mind = refuses
+    assert await client.answer("forward") == answer
+
+
+async def test_what_the_robot_could_not_take_is_refused_here(client: TeacherClient, robot: StandInRobot) -> None:
+    answer = await client.reward(3)
+    assert (answer.accepted, answer.why, answer.text) == (False, "malformed", "value has to be one of 1, -1")
+    assert robot.orders() == []
+
+
+async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pairing, robot: StandInRobot) -> None:
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+        anyio.create_task_group() as tasks,
+    ):
+        await first_state(client)
+        link.change_weather(down=Weather(loss=1.0))
+        answers: list[Answer] = []
+
+        async def teach() -> None:
+            answers.append(await client.answer("forward"))
+
+        tasks.start_soon(teach)
+        await robot.hears(AnswerRequest, 3)
+        assert answers == []
+        link.change_weather(down=Weather())
+        await eventually(lambda: bool(answers))
+        assert answers[0].accepted
+        copies = robot.all_of(AnswerRequest)
+        assert set(copies) == {copies[0]}
+
+
+async def test_at_30_percent_loss_each_way_every_reward_arrives_and_is_answered(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    bad = Weather(loss=0.3, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
+    async with (
+        LossyLink(robot.port, up=bad, down=bad) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+    ):
+        await first_state(client)
+        answers: list[Answer] = []
+
+        async def reward() -> None:
+            answers.append(await client.reward(1))
+
+        for _ in range(3):
+            async with anyio.create_task_group() as tasks:
+                for _ in range(12):
+                    tasks.start_soon(reward)
+    assert [each.accepted for each in answers] == [True] * 36
+    assert len({each.command_id for each in robot.all_of(RewardRequest)}) == 36
+
+
+async def test_without_an_answer_it_is_not_known_whether_it_counted_and_nothing_is_left_behind(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.25) as client,
+    ):
+        await be_in_charge(client, robot)
+        tasks_before = len(asyncio.all_tasks())
+        link.cut()
+        lost_before = link.up.lost
+        results = await asyncio.gather(*(client.reward(1) for _ in range(100)), return_exceptions=True)
+        assert all(isinstance(each, NoAnswerError) for each in results)
+        assert "not known whether it counted" in str(results[0])
+        assert link.up.lost - lost_before >= 300
+        # What is left is the observation, or the one that is being registered in its place.
+        await eventually(lambda: client._requests.open_exchanges <= 1)
+        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
+        link.mend()
+        assert (await client.reward(1)).accepted
+
+
+async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> None:
+    async with (
+        stand_in_robot(pairing.teacher.parent, showing=False) as robot,
+        TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError, match="there is no picture of the robot, so nothing was sent"):
+            await client.answer("forward")
+        assert robot.heard == []
+        assert (await client.stop()).accepted
+
+
+async def test_without_a_robot_it_says_what_the_network_says(pairing: Pairing) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+    async with TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client:
+        await eventually(lambda: client.trouble != "")
+        assert "nothing is heard of 127.0.0.1" in client.trouble
+        with pytest.raises(NoAnswerError, match="nothing is heard of"):
+            await client.stop()
+
+
+# Presence
+
+
+async def test_while_in_charge_and_watching_it_says_so_33_times_a_second(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    await seen(client, lambda: client.state == robot.state)
+    assert robot.heard == []
+    await be_in_charge(client, robot)
+    heard = await robot.hears(WatchRequest, 10)
+    assert all(later.seq > earlier.seq for earlier, later in pairwise(heard))
+    assert heard[-1].boot == b"boot"
+    assert client.state is not None
+    assert heard[-1].seen >= client.state.tick - 10
+    await eventually(lambda: client.link.answered == 1.0)
+    assert client.link.rtt_ms is not None
+    assert client.link.rtt_ms > 0.0
+
+
+async def test_who_looks_away_or_hands_over_says_nothing(client: TeacherClient, robot: StandInRobot) -> None:
+    await be_in_charge(client, robot)
+    await robot.hears(WatchRequest)
+    client.watching = False
+    told = len(robot.all_of(WatchRequest))
+    for _ in range(3):
+        newest = robot.show()
+        await seen(client, lambda: client.state is not None and client.state.tick >= newest.tick)  # noqa: B023
+    assert len(robot.all_of(WatchRequest)) <= told + 1  # one may have been on its way
+    client.watching = True
+    await robot.hears(WatchRequest, told + 2)
+    robot.show(teacher="laptop")
+    await seen(client, lambda: client.state is not None and client.state.teacher == "laptop")
+    told = len(robot.all_of(WatchRequest))
+    await client.stop()
+    assert len(robot.all_of(WatchRequest)) <= told + 1
+
+
+async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+        await be_in_charge(client, robot)
+        await robot.hears(WatchRequest)
+        robot.showing = False
+        clock.ahead_s += 0.6
+        await client.stop()
+        told = len(robot.all_of(WatchRequest))
+        await client.stop()
+        assert len(robot.all_of(WatchRequest)) == told
+
+
+# Driving
+
+
+async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherClient, robot: StandInRobot) -> None:
+    assert client.press(0.2, 0.2)
+    assert client.pressing
+    await robot.hears(DriveRequest, 3)
+    client.press(0.1, -0.1)
+    await eventually(lambda: robot.all_of(DriveRequest)[-1].left_m_s == 0.1)
+    answer = await client.let_go()
+    assert answer is not None
+    assert answer.accepted
+    assert not client.pressing
+    heard = robot.all_of(DriveRequest)
+    assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
+    assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
+    assert len({each.hold for each in heard}) == 1
+    assert isinstance(robot.heard[-1], StopRequest)
+    assert await client.let_go() is None
+
+
+async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_device(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    for _ in range(2):
+        async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+            await first_state(client)
+            for _ in range(2):
+                before = len(robot.all_of(DriveRequest))
+                client.press(0.1, 0.1)
+                await robot.hears(DriveRequest, before + 1)
+                await client.let_go()
+    holds = list(dict.fromkeys(each.hold for each in robot.all_of(DriveRequest)))
+    assert len(holds) == 4
+    assert holds == sorted(holds)
+    numbers = [each.seq for each in robot.all_of(DriveRequest)]
+    assert numbers == sorted(set(numbers))
+
+
+async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: StandInRobot) -> None:
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await robot.hears(DriveRequest, 2)
+        assert wheel.set(0.1, 0.2)
+    assert isinstance(robot.heard[-1], StopRequest)
+    assert not wheel.set(0.2, 0.2)
+    assert wheel.ended == "let go"
+
+
+async def test_a_driving_block_that_fails_ends_with_a_stop_too(client: TeacherClient, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with client.driving() as wheel:
+            wheel.set(0.2, 0.2)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        await drive()
+    assert isinstance(robot.heard[-1], StopRequest)
+
+
+async def test_who_is_cancelled_while_driving_still_stops(client: TeacherClient, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with client.driving() as wheel:
+            wheel.set(0.2, 0.2)
+            await anyio.sleep_forever()
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(drive)
+        await robot.hears(DriveRequest)
+        tasks.cancel_scope.cancel()
+    assert isinstance(robot.heard[-1], StopRequest)
+
+
+async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: Pairing, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+            await first_state(client)
+            client.press(0.2, 0.2)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        await drive()
+    assert isinstance(robot.heard[-1], StopRequest)
+
+
+@pytest.mark.parametrize("why", ["stopped", "held", "stale"])
+async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: StandInRobot, why: str) -> None:
+    async def refuses(request: Request) -> Reply:
+        if isinstance(request, DriveRequest):
+            return refusal(why, "Ann stopped the robot", 5)
+        return await agrees(request)
+
+    robot.mind = refuses
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await eventually(lambda: not client.pressing)
+        assert client.refused == "Ann stopped the robot"
+        assert wheel.ended == "Ann stopped the robot"
+        assert not wheel.set(0.2, 0.2)
+    assert robot.all_of(StopRequest) == []
+
+
+async def test_a_press_goes_on_when_only_a_message_that_was_late_is_refused(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    late = anyio.Event()
+
+    async def refuses_the_first_one_late(request: Request) -> Reply:
+        if request == robot.all_of(DriveRequest)[0]:
+            await late.wait()
+            return refusal("stale", "given on an old picture", 5)
+        if request == robot.all_of(DriveRequest)[1]:
+            return refusal("old", "a newer one came first", 5)
+        return await agrees(request)
+
+    robot.mind = refuses_the_first_one_late
+    client.press(0.2, 0.2)
+    await robot.hears(DriveRequest, 5)
+    late.set()
+    await robot.hears(DriveRequest, 10)
+    assert client.pressing
+    await client.let_go()
+
+
+async def test_a_press_ends_when_no_picture_comes_for_half_a_second(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+        await first_state(client)
+        robot.showing = False
+        client.press(0.2, 0.2)
+        await robot.hears(DriveRequest)
+        clock.ahead_s += 0.6
+        await eventually(lambda: not client.pressing)
+        assert "no picture of the robot" in client.refused
+        driven = len(robot.all_of(DriveRequest))
+        assert not client.press(0.2, 0.2)
+        assert await client.let_go() is None
+        await client.stop()
+        assert len(robot.all_of(DriveRequest)) == driven
+
+
+async def test_speeds_that_no_robot_takes_are_an_error_of_the_program(client: TeacherClient) -> None:
+    with pytest.raises(WireError, match="left_m_s has to be a number from -2 to 2 m/s"):
+        client.press(3.0, 0.0)
+    assert not client.pressing
+
+
+# The robot and the link
+
+
+async def test_after_a_restart_of_the_robot_it_proves_itself_and_goes_on(pairing: Pairing) -> None:
+    teachers = pairing.teacher.parent
+    async with AsyncExitStack() as first_start:
+        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
+        async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+            await first_state(client)
+            assert client.press(0.2, 0.2)
+            await robot.hears(DriveRequest)
+            await first_start.aclose()
+            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                assert client.restarts == 1
+                assert not client.pressing
+                assert (await client.answer("forward")).accepted
+                assert robot.all_of(AnswerRequest)[0].boot == b"anew"
+                assert all(each.boot == b"boot" for each in robot.all_of(DriveRequest))
+
+
+async def test_after_a_pause_of_the_link_it_observes_anew_and_the_robot_shows_to_one_only(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    clock = Clock()
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, now=clock) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        lost = link.up.lost
+        clock.ahead_s += 1.5
+        await link.until(lambda: link.up.lost > lost)
+        link.mend()
+        count = client._pictures.count
+        await eventually(lambda: client._pictures.count > count + 5)
+        await eventually(lambda: robot.site.observers == 1)
+
+
+async def test_a_robot_that_does_not_know_the_device_is_told_apart_from_silence(tmp_path: Path) -> None:
+    stranger = pair(tmp_path / "others", tmp_path / "strangers", "phone")
+    async with (
+        forger(unauthorised) as port,
+        TeacherClient(stranger.device.folder, port=port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError, match="does not know this device; pair it: kurt2rt pair"):
+            await client.stop()
+
+
+@pytest.mark.parametrize(
+    "option", [b"", b"\x01", b"\x01\x05", b"\x07" + b"\xff" * 7, b"\x10", b"\x18", b"\x20", b"\x29\x01", b"\xe0"]
+)
+async def test_a_forged_answer_is_none_and_hurts_nobody(tmp_path: Path, option: bytes) -> None:
+    pairing = pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+    async with (
+        forger(lambda request: changed(request, option)) as port,
+        TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        assert client._requests.damaged >= 1
+
+
+async def test_forged_resets_and_errors_only_cost_time(pairing: Pairing) -> None:
+    async with (
+        forger(lambda request: b"\x70\x00" + request[2:4]) as port,
+        TeacherClient(pairing.device.folder, port=port, patience_s=0.15) as client,
+    ):
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+
+
+def unauthorised(request: bytes) -> bytes:
+    """A plain 4.01, as whoever does not know the device sends it."""
+    return head_of_answer(request, 0x81)
+
+
+def changed(request: bytes, option: bytes) -> bytes:
+    """A 2.04 that says it is protected."""
+    return head_of_answer(request, 0x44) + bytes([0x90 | len(option)]) + option + b"\xffforged, and not even long"
+
+
+def head_of_answer(request: bytes, code: int) -> bytes:
+    confirmable = request[0] & 0x30 == 0
+    token = request[4 : 4 + (request[0] & 0x0F)]
+    kind = 0x60 if confirmable else 0x50
+    return bytes([kind | len(token), code]) + request[2:4] + token
+
+
+class Forger(asyncio.DatagramProtocol):
+    """Answers every datagram with one of its own making."""
+
+    def __init__(self, forge: Callable[[bytes], bytes]) -> None:
+        self._forge = forge
+        self._transport: asyncio.DatagramTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self._transport = cast(asyncio.DatagramTransport, transport)
+
+    def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
+        assert self._transport is not None
+        self._transport.sendto(self._forge(data), addr)
+
+
+@asynccontextmanager
+async def forger(forge: Callable[[bytes], bytes]) -> AsyncIterator[int]:
+    transport, _ = await asyncio.get_running_loop().create_datagram_endpoint(
+        lambda: Forger(forge), local_addr=("127.0.0.1", 0)
+    )
+    yield transport.get_extra_info("sockname")[1]
+    transport.close()
+
+
+def test_only_who_asks_for_the_client_loads_its_network_library() -> None:
+    lines = (
+        "import sys, kurt2rt.teaching.commands",
+        "assert 'aiocoap' not in sys.modules",
+        "from kurt2rt.teaching import TeacherClient",
+        "assert 'aiocoap' in sys.modules",
+    )
+    subprocess.run([sys.executable, "-c", "; ".join(lines)], check=True)
+    with pytest.raises(AttributeError, match="has no attribute 'Nobody'"):
+        _ = kurt2rt.teaching.Nobody
