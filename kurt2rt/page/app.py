@@ -1,0 +1,81 @@
+"""The page's web application: static files, and a WebSocket between the page and the bridge."""
+
+import time
+from pathlib import Path
+
+import anyio
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.routing import Mount, WebSocketRoute
+from starlette.staticfiles import StaticFiles
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from kurt2rt.channel.schema import WireError
+from kurt2rt.page.access import Access
+from kurt2rt.page.bridge import Bridge
+from kurt2rt.page.door import Door
+from kurt2rt.page.messages import parse
+from kurt2rt.page.visitor import Visitor
+
+STATIC = Path(__file__).parent / "static"
+
+_POLICY_VIOLATION = 1008
+_TRY_AGAIN_LATER = 1013
+
+
+def build_app(bridge: Bridge, access: Access) -> Starlette:
+    """The application for a bridge that runs."""
+
+    async def robot(websocket: WebSocket) -> None:
+        await _serve_page(websocket, bridge)
+
+    return Starlette(
+        routes=[
+            WebSocketRoute("/robot", robot),
+            Mount("/", StaticFiles(directory=STATIC, html=True)),
+        ],
+        middleware=[Middleware(Door, access=access)],
+    )
+
+
+async def _serve_page(websocket: WebSocket, bridge: Bridge) -> None:
+    await websocket.accept()
+    visitor = bridge.arrive()
+    try:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(_send, websocket, visitor, tasks.cancel_scope)
+            await _receive(websocket, bridge, visitor)
+            tasks.cancel_scope.cancel()
+    finally:
+        bridge.leave(visitor)
+
+
+async def _receive(websocket: WebSocket, bridge: Bridge, visitor: Visitor) -> None:
+    try:
+        while True:
+            bridge.hear(visitor, parse(await websocket.receive_text()))
+    except WebSocketDisconnect:
+        return
+    except WireError as error:
+        # A page of ours never says such a thing: it is another version of it, or somebody who tries things out.
+        await _close(websocket, _POLICY_VIOLATION, str(error))
+
+
+async def _send(websocket: WebSocket, visitor: Visitor, scope: anyio.CancelScope) -> None:
+    try:
+        while True:
+            await visitor.next()
+            while (text := visitor.take(time.monotonic())) is not None:
+                await websocket.send_text(text)
+            if visitor.lost:
+                await _close(websocket, _TRY_AGAIN_LATER, "too far behind")
+                scope.cancel()
+    except WebSocketDisconnect:
+        scope.cancel()
+
+
+async def _close(websocket: WebSocket, code: int, reason: str) -> None:
+    try:
+        await websocket.close(code, reason[:100])
+    except (WebSocketDisconnect, RuntimeError):
+        return  # it was closed from the other side at the same time

@@ -1,0 +1,278 @@
+"""Between the open pages and the robot: pictures one way, orders and the teacher's hand the other."""
+
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import anyio
+import anyio.abc
+
+from kurt2rt.channel.state import State
+from kurt2rt.page.attention import Attention
+from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
+from kurt2rt.page.mirror import Mirror
+from kurt2rt.page.orders import carry_out
+from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.page.seat import Seat
+from kurt2rt.page.views import answer_view, hello_view, lessons_view, refusal_view, state_view, world_view
+from kurt2rt.page.visitor import Visitor
+from kurt2rt.teaching.answer import NoAnswerError
+
+_LOOK_EACH_S = 0.02
+"""How late a silent page is noticed at most."""
+_SILENT_S = 0.5
+"""A robot not heard of for so long is said to be silent, and so often."""
+_MOST_ORDERS = 8
+"""That one page may have under way."""
+_LESSONS = 10
+
+_NOT_YOURS = "another page has the pad; press Take to have it here"
+
+
+class Bridge:
+    """Serves all open pages of one device.
+
+    One page has the pad. Its heartbeats are what tells the robot that the teacher looks; its presses drive for as long
+    as they come. Every page may stop the robot.
+    """
+
+    def __init__(
+        self, robot: RobotLink, device: str, robot_place: str, *, now: Callable[[], float] = time.monotonic
+    ) -> None:
+        """`robot_place` is where the robot should be, for the page; `now` a clock in s that only grows."""
+        self._robot = robot
+        self._device = device
+        self._robot_place = robot_place
+        self._now = now
+        self._seat = Seat()
+        self._attention = Attention()
+        self._visitors: dict[int, Visitor] = {}
+        self._opened = 0
+        self._carried_out = 0
+        self._newest: State | None = None
+        self._said_silent_s = float("-inf")
+        self._tasks: anyio.abc.TaskGroup | None = None
+        self._hello = Mirror(self._fetch_hello, partial(self._tell_all, about="hello"))
+        self._world = Mirror(self._fetch_world, partial(self._tell_all, about="world"))
+        self._lessons = Mirror(self._fetch_lessons, partial(self._tell_all, about="lessons"))
+
+    async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
+        """Serve until cancelled; the wheels are let go at the end."""
+        async with anyio.create_task_group() as tasks:
+            self._tasks = tasks
+            for task in (self._hello.run, self._world.run, self._lessons.run, self._follow_pictures, self._keep_watch):
+                tasks.start_soon(task)
+            self._hello.want(b"")
+            task_status.started()
+
+    async def end(self) -> None:
+        """Let go of the robot before the program ends; it stands if it was driven by hand. Raises NoAnswerError."""
+        self._robot.watching = False
+        held = [each for each in self._visitors.values() if each.grip.held]
+        for visitor in held:
+            visitor.grip.release()
+        if held:
+            await self._robot.let_go()
+
+    # Pages
+
+    def arrive(self) -> Visitor:
+        """A page was opened."""
+        self._opened += 1
+        visitor = Visitor(self._opened)
+        before = self._seat.holder
+        self._visitors[visitor.number] = visitor
+        self._seat.arrive(visitor.number, self._now())
+        self._seat_changed(before)
+        for mirror, about in ((self._hello, "hello"), (self._world, "world"), (self._lessons, "lessons")):
+            if mirror.copy is not None:
+                visitor.tell(mirror.copy, about=about)
+        return visitor
+
+    def leave(self, visitor: Visitor) -> None:
+        """A page was closed, or lost."""
+        before = self._seat.holder
+        self._seat.leave(visitor.number)
+        self._seat_changed(before)
+        self._let_go(visitor)
+        del self._visitors[visitor.number]
+
+    def hear(self, visitor: Visitor, message: PageMessage) -> None:
+        """Do what a page says."""
+        match message:
+            case Beat():
+                self._heartbeat(visitor, message)
+            case Hidden():
+                visitor.visible = False
+                if self._has_pad(visitor):
+                    self._attention.lose()
+                    self._look()
+                self._let_go(visitor)
+            case Press():
+                self._press(visitor, message)
+            case Release():
+                self._let_go(visitor)
+            case StopNow():
+                for each in self._visitors.values():
+                    each.grip.release()
+                self._spawn(self._answer, visitor, message.number, self._robot.stop)
+            case Order():
+                self._order(visitor, message)
+
+    def _has_pad(self, visitor: Visitor) -> bool:
+        return self._seat.holder == visitor.number
+
+    def _heartbeat(self, visitor: Visitor, beat: Beat) -> None:
+        now_s = self._now()
+        visitor.visible = True
+        visitor.beat = (beat.at_ms, now_s)
+        self._seat.hear(visitor.number, now_s)
+        if beat.picture is not None:
+            visitor.pictures.see(beat.picture)
+        if self._has_pad(visitor):
+            self._attention.beat(visitor.pictures.age_s(beat.picture, now_s), now_s)
+            self._look()
+        visitor.look()
+
+    def _press(self, visitor: Visitor, press: Press) -> None:
+        if not self._has_pad(visitor):
+            visitor.tell({"kind": "let_go", "text": _NOT_YOURS}, about="let_go")
+            return
+        now_s = self._now()
+        age_s = visitor.pictures.age_s(press.picture, now_s)
+        if visitor.grip.is_on(press.hold) and not self._robot.pressing:
+            # The robot refused it, or was stopped: going on would be a new press that nobody made.
+            visitor.grip.release()
+            visitor.tell({"kind": "let_go", "text": self._robot.refused}, about="let_go")
+        elif visitor.grip.press(press.hold, age_s, now_s):
+            self._robot.press(press.left_m_s, press.right_m_s)
+
+    def _order(self, visitor: Visitor, order: Order) -> None:
+        if order.name == "take":
+            before = self._seat.holder
+            self._seat.take(visitor.number, self._now())
+            self._seat_changed(before)
+            if self._newest is not None and self._newest.teacher == self._device:
+                text = "this page has the pad"
+                visitor.tell({**refusal_view(order.number, "", text), "accepted": True})
+                return
+        elif not self._has_pad(visitor):
+            visitor.tell(refusal_view(order.number, "watching", _NOT_YOURS))
+            return
+        picture = visitor.pictures.get(order.picture)
+        if picture is None or self._newest is None or picture.boot != self._newest.boot:
+            text = "the page showed no picture of the robot as it runs now; look, and press again"
+            visitor.tell(refusal_view(order.number, "stale", text))
+            return
+        self._start(visitor, order.number, partial(carry_out, order, self._robot, picture.tick))
+
+    def _start(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
+        if visitor.orders >= _MOST_ORDERS:
+            visitor.tell(refusal_view(number, "busy", "the robot has not answered the last ones yet; wait"))
+            return
+        self._spawn(self._answer, visitor, number, command)
+
+    async def _answer(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
+        visitor.orders += 1
+        try:
+            answer = await command()
+        except NoAnswerError as error:
+            visitor.tell(refusal_view(number, "unknown", str(error)))
+        else:
+            visitor.tell(answer_view(number, answer))
+        finally:
+            visitor.orders -= 1
+        self._carried_out += 1
+        self._want_lessons()
+
+    # The teacher's hand and eyes
+
+    def _seat_changed(self, before: int | None) -> None:
+        if self._seat.holder != before:
+            self._attention.lose()
+            self._look()
+            if before in self._visitors:
+                self._let_go(self._visitors[before])
+        for visitor in self._visitors.values():
+            here = self._has_pad(visitor)
+            seat = "here" if here else "free" if self._seat.holder is None else "elsewhere"
+            page = {"kind": "page", "device": self._device, "robot": self._robot_place, "seat": seat}
+            visitor.tell(page, about="page")
+
+    def _let_go(self, visitor: Visitor) -> None:
+        if visitor.grip.held:
+            visitor.grip.release()
+            self._spawn(self._end_press)
+
+    async def _end_press(self) -> None:
+        try:
+            await self._robot.let_go()
+        except NoAnswerError:
+            # It stops by itself when it does not hear us; that it is silent is said with every picture that is missing.
+            self._tell_all({"kind": "let_go", "text": "the robot did not answer the stop at the end"}, about="let_go")
+
+    async def _keep_watch(self) -> None:
+        while True:
+            await anyio.sleep(_LOOK_EACH_S)
+            self.look()
+
+    def look(self) -> None:
+        """Once in a while: silent pages lose the wheel, and nobody looks through them; a silent robot is said to be."""
+        now_s = self._now()
+        for visitor in self._visitors.values():
+            if visitor.grip.expired(now_s):
+                self._let_go(visitor)
+                text = "this page was not heard of for 250 ms: the robot was stopped; press anew"
+                visitor.tell({"kind": "let_go", "text": text}, about="let_go")
+        self._look()
+        if self._robot.state_age_s > _SILENT_S and now_s - self._said_silent_s >= _SILENT_S:
+            self._said_silent_s = now_s
+            self._tell_all({"kind": "silent", "text": self._why_silent()}, about="silent")
+
+    def _look(self) -> None:
+        self._robot.watching = self._attention.there(self._now())
+
+    def _why_silent(self) -> str:
+        why = f" ({self._robot.trouble})" if self._robot.trouble else ""
+        if self._newest is None:
+            return f"no robot at {self._robot_place}; is kurt2rt run running?{why}"
+        return f"nothing heard of the robot at {self._robot_place}{why}"
+
+    def _spawn(self, task: Callable[..., Any], *arguments: object) -> None:
+        assert self._tasks is not None, "the bridge runs before a page is served"
+        self._tasks.start_soon(task, *arguments)
+
+    # What comes from the robot
+
+    async def _follow_pictures(self) -> None:
+        async for state in self._robot.states():
+            self._newest = state
+            self._hello.want(state.boot)
+            if state.place is not None:
+                self._world.want((state.boot, state.place.world_version))
+            self._want_lessons()
+            view = state_view(state, self._robot.link, self._robot.state_age_s, self._robot.refused)
+            for visitor in self._visitors.values():
+                visitor.show(state.boot, view)
+
+    def _want_lessons(self) -> None:
+        if self._newest is not None:
+            state = self._newest
+            self._lessons.want((state.boot, state.lessons, state.unsaved, self._carried_out))
+
+    def _tell_all(self, message: dict[str, Any], about: str) -> None:
+        for visitor in self._visitors.values():
+            visitor.tell(message, about=about)
+
+    async def _fetch_hello(self) -> dict[str, Any]:
+        return hello_view(await self._robot.hello())
+
+    async def _fetch_world(self) -> dict[str, Any]:
+        world = await self._robot.world()
+        if world is None:
+            raise NoAnswerError("the robot says where it is in a world, and has none")
+        return world_view(world)
+
+    async def _fetch_lessons(self) -> dict[str, Any]:
+        return lessons_view(await self._robot.lessons(_LESSONS))

@@ -1,0 +1,40 @@
+"""An order of a page becomes a command to the robot."""
+
+from kurt2rt.page.messages import Order
+from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.teaching.answer import Answer
+
+
+async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
+    """Tell the robot, `of` being the tick of the picture that the page showed. Raises NoAnswerError."""
+    given = order.arguments
+    match order.name:
+        case "answer":
+            return await robot.answer(given["action"], of=of)
+        case "correct":
+            return await robot.correct(given["action"], of=of)
+        case "reward":
+            return await robot.reward(given["value"], of=of)
+        case "undo":
+            return await robot.undo(given["lesson"])
+        case "phase":
+            return await robot.set_phase(given["phase"])
+        case "begin_session":
+            return await robot.begin_session(given["name"])
+        case "end_session":
+            return await robot.end_session()
+        case "resume":
+            return await robot.resume()
+        case "take":
+            return await robot.take()
+        case "hand_over":
+            return await robot.hand_over(given["to"])
+        case "save":
+            return await robot.save(given["label"])
+        case "export":
+            return await robot.export()
+        case "move":
+            return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
+        case "place":
+            return await robot.place(given["x_m"], given["y_m"], given["heading_rad"])
+    raise AssertionError(order.name)

@@ -1,0 +1,133 @@
+"""What the page's server needs of the robot; kurt2rt.teaching.client.TeacherClient is one."""
+
+from collections.abc import AsyncIterator
+from typing import Protocol
+
+from kurt2rt.channel.state import State
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.hello import Hello
+from kurt2rt.teaching.lesson_line import LessonLine
+from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.world import World
+
+
+class RobotLink(Protocol):
+    """The robot as a teacher's device has it. What asks it for something raises NoAnswerError when nobody answers."""
+
+    @property
+    def watching(self) -> bool:
+        """Whether somebody looks at the robot: only then is it told that its teacher is there."""
+        ...
+
+    @watching.setter
+    def watching(self, watching: bool) -> None: ...
+
+    @property
+    def state_age_s(self) -> float:
+        """How long ago the newest picture came; infinite before the first."""
+        ...
+
+    @property
+    def link(self) -> Link:
+        """How well the robot is heard."""
+        ...
+
+    @property
+    def trouble(self) -> str:
+        """Why the robot is not heard, as far as the network tells; empty while it is."""
+        ...
+
+    def states(self) -> AsyncIterator[State]:
+        """Each picture as it comes; a slow reader gets the newest."""
+        ...
+
+    @property
+    def pressing(self) -> bool:
+        """Whether a press is on; a refusal of the robot ends it, and so does a stop."""
+        ...
+
+    @property
+    def refused(self) -> str:
+        """Why the last press was not begun, or ended by itself; empty while all is well."""
+        ...
+
+    def press(self, left_m_s: float, right_m_s: float) -> bool:
+        """Begin a press, or change the speeds of the one that is on; whether one is on now."""
+        ...
+
+    async def let_go(self) -> Answer | None:
+        """End the press with a stop; None when none is on."""
+        ...
+
+    async def stop(self) -> Answer:
+        """Stand; always allowed."""
+        ...
+
+    async def hello(self) -> Hello:
+        """What robot this is."""
+        ...
+
+    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        """The newest lessons, newest first."""
+        ...
+
+    async def world(self) -> World | None:
+        """The simulated world; None where the robot is a real one."""
+        ...
+
+    async def answer(self, action: str, *, of: int | None = None) -> Answer:
+        """Answer the situation of a picture."""
+        ...
+
+    async def correct(self, action: str, *, of: int | None = None) -> Answer:
+        """Another action is right in the situation of a picture."""
+        ...
+
+    async def reward(self, value: int, *, of: int | None = None) -> Answer:
+        """Praise (+1) or blame (-1)."""
+        ...
+
+    async def undo(self, lesson: str | None = None) -> Answer:
+        """Take a lesson back; None: the last one that still stands."""
+        ...
+
+    async def set_phase(self, phase: Phase) -> Answer:
+        """Another training phase."""
+        ...
+
+    async def begin_session(self, name: str) -> Answer:
+        """Teaching begins."""
+        ...
+
+    async def end_session(self) -> Answer:
+        """Teaching ends."""
+        ...
+
+    async def resume(self) -> Answer:
+        """Drive again after a stop."""
+        ...
+
+    async def take(self) -> Answer:
+        """Be the teacher."""
+        ...
+
+    async def hand_over(self, to: str | None = None) -> Answer:
+        """Be the teacher no longer."""
+        ...
+
+    async def save(self, label: str = "") -> Answer:
+        """A copy of the knowledge on the robot."""
+        ...
+
+    async def export(self) -> Answer:
+        """The RLAs as a table on the robot."""
+        ...
+
+    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
+        """Shift a wall of the simulated world, in metres."""
+        ...
+
+    async def place(self, x: float, y: float, heading: float) -> Answer:
+        """Put the simulated robot down elsewhere, in metres and radians."""
+        ...

@@ -1,0 +1,83 @@
+"""Serves the page until it is told to end."""
+
+import contextlib
+import socket
+from collections.abc import Awaitable, Callable, Iterator
+
+import anyio
+import anyio.abc
+import uvicorn
+from starlette.types import ASGIApp
+
+from kurt2rt.page.access import Access
+from kurt2rt.page.app import build_app
+from kurt2rt.page.bridge import Bridge
+from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.teaching.answer import NoAnswerError
+
+_ENDING_S = 1.0
+
+
+class PageError(Exception):
+    """The page cannot be served. The message is one line: what, where, what to do."""
+
+
+def listen(port: int, *, everywhere: bool) -> socket.socket:
+    """A listening TCP socket: on this machine alone, or on all its addresses. Raises PageError."""
+    try:
+        if everywhere and socket.has_dualstack_ipv6():
+            return socket.create_server(("::", port), family=socket.AF_INET6, dualstack_ipv6=True)
+        return socket.create_server(("" if everywhere else "127.0.0.1", port))
+    except OSError as error:
+        raise PageError(f"port {port}: cannot listen ({error.strerror}); give another one with --page-port") from error
+
+
+async def run_page(
+    robot: RobotLink,
+    access: Access,
+    robot_place: str,
+    listener: socket.socket,
+    told_to_end: Callable[[], Awaitable[None]],
+) -> None:
+    """Serve the page of a device until `told_to_end` returns. A robot that is driven by hand then stands first."""
+    robot.watching = False
+    bridge = Bridge(robot, access.device, robot_place)
+    async with anyio.create_task_group() as tasks:
+        await tasks.start(bridge.run)
+        async with anyio.create_task_group() as serving:
+            server: uvicorn.Server = await serving.start(_serve, build_app(bridge, access), listener)
+            await told_to_end()
+            # The robot lets go by itself when it hears nothing, so one that does not answer is not waited for.
+            with anyio.move_on_after(_ENDING_S), contextlib.suppress(NoAnswerError):
+                await bridge.end()
+            server.should_exit = True
+        tasks.cancel_scope.cancel()
+
+
+class _Server(uvicorn.Server):
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Signals are the command's: it lets go of the robot before the server ends."""
+        yield
+
+
+async def _serve(app: ASGIApp, listener: socket.socket, *, task_status: anyio.abc.TaskStatus[uvicorn.Server]) -> None:
+    config = uvicorn.Config(
+        app,
+        http="h11",
+        ws="websockets-sansio",
+        ws_max_size=4096,
+        ws_per_message_deflate=False,
+        ws_ping_interval=5.0,
+        ws_ping_timeout=5.0,
+        lifespan="off",
+        log_config=None,
+        access_log=False,
+        proxy_headers=False,
+        server_header=False,
+        limit_concurrency=64,
+        timeout_graceful_shutdown=1,
+    )
+    server = _Server(config)
+    task_status.started(server)
+    await server.serve([listener])

@@ -1,0 +1,70 @@
+// The robot's repertoire as buttons: a touch answers while the robot asks, and corrects while it drives.
+
+import { glyph } from "./glyphs.js";
+
+// Where a known action has its place: row, first column, columns. Left is left.
+const PLACES = {
+  curve_left: [1, 1, 1], bear_left: [1, 2, 1], forward: [1, 3, 1], bear_right: [1, 4, 1], curve_right: [1, 5, 1],
+  spin_left: [2, 1, 1], quarter_turn_left: [2, 2, 1], stand: [2, 3, 1], quarter_turn_right: [2, 4, 1], spin_right: [2, 5, 1],
+  along_left_wall: [3, 1, 2], back: [3, 3, 1], along_right_wall: [3, 4, 2],
+};
+const SHORT = { quarter_turn_left: "turn 90°", quarter_turn_right: "turn 90°"  };
+
+export function words(action) {
+  return action.replaceAll("_", " ");
+}
+
+export class ActionPad {
+  #box;
+  #choose;
+  #buttons = new Map();
+  names = [];
+
+  constructor(box, choose) {
+    this.#box = box;
+    this.#choose = choose;
+  }
+
+  build(names) {
+    if (names.join() === this.names.join()) return;
+    this.names = names;
+    this.#buttons.clear();
+    this.#box.replaceChildren(...names.map((name) => this.#button(name)));
+  }
+
+  #button(name) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.dataset.action = name;
+    button.setAttribute("aria-label", words(name));
+    const picture = glyph(name);
+    if (picture) button.append(picture);
+    const label = document.createElement("small");
+    label.textContent = SHORT[name] ?? words(name);
+    button.append(label);
+    const place = PLACES[name];
+    if (place) {
+      button.style.gridRow = place[0];
+      button.style.gridColumn = `${place[1]} / span ${place[2]}`;
+      button.classList.toggle("wide", place[2] > 1);
+    }
+    button.addEventListener("click", () => this.#choose(name));
+    this.#buttons.set(name, button);
+    return button;
+  }
+
+  // Which one drives, and which one the nearest RLA would choose.
+  show(state) {
+    for (const [name, button] of this.#buttons) {
+      button.classList.toggle("current", name === state.action);
+      button.classList.toggle("nearest", state.cause === "unknown" && name === state.nearest_action);
+    }
+  }
+
+  mark(name, outcome) {
+    const button = this.#buttons.get(name);
+    if (!button) return;
+    button.classList.remove("pending", "saved", "refused");
+    if (outcome) button.classList.add(outcome);
+  }
+}

@@ -1,0 +1,358 @@
+// The teacher's page: what comes from the robot is shown, what the teacher touches is sent.
+
+import { ActionPad, words } from "./actions.js";
+import { keyboard } from "./keyboard.js";
+import { Lessons, twice } from "./lessons.js";
+import { Link } from "./link.js";
+import { drawRobot } from "./robot_view.js";
+import { Drive, stick } from "./stick.js";
+import { setText, Why } from "./why.js";
+import { WorldView } from "./world_view.js";
+
+const $ = (id) => document.getElementById(id);
+const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
+const TABS = ["teach", "drive", "lessons", "more"];
+const FASTEST_BY_HAND_M_S = 0.6;
+
+const link = new Link();
+const drive = new Drive(link);
+const why = new Why();
+const pad = new ActionPad($("actions"), teach);
+const lessons = new Lessons((lesson) => tell("undo", { lesson }));
+const world = new WorldView($("world-view"), (name, args) => tell(name, args));
+
+let hello = null;
+let page = { seat: "elsewhere", device: "", robot: "" };
+let phaseNames = PHASES;
+
+// ---- Orders
+
+// Says what became of an order: pending, then saved or refused.
+async function tell(name, args = {}, doing = words(name)) {
+  say("pending", `${doing} …`);
+  return heed(await link.order(name, args));
+}
+
+function heed(answer) {
+  say(answer.accepted ? "saved" : "refused", answer.text || (answer.accepted ? "done" : `refused: ${answer.why}`));
+  navigator.vibrate?.(answer.accepted ? 20 : [30, 40, 30]);
+  return answer;
+}
+
+function say(outcome, text) {
+  const line = $("said");
+  line.className = outcome;
+  setText(line, text);
+}
+
+async function teach(action) {
+  if (!link.state) return;
+  // Beyond R there is no RLA to correct, whether it asks just now or stands for another reason.
+  const { nearest, distance, radius } = link.state;
+  const asks = nearest === null || distance === null || distance > radius;
+  pad.mark(action, "pending");
+  const answer = await tell(asks ? "answer" : "correct", { action }, `${asks ? "answer" : "correct"}: ${words(action)}`);
+  pad.mark(action, answer.accepted ? "saved" : "refused");
+  setTimeout(() => pad.mark(action, null), 900);
+}
+
+const reward = (value) => tell("reward", { value }, value > 0 ? "right" : "wrong");
+const go = () => tell("resume", {}, "go");
+
+async function stop() {
+  drive.release();
+  say("pending", "stop …");
+  heed(await link.stop());
+}
+
+// ---- What comes
+
+link.addEventListener("page", ({ detail }) => {
+  page = detail;
+  claim();
+});
+
+link.addEventListener("hello", ({ detail }) => {
+  hello = detail;
+  phaseNames = namesOf(hello.phases);
+  pad.build(hello.actions);
+  world.greet(hello);
+  setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
+  setText($("keys-actions"), hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
+  $("view").hidden = !hello.simulated;
+  document.body.classList.toggle("simulated", hello.simulated);
+  showView("robot");
+  buildPhases();
+  pace();
+});
+
+link.addEventListener("world", ({ detail }) => {
+  world.world = detail;
+});
+link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons));
+link.addEventListener("let_go", ({ detail }) => {
+  drive.release();
+  say("refused", detail.text || "the press was ended; press anew");
+});
+link.addEventListener("silent", ({ detail }) => setText($("no-picture-why"), detail.text));
+link.addEventListener("open", () => setText($("no-picture-why"), "waiting for the robot's picture …"));
+link.addEventListener("closed", () => {
+  setText($("no-picture-why"), "no link to this page's server; trying again …");
+  page = { ...page, seat: "elsewhere" };
+});
+link.addEventListener("freshness", freshness);
+
+link.addEventListener("state", ({ detail: state }) => {
+  world.see(state);
+  freshness();
+  requestAnimationFrame(show);
+});
+
+let shown = null;
+
+function show() {
+  const state = link.state;
+  if (!state || !hello || shown === state) return;
+  shown = state;
+  setText($("phase"), `phase ${state.phase}`);
+  setText($("phase-name"), phaseNames[state.phase - 1] ?? "");
+  setText($("clock"), clock(state.clock_s));
+  setText($("session"), state.session ?? "no session");
+  setText($("lesson-count"), String(state.lessons));
+  const stopped = Boolean(state.stopped_because);
+  $("go").disabled = !stopped || page.seat !== "here";
+  showLink(state);
+  why.show(state);
+  pad.show(state);
+  warn(state);
+  setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);
+  if (state.refused && drive.held) say("refused", state.refused);
+  showMore(state);
+  claim();
+  draw();
+}
+
+function draw() {
+  drawRobot($("robot-view"), hello, link.state);
+  world.draw();
+}
+
+function showLink(state) {
+  const { age_ms: age, rtt_ms: rtt, pictures_per_s: rate } = state.link;
+  const both = rtt === null ? null : rtt + (link.pageRttMs ?? 0);
+  const parts = [`${Math.round(rate ?? 0)}/s`, both === null ? "" : `${both.toFixed(0)} ms`, age > 150 ? `${age} ms old` : ""];
+  setText($("link-text"), parts.filter(Boolean).join(" · "));
+  $("link").title = `pictures a second, round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
+}
+
+function freshness() {
+  const lost = !link.fresh;
+  document.body.classList.toggle("no-picture", lost);
+  for (const id of ["teach", "drive", "lessons", "more"]) $(id).inert = lost || !inCharge();
+  if (lost) {
+    drive.release();
+    setText($("link-text"), "no picture");
+    $("go").disabled = true;
+  }
+}
+
+function warn(state) {
+  setText($("guard"), state.guard.length ? `guard: ${state.guard.join(", ")}` : "");
+  const lines = state.trouble ? [state.trouble] : [];
+  if (state.unsaved) lines.push(`${state.unsaved} not saved yet`);
+  const box = $("warnings");
+  if (lines.join("\n") === [...box.children].map((each) => each.textContent).join("\n")) return;
+  box.replaceChildren(
+    ...lines.map((text) => {
+      const line = document.createElement("span");
+      line.textContent = text;
+      return line;
+    }),
+  );
+}
+
+function clock(seconds) {
+  const whole = Math.floor(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+}
+
+// ---- Who is in charge
+
+function inCharge() {
+  return page.seat === "here" && link.state?.teacher === page.device;
+}
+
+function claim() {
+  const state = link.state;
+  const box = $("claim");
+  box.hidden = inCharge() || !state;
+  for (const id of ["teach", "drive", "lessons", "more"]) $(id).inert = !inCharge() || !link.fresh;
+  if (box.hidden) return;
+  drive.release();
+  const another = state.teacher && state.teacher !== page.device;
+  const text =
+    another ? `${state.teacher} is the teacher. This page watches; it can stop the robot.`
+    : page.seat !== "here" ? "Another page has the pad. This one watches; it can stop the robot."
+    : "Nobody teaches the robot.";
+  setText($("claim-text"), text);
+  setText($("claim-button"), another ? `Take over from ${state.teacher}` : page.seat === "here" ? "Take the robot" : "Take the pad here");
+}
+
+const take = () => tell("take", {}, "take");
+$("claim-button").addEventListener("click", take);
+$("take-here").addEventListener("click", take);
+$("hand-over").addEventListener("click", () => tell("hand_over", { to: null }, "hand over"));
+
+// ---- More
+
+function namesOf(phases) {
+  return PHASES.map((name, i) => {
+    const given = phases?.[i];
+    return typeof given === "string" && given ? given[0].toUpperCase() + given.slice(1) : name;
+  });
+}
+
+function buildPhases() {
+  $("phases").replaceChildren(
+    ...phaseNames.map((name, i) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.dataset.phase = i + 1;
+      const number = document.createElement("b");
+      number.textContent = `${i + 1} `;
+      const label = document.createElement("small");
+      label.textContent = name;
+      button.append(number, label);
+      button.addEventListener("click", () => tell("phase", { phase: i + 1 }, `phase ${i + 1}`));
+      return button;
+    }),
+  );
+}
+
+function showMore(state) {
+  for (const button of $("phases").children) {
+    button.setAttribute("aria-pressed", String(Number(button.dataset.phase) === state.phase));
+  }
+  setText($("session-button"), state.session === null ? "Begin" : "End");
+  const name = $("session-name");
+  name.disabled = state.session !== null;
+  if (state.session !== null) name.value = state.session;
+  else if (!name.value) name.value = newSession();
+  setText($("who"), state.teacher === null ? "nobody teaches" : `${state.teacher} teaches`);
+  $("hand-over").disabled = !inCharge();
+  $("take-here").disabled = inCharge();
+}
+
+function newSession() {
+  const two = (number) => String(number).padStart(2, "0");
+  const now = new Date();
+  return `${now.getFullYear()}-${two(now.getMonth() + 1)}-${two(now.getDate())} ${two(now.getHours())}:${two(now.getMinutes())}`;
+}
+
+$("session-button").addEventListener("click", async () => {
+  if (link.state.session !== null) {
+    const answer = await tell("end_session");
+    if (answer.accepted) $("session-name").value = newSession();
+  } else {
+    tell("begin_session", { name: $("session-name").value.trim() || newSession() });
+  }
+});
+
+async function keep(name, args) {
+  const answer = await tell(name, args);
+  if (!answer.accepted) return;
+  const { name: file, sha256 } = answer.extra;
+  setText($("saved"), `${file ?? ""}  sha256 ${(sha256 ?? "").slice(0, 12)}…`);
+}
+$("save").addEventListener("click", () => keep("save", { label: $("save-label").value.trim() }));
+$("export").addEventListener("click", () => keep("export", {}));
+
+// ---- Touch
+
+$("stop").addEventListener("pointerdown", (event) => {
+  // At the first touch, not when the finger is lifted.
+  event.preventDefault();
+  stop();
+});
+$("stop").addEventListener("click", (event) => {
+  if (event.detail === 0) stop(); // from a keyboard or a screen reader: no touch came before it
+});
+$("go").addEventListener("click", go);
+$("praise").addEventListener("click", () => reward(1));
+$("blame").addEventListener("click", () => reward(-1));
+twice($("undo-last"), "sure?", () => tell("undo", { lesson: null }));
+
+stick($("stick"), $("knob"), drive);
+drive.addEventListener("change", ({ detail }) => {
+  const [left, right] = detail.speeds;
+  setText($("speeds"), detail.held ? `left ${left.toFixed(2)}, right ${right.toFixed(2)} m/s` : "hold the circle; let go to stop");
+});
+
+for (const button of $("pace").querySelectorAll("button")) {
+  button.addEventListener("click", () => {
+    for (const each of $("pace").querySelectorAll("button")) each.setAttribute("aria-pressed", String(each === button));
+    pace();
+  });
+}
+
+function pace() {
+  const share = Number($("pace").querySelector("[aria-pressed=true]").dataset.share);
+  drive.most = share * Math.min(FASTEST_BY_HAND_M_S, hello?.max_m_s ?? FASTEST_BY_HAND_M_S);
+}
+
+function showTab(name) {
+  drive.release();
+  for (const each of TABS) {
+    $(each).hidden = each !== name;
+    $(`tab-${each}`).setAttribute("aria-selected", String(each === name));
+  }
+}
+TABS.forEach((name, i) => {
+  $(`tab-${name}`).addEventListener("click", () => showTab(name));
+  $(`tab-${name}`).addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.stopPropagation();
+    const next = TABS[(i + step + TABS.length) % TABS.length];
+    showTab(next);
+    $(`tab-${next}`).focus();
+  });
+});
+
+function showView(name) {
+  for (const each of ["robot", "world"]) $(`${each}-view`).hidden = each !== name;
+  setText($("view"), name === "robot" ? "World" : "Robot");
+  draw();
+}
+$("view").addEventListener("click", () => showView($("robot-view").hidden ? "robot" : "world"));
+new ResizeObserver(draw).observe($("stage"));
+
+const help = () => $("keys").showModal();
+$("show-keys").addEventListener("click", help);
+$("close-keys").addEventListener("click", () => $("keys").close());
+
+keyboard({
+  drive,
+  stop,
+  go: () => !$("go").disabled && go(),
+  act: (i) => inCharge() && pad.names[i] && teach(pad.names[i]),
+  reward: (value) => inCharge() && reward(value),
+  undo: () => inCharge() && $("undo-last").click(),
+  help,
+  mayDrive: () => inCharge() && link.fresh,
+});
+
+// ---- The screen stays on where the browser allows it.
+
+async function stayAwake() {
+  if (document.visibilityState !== "visible" || !navigator.wakeLock) return;
+  try {
+    await navigator.wakeLock.request("screen");
+  } catch {
+    // Refused, by a low battery for one: the screen's own time-out then ends presence, and the robot stands.
+  }
+}
+document.addEventListener("visibilitychange", stayAwake);
+stayAwake();
+
+link.start();

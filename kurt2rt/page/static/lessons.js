@@ -1,0 +1,72 @@
+// The last lessons, each with an undo that wants a second tap.
+
+import { when } from "./why.js";
+
+const SURE_MS = 3000;
+
+// Makes a button act only on its second tap within three seconds.
+export function twice(button, question, act) {
+  const label = button.querySelector(".word") ?? button;
+  const first = label.textContent;
+  let timer = null;
+  const forget = () => {
+    clearTimeout(timer);
+    timer = null;
+    label.textContent = first;
+    button.classList.remove("sure");
+  };
+  button.addEventListener("click", () => {
+    if (timer === null) {
+      label.textContent = question;
+      button.classList.add("sure");
+      timer = setTimeout(forget, SURE_MS);
+    } else {
+      forget();
+      act();
+    }
+  });
+}
+
+export class Lessons {
+  #list = document.getElementById("lesson-list");
+  #undo;
+
+  constructor(undo) {
+    this.#undo = undo;
+  }
+
+  show(lessons) {
+    if (!lessons.length) {
+      const none = document.createElement("li");
+      none.textContent = "No lessons yet.";
+      this.#list.replaceChildren(none);
+      return;
+    }
+    this.#list.replaceChildren(...lessons.map((lesson) => this.#row(lesson)));
+  }
+
+  #row({ command_id: id, text, teacher, phase, stamp, undone }) {
+    const row = document.createElement("li");
+    row.classList.toggle("undone", undone);
+    const told = document.createElement("span");
+    const what = document.createElement("b");
+    what.textContent = text;
+    const who = document.createElement("small");
+    who.textContent = [teacher, `phase ${phase}`, when(stamp) || "not saved yet"].join(" · ");
+    told.append(what, who);
+    row.append(told);
+    if (undone) {
+      const mark = document.createElement("em");
+      mark.textContent = "undone";
+      row.append(mark);
+    } else {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = "Undo";
+      button.setAttribute("aria-label", `Undo: ${text}`);
+      twice(button, "Sure?", () => this.#undo(id));
+      row.append(button);
+    }
+    return row;
+  }
+}

@@ -1,0 +1,230 @@
+// The simulated world from above, and a hand that puts the robot or a wall elsewhere; it acts when it lets go.
+
+import { BLUE, body, INK, PAPER, RED, sheet } from "./canvas.js";
+
+const TRAIL_S = 60;
+const TRAIL_EACH_MS = 100;
+const GRAB_PX = 26;
+const CLICK_PX = 8;
+const HANDLE_M = 0.46;
+
+export class WorldView {
+  #canvas;
+  #order;
+  #world = null;
+  #hello = null;
+  #state = null;
+  #trail = []; // [ms, x, y]
+  #asked = []; // [x, y]
+  #asking = false;
+  #grab = null;
+
+  // `order` sends a command to the robot.
+  constructor(canvas, order) {
+    this.#canvas = canvas;
+    this.#order = order;
+    canvas.addEventListener("pointerdown", (event) => this.#take(event));
+    canvas.addEventListener("pointermove", (event) => this.#move(event));
+    canvas.addEventListener("pointerup", (event) => this.#drop(event));
+    for (const lost of ["pointercancel", "lostpointercapture", "contextmenu"]) {
+      canvas.addEventListener(lost, (event) => {
+        if (lost === "contextmenu") event.preventDefault();
+        this.#grab = null;
+      });
+    }
+  }
+
+  greet(hello) {
+    this.#hello = hello;
+    this.#trail = [];
+    this.#asked = [];
+  }
+
+  set world(world) {
+    this.#world = world;
+  }
+
+  see(state) {
+    this.#state = state;
+    const place = state.place;
+    if (!place) return;
+    const now = performance.now();
+    const last = this.#trail.at(-1);
+    if (!last || now - last[0] >= TRAIL_EACH_MS) this.#trail.push([now, place.x_m, place.y_m]);
+    while (this.#trail.length && now - this.#trail[0][0] > TRAIL_S * 1000) this.#trail.shift();
+    const asking = state.cause === "unknown";
+    if (asking && !this.#asking) {
+      this.#asked.push([place.x_m, place.y_m]);
+      if (this.#asked.length > 200) this.#asked.shift();
+    }
+    this.#asking = asking;
+  }
+
+  draw() {
+    const drawn = sheet(this.#canvas);
+    if (!drawn || !this.#world || !this.#hello || !this.#state?.place) return;
+    const { paint } = drawn;
+    const view = this.#view(drawn.width, drawn.height);
+    paint.save();
+    paint.translate(view.left, view.top);
+    paint.scale(view.scale, -view.scale);
+    this.#room(paint, view.scale);
+    this.#traces(paint, view.scale);
+    const place = this.#state.place;
+    const dragged = this.#grab?.what === "robot" || this.#grab?.what === "heading";
+    this.#robot(paint, view.scale, place.x_m, place.y_m, place.heading_rad, dragged ? 0.25 : 1);
+    if (dragged) this.#robot(paint, view.scale, this.#grab.x, this.#grab.y, this.#grab.heading, 1);
+    paint.restore();
+  }
+
+  #view(width, height) {
+    const [sizeX, sizeY] = this.#world.size;
+    const scale = Math.min((width - 24) / sizeX, (height - 24) / sizeY);
+    return { scale, left: (width - sizeX * scale) / 2, top: (height + sizeY * scale) / 2 };
+  }
+
+  #room(paint, scale) {
+    polygon(paint, this.#world.outline);
+    paint.fillStyle = PAPER;
+    paint.fill();
+    paint.strokeStyle = INK;
+    paint.lineWidth = 4 / scale;
+    paint.stroke();
+    for (const [name, corners] of this.#world.walls) {
+      const [dx, dy] = this.#shift(name);
+      polygon(paint, corners.map(([x, y]) => [x + dx, y + dy]));
+      paint.fillStyle = dx || dy ? BLUE : INK;
+      paint.fill();
+    }
+    for (const [name, x, y, radius] of this.#world.round) {
+      const [dx, dy] = this.#shift(name);
+      paint.beginPath();
+      paint.arc(x + dx, y + dy, radius, 0, 7);
+      paint.fillStyle = dx || dy ? BLUE : INK;
+      paint.fill();
+    }
+  }
+
+  #shift(name) {
+    return this.#grab?.what === "wall" && this.#grab.name === name ? [this.#grab.dx, this.#grab.dy] : [0, 0];
+  }
+
+  #traces(paint, scale) {
+    paint.strokeStyle = "#3e7cb1";
+    paint.lineWidth = 2.5 / scale;
+    paint.beginPath();
+    let previous = null;
+    for (const [, x, y] of this.#trail) {
+      // A robot that was put down elsewhere did not drive there.
+      if (previous && Math.hypot(x - previous[0], y - previous[1]) < 0.3) paint.lineTo(x, y);
+      else paint.moveTo(x, y);
+      previous = [x, y];
+    }
+    paint.stroke();
+    paint.fillStyle = RED;
+    for (const [x, y] of this.#asked) {
+      paint.beginPath();
+      paint.arc(x, y, 4 / scale, 0, 7);
+      paint.fill();
+    }
+  }
+
+  #robot(paint, scale, x, y, heading, alpha) {
+    const [length, width] = this.#hello.outline;
+    paint.save();
+    paint.globalAlpha = alpha;
+    paint.translate(x, y);
+    paint.rotate(heading);
+    paint.strokeStyle = BLUE;
+    paint.lineWidth = 2 / scale;
+    paint.beginPath();
+    paint.moveTo(length / 2, 0);
+    paint.lineTo(HANDLE_M, 0);
+    paint.stroke();
+    paint.beginPath();
+    paint.arc(HANDLE_M, 0, 7 / scale, 0, 7);
+    paint.fillStyle = PAPER;
+    paint.fill();
+    paint.stroke();
+    body(paint, length, width, { fill: "#dbe8f5", line: BLUE, lineWidth: 2.5 / scale });
+    paint.restore();
+  }
+
+  #point(event) {
+    const box = this.#canvas.getBoundingClientRect();
+    const view = this.#view(box.width, box.height);
+    return [(event.clientX - box.left - view.left) / view.scale, -(event.clientY - box.top - view.top) / view.scale, view.scale];
+  }
+
+  #take(event) {
+    if (!this.#world || !this.#state?.place || !event.isPrimary) return;
+    const [x, y, scale] = this.#point(event);
+    const place = this.#state.place;
+    const reach = GRAB_PX / scale;
+    const handle = [place.x_m + HANDLE_M * Math.cos(place.heading_rad), place.y_m + HANDLE_M * Math.sin(place.heading_rad)];
+    const start = { px: event.clientX, py: event.clientY, fromX: x, fromY: y };
+    const robot = { ...start, x: place.x_m, y: place.y_m, heading: place.heading_rad };
+    const toHandle = Math.hypot(x - handle[0], y - handle[1]);
+    const toRobot = Math.hypot(x - place.x_m, y - place.y_m);
+    if (toHandle < reach && toHandle < toRobot) this.#grab = { ...robot, what: "heading" };
+    else if (toRobot < Math.max(0.22, reach)) this.#grab = { ...robot, what: "robot", offX: place.x_m - x, offY: place.y_m - y };
+    else {
+      const name = this.#thingAt(x, y, reach * 0.6);
+      this.#grab = name === null ? null : { ...start, what: "wall", name, dx: 0, dy: 0 };
+    }
+    if (this.#grab) {
+      this.#canvas.setPointerCapture(event.pointerId);
+      event.preventDefault();
+    }
+  }
+
+  #thingAt(x, y, reach) {
+    for (const [name, cx, cy, radius] of this.#world.round) if (Math.hypot(x - cx, y - cy) < radius + reach) return name;
+    for (const [name, corners] of this.#world.walls) if (inside(corners, x, y) || toEdge(corners, x, y) < reach) return name;
+    return null;
+  }
+
+  #move(event) {
+    const grab = this.#grab;
+    if (!grab) return;
+    const [x, y] = this.#point(event);
+    if (grab.what === "robot") [grab.x, grab.y] = [x + grab.offX, y + grab.offY];
+    else if (grab.what === "heading") grab.heading = Math.atan2(y - grab.y, x - grab.x);
+    else [grab.dx, grab.dy] = [x - grab.fromX, y - grab.fromY];
+  }
+
+  #drop(event) {
+    const grab = this.#grab;
+    this.#grab = null;
+    if (!grab || Math.hypot(event.clientX - grab.px, event.clientY - grab.py) < CLICK_PX) return;
+    const round = (value) => Math.round(value * 1000) / 1000;
+    if (grab.what === "wall") this.#order("move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
+    else this.#order("place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
+  }
+}
+
+function polygon(paint, corners) {
+  paint.beginPath();
+  corners.forEach(([x, y], i) => (i ? paint.lineTo(x, y) : paint.moveTo(x, y)));
+  paint.closePath();
+}
+
+function inside(corners, x, y) {
+  let odd = false;
+  corners.forEach(([ax, ay], i) => {
+    const [bx, by] = corners[(i + 1) % corners.length];
+    if (ay > y !== by > y && x < ((bx - ax) * (y - ay)) / (by - ay) + ax) odd = !odd;
+  });
+  return odd;
+}
+
+function toEdge(corners, x, y) {
+  return Math.min(
+    ...corners.map(([ax, ay], i) => {
+      const [bx, by] = corners[(i + 1) % corners.length];
+      const squared = (bx - ax) ** 2 + (by - ay) ** 2;
+      const along = squared ? Math.min(1, Math.max(0, ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / squared)) : 0;
+      return Math.hypot(x - ax - along * (bx - ax), y - ay - along * (by - ay));
+    }),
+  );
+}

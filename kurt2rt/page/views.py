@@ -1,0 +1,108 @@
+"""What pages are told, as plain values for JSON."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, is_dataclass
+from typing import Any
+
+from kurt2rt.channel.state import State
+from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.hello import Hello
+from kurt2rt.teaching.lesson_line import LessonLine
+from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.world import World
+
+
+def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str, Any]:
+    """One picture of the robot; `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing."""
+    place = state.place
+    return {
+        "kind": "state",
+        "tick": state.tick,
+        "phase": state.phase,
+        "infrared": state.infrared_counts,
+        "infrared_age_s": _finite(state.infrared_age_s),
+        "bumpers": state.bumpers,
+        "left_m_s": state.left_m_s,
+        "right_m_s": state.right_m_s,
+        "cause": state.cause,
+        "action": state.action,
+        "rla": state.rla,
+        "nearest": state.nearest,
+        "nearest_action": state.nearest_action,
+        "distance": _finite(state.distance),
+        "radius": _finite(state.radius),
+        "taught_by": state.taught_by,
+        "taught_at": state.taught_at,
+        "question": [[each.name, each.here, each.in_condition] for each in state.question],
+        "teacher": state.teacher,
+        "by_hand": state.by_hand,
+        "stopped_because": state.stopped_because,
+        "rlas": state.rlas,
+        "lessons": state.lessons,
+        "unsaved": state.unsaved,
+        "session": state.session,
+        "clock_s": state.clock_s,
+        "guard": state.guard,
+        "trouble": state.trouble,
+        "late_p99_ms": _finite(state.late_p99_ms),
+        "missed_ticks": state.missed_ticks,
+        "place": None if place is None else asdict(place),
+        "link": {
+            "age_ms": round(age_s * 1000),
+            "rtt_ms": None if link.rtt_ms is None else _finite(link.rtt_ms),
+            "pictures_per_s": _finite(link.pictures_per_s),
+        },
+        "refused": refused,
+    }
+
+
+def answer_view(number: int, answer: Answer) -> dict[str, Any]:
+    """What became of an order."""
+    return {
+        "kind": "answer",
+        "number": number,
+        "accepted": answer.accepted,
+        "why": answer.why,
+        "text": answer.text,
+        "extra": plain(answer.extra),
+    }
+
+
+def refusal_view(number: int, why: str, text: str) -> dict[str, Any]:
+    """An order that never reached the robot, or of which it is not known whether it did."""
+    return {"kind": "answer", "number": number, "accepted": False, "why": why, "text": text, "extra": {}}
+
+
+def hello_view(hello: Hello) -> dict[str, Any]:
+    """What robot this is."""
+    return {"kind": "hello", **plain(hello)}
+
+
+def world_view(world: World) -> dict[str, Any]:
+    """The simulated world."""
+    return {"kind": "world", **plain(world)}
+
+
+def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
+    """The newest lessons."""
+    return {"kind": "lessons", "lessons": [each._asdict() for each in lessons]}
+
+
+def plain(value: Any) -> Any:
+    """Dataclasses, tuples and bytes as JSON knows them; no infinite numbers."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {str(key): plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(each) for each in value]
+    if isinstance(value, bytes):
+        return value.hex()
+    if isinstance(value, float):
+        return _finite(value)
+    return value
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

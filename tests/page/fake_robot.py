@@ -1,0 +1,186 @@
+"""A robot at the other end of the bridge that does as the test says and notes what it is told."""
+
+import math
+from collections.abc import AsyncIterator
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import anyio
+import anyio.lowlevel
+
+from hal.robot_settings import load_robot
+from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.hello import Hello, SensorPlace
+from kurt2rt.teaching.lesson_line import LessonLine
+from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.world import World
+
+A_STATE = State(
+    boot=b"boot",
+    tick=100,
+    phase=1,
+    infrared_counts=(180, 176, 178, 175, 75, 74, 76, 78, 120, 90, 105, 70, 71, 72, 210, 82, 160, 70),
+    infrared_age_s=0.01,
+    bumpers=0,
+    left_m_s=0.3,
+    right_m_s=0.3,
+    cause="rla",
+    action="forward",
+    rla=1,
+    nearest=1,
+    nearest_action="forward",
+    distance=300.0,
+    radius=700.0,
+    taught_by="phone",
+    taught_at="2026-11-21T12:04:00Z",
+    question=(),
+    teacher=None,
+    by_hand=False,
+    stopped_because="",
+    rlas=1,
+    lessons=1,
+    unsaved=0,
+    session=None,
+    clock_s=0.0,
+    guard=(),
+    trouble="",
+    late_p99_ms=0.2,
+    missed_ticks=0,
+    place=None,
+)
+A_PLACE = SimulatedPlace(x_m=0.54, y_m=3.63, heading_rad=0.0, laps=0.0, collisions=0, world_version=0)
+
+
+A_HELLO = Hello(
+    version=1,
+    boot=b"boot",
+    tick=100,
+    robot="kurt2-indoor",
+    task="wall_following",
+    radius=700.0,
+    period_s=0.01,
+    actions=("forward", "spin_left", "spin_right"),
+    sensors=tuple(
+        SensorPlace(each.name, each.label, each.x_m, each.y_m, each.heading_deg)
+        for each in load_robot().infrared.sensors
+    ),
+    outline=(0.434, 0.33),
+    max_m_s=0.6,
+    simulated=True,
+    phases=("supervised", "corrections", "reinforcement", "critic", "autonomous"),
+)
+A_WORLD = World(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
+A_LESSON = LessonLine("phone-0a", "RLA 1: forward", "phone", 1, 90, "2026-11-21T12:04:00Z", False)
+
+
+@dataclass
+class FakeRobot:
+    """Implements kurt2rt.page.robot_link.RobotLink."""
+
+    told: list[tuple[Any, ...]] = field(default_factory=list)
+    silent: bool = False
+    refuses: str = ""
+    watching: bool = False
+    pressing: bool = False
+    refused: str = ""
+    trouble: str = ""
+    state_age_s: float = math.inf
+    state: State | None = None
+    link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
+    _news: anyio.Event = field(default_factory=anyio.Event)
+
+    def show(self, **changes: Any) -> State:
+        """A new picture, changed from the last one, two ticks later unless told otherwise."""
+        last = self.state or A_STATE
+        self.state = replace(last, **{"tick": last.tick + 2, **changes})
+        self.state_age_s = 0.0
+        self._news.set()
+        self._news = anyio.Event()
+        return self.state
+
+    async def states(self) -> AsyncIterator[State]:
+        seen = None
+        while True:
+            if self.state is None or self.state is seen:
+                await self._news.wait()
+                continue
+            seen = self.state
+            yield seen
+
+    def press(self, left_m_s: float, right_m_s: float) -> bool:
+        self.told.append(("press", left_m_s, right_m_s))
+        self.pressing = True
+        return True
+
+    async def let_go(self) -> Answer | None:
+        self.pressing = False
+        return await self._answer("let_go")
+
+    async def hello(self) -> Hello:
+        await self._answer("hello")
+        return A_HELLO
+
+    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        await self._answer("lessons", count)
+        return (A_LESSON,)
+
+    async def world(self) -> World | None:
+        await self._answer("world")
+        return A_WORLD
+
+    async def answer(self, action: str, *, of: int | None = None) -> Answer:
+        return await self._answer("answer", action, of)
+
+    async def correct(self, action: str, *, of: int | None = None) -> Answer:
+        return await self._answer("correct", action, of)
+
+    async def reward(self, value: int, *, of: int | None = None) -> Answer:
+        return await self._answer("reward", value, of)
+
+    async def undo(self, lesson: str | None = None) -> Answer:
+        return await self._answer("undo", lesson)
+
+    async def set_phase(self, phase: Phase) -> Answer:
+        return await self._answer("set_phase", phase)
+
+    async def begin_session(self, name: str) -> Answer:
+        return await self._answer("begin_session", name)
+
+    async def end_session(self) -> Answer:
+        return await self._answer("end_session")
+
+    async def stop(self) -> Answer:
+        self.pressing = False
+        return await self._answer("stop")
+
+    async def resume(self) -> Answer:
+        return await self._answer("resume")
+
+    async def take(self) -> Answer:
+        return await self._answer("take")
+
+    async def hand_over(self, to: str | None = None) -> Answer:
+        return await self._answer("hand_over", to)
+
+    async def save(self, label: str = "") -> Answer:
+        return await self._answer("save", label)
+
+    async def export(self) -> Answer:
+        return await self._answer("export")
+
+    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
+        return await self._answer("move_wall", name, dx, dy)
+
+    async def place(self, x: float, y: float, heading: float) -> Answer:
+        return await self._answer("place", x, y, heading)
+
+    async def _answer(self, *told: Any) -> Answer:
+        self.told.append(told)
+        if self.silent:
+            raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
+        await anyio.lowlevel.checkpoint()
+        if self.refuses:
+            return Answer(False, "refused", self.refuses, 0)
+        return Answer(True, "", f"{told[0]} done", 0)
