@@ -93,10 +93,10 @@ class Tick:
             if isinstance(command, Watch | Drive):
                 self._school.follow(command, tick)
                 continue
-            if blind and isinstance(command, Teach | Correct):
+            new = not self._school.has_taken(command.command_id)
+            if new and blind and isinstance(command, Teach | Correct) and command.decision_tick is None:
                 results.append(CommandResult(command.command_id, False, _BLIND))
                 continue
-            new = not self._school.has_taken(command.command_id)
             result, event = self._school.attend(command, situation, tick)
             results.append(result)
             if new and result.accepted and isinstance(command, Resume):
@@ -104,7 +104,7 @@ class Tick:
             if event is not None:
                 events.append(event)
         decision = self._decide(tick, situation, senses, blind=blind)
-        self._school.recent.remember(tick, situation, decision)
+        self._school.recent.remember(tick, situation, decision, blind=blind)
         mark(Stage.DECIDE)
 
         # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.

@@ -14,12 +14,17 @@ class RecentDecisions:
         self._capacity = capacity
         self._ticks = np.full(capacity, -1, dtype=np.int64)
         self._situations = np.zeros((capacity, dimensions))
+        self._seeing = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
+        self.newest = -1
+        """Tick of the newest decision; -1 before the first."""
 
-    def remember(self, tick: int, situation: Situation, decision: Decision) -> None:
-        """Keep what was decided in a tick; the oldest is forgotten."""
+    def remember(self, tick: int, situation: Situation, decision: Decision, *, blind: bool) -> None:
+        """Keep what was decided in a tick; the oldest is forgotten. A `blind` robot was in no situation."""
         row = tick % self._capacity
+        self.newest = tick
         self._ticks[row] = tick
+        self._seeing[row] = not blind
         self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
 
@@ -27,8 +32,12 @@ class RecentDecisions:
         """Whether that tick is kept: it ran, and not too long ago."""
         return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick
 
+    def saw(self, tick: int) -> bool:
+        """Whether the robot saw anything in a tick that is known."""
+        return bool(self._seeing[tick % self._capacity])
+
     def situation(self, tick: int) -> NDArray[np.float64]:
-        """Situation vector (d,) of a tick that is known; a view, to be copied by whoever keeps it."""
+        """Situation vector (d,) of a tick that is known and seen; a view, to be copied by whoever keeps it."""
         row: NDArray[np.float64] = self._situations[tick % self._capacity]
         return row
 
