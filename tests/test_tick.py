@@ -86,12 +86,14 @@ class Corridor:
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
         self.ledger = Ledger()
+        authority = Authority(repertoire, attended=attended)
+        self.school = School(self.level, authority, insert_beyond_share=0.5, taken_command_ids=())
         robot: Robot = self.robot
         self.tick = Tick(
             robot,
             Perception(small, SENSORS),
             self.level,
-            School(self.level, Authority(repertoire, attended=attended), insert_beyond_share=0.5, taken_command_ids=()),
+            self.school,
             self.inbox,
             self.notebook,
             self.statistics,

@@ -4,10 +4,38 @@ import math
 
 import pytest
 
-from kurt2rt.rla.rla import ActionReplaced, Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+from kurt2rt.rla.rla_system import Appraisal, RlaSystem
 from kurt2rt.teaching.authority import Authority
-from kurt2rt.teaching.commands import Command, CommandResult
+from kurt2rt.teaching.commands import (
+    BeginSession,
+    Command,
+    CommandResult,
+    Correct,
+    Drive,
+    EndSession,
+    HandOver,
+    Reward,
+    RunBehaviour,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
 from kurt2rt.teaching.school import School
 from tests.layers.helpers import RADIUS, SmallLevel, situation
 from tests.rla.helpers import created
@@ -33,11 +61,27 @@ class Lesson:
 
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
         self.tick += 1
+        assert not isinstance(command, Watch | Drive)
         result, event = self.school.attend(command, situation(place), self.tick)
         assert result.command_id == command.command_id
         if event is not None:
             self.events.append(event)
         return result
+
+    def go_on(self, place: float, ticks: int = 1, *, blind: bool = False) -> int:
+        """So many ticks in one place, decided as the robot would; returns the last of them."""
+        for _ in range(ticks):
+            self.tick += 1
+            decision = self.small.at(place, Cause.BLIND if blind else None)
+            self.school.recent.remember(self.tick, situation(place), decision, blind=blind)
+        return self.tick
+
+    def drive(self, teacher: str = "Ann", hold: int = 1) -> str | None:
+        """A press arrives in the next tick; why it does not drive the robot."""
+        self.tick += 1
+        refusal = self.school.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
+        assert (refusal is None) == self.school.authority.hand_on_wheel(self.tick)
+        return refusal
 
     @property
     def actions(self) -> dict[int, str]:
@@ -204,3 +248,259 @@ def test_the_events_of_a_lesson_fold_to_the_same_knowledge() -> None:
     assert again.rlas == lesson.small.level.system.rlas
     assert again.knowledge_hash() == lesson.small.level.system.knowledge_hash()
     assert again.next_id == 5
+
+
+def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    wrong = lesson.go_on(0.0)
+    lesson.go_on(50.0, 20)
+    result = lesson.say(Correct("c-1", "Ann", "c", wrong), place=50.0)
+    assert result.text == "RLA 1 corrected: c instead of a"
+    assert lesson.actions == {1: "c", 2: "b"}
+    assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
+
+
+def test_an_answer_stands_where_the_robot_asked_though_it_was_put_elsewhere_since() -> None:
+    lesson = Lesson()
+    asked = lesson.go_on(2.5)
+    lesson.go_on(80.0)
+    lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
+    assert lesson.small.at(2.5).action == "a"
+    assert lesson.small.at(80.0).asking
+    assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
+
+
+def test_an_answer_that_is_kept_does_not_change_with_what_comes_after_it() -> None:
+    lesson = Lesson()
+    asked = lesson.go_on(2.5)
+    lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
+    lesson.go_on(90.0, 1000)  # the place of that tick in memory is used anew
+    assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
+
+
+@pytest.mark.parametrize("kind", ["teach", "correct", "reward"])
+@pytest.mark.parametrize("which", ["future", "present", "forgotten", "missed"])
+def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    first = lesson.go_on(0.0)
+    lesson.tick += 1  # a tick that was missed
+    if which == "forgotten":
+        lesson.go_on(0.0, 1000)
+    meant = {"future": lesson.tick + 50, "present": lesson.tick + 1, "forgotten": first, "missed": first + 1}[which]
+    commands: dict[str, Command] = {
+        "teach": Teach("x", "Ann", "b", meant),
+        "correct": Correct("x", "Ann", "b", meant),
+        "reward": Reward("x", "Ann", 1, meant),
+    }
+    result = lesson.say(commands[kind])
+    assert (result.accepted, result.lesson) == (False, False)
+    assert result.text == f"the decision of tick {meant} is not remembered any more; look at the newest picture"
+    assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
+    assert not lesson.school.has_taken("x")
+
+
+def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    first = lesson.go_on(0.0)
+    lesson.go_on(50.0, 999)
+    assert lesson.say(Correct("x", "Ann", "b", first), place=50.0).text == "RLA 1 corrected: b instead of a"
+
+
+def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    dark = lesson.go_on(33.0, blind=True)
+    lesson.go_on(0.0)
+    for command in (Teach("x", "Ann", "b", dark), Correct("x", "Ann", "b", dark)):
+        result = lesson.say(command)
+        assert (result.accepted, lesson.actions) == (False, {1: "a"})
+        assert "silent then" in result.text
+
+
+@pytest.mark.parametrize(("value", "word", "appraisal"), [(1, "rewarded", (1, 0)), (-1, "punished", (0, 1))])
+def test_a_reward_goes_to_the_rla_that_drove_in_the_tick_it_names(
+    value: int, word: str, appraisal: tuple[int, int]
+) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    good = lesson.go_on(0.0)
+    lesson.go_on(50.0, 20)
+    result = lesson.say(Reward("r-1", "Ann", value, good), place=50.0)
+    assert (result.text, result.lesson) == (f"RLA 1 {word}", True)
+    assert lesson.events[-1] == RlaRewarded(1, value, good, Origin("r-1", "Ann", Phase.SUPERVISED, lesson.tick))
+    assert lesson.small.level.system.appraisal(1) == Appraisal(*appraisal)
+    assert lesson.small.level.system.appraisal(2) == Appraisal()
+
+
+def test_a_reward_without_a_tick_means_the_newest_decision_also_after_a_missed_tick() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    newest = lesson.go_on(0.0)
+    lesson.tick += 5  # missed
+    assert lesson.say(Reward("r-1", "Ann", 1)).text == "RLA 1 rewarded"
+    event = lesson.events[-1]
+    assert isinstance(event, RlaRewarded)
+    assert event.decided_at_tick == newest
+
+
+def test_there_is_nothing_to_reward_where_no_rla_drove_or_it_is_gone() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    assert not lesson.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
+    asked = lesson.go_on(50.0)
+    assert lesson.say(Reward("r-1", "Ann", 1, asked)).text == (
+        "no RLA drove the robot then; there is nothing to reward or to punish"
+    )
+    drove = lesson.go_on(0.0)
+    lesson.say(delete(1))
+    assert lesson.say(Reward("r-2", "Ann", -1, drove)).text == "there is no RLA 1; it may have been deleted"
+
+
+def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(correct("b", "2"), place=0.0)
+    assert lesson.say(Undo("u-1", "Ann")).lesson
+    assert lesson.actions == {1: "a"}
+    lesson.say(Undo("u-2", "Ann"))
+    assert lesson.actions == {}
+    undone = [event.lesson for event in lesson.events if isinstance(event, LessonUndone)]
+    assert undone == ["2", "1"]
+    result = lesson.say(Undo("u-3", "Ann"))
+    assert (result.accepted, result.text) == (False, "there is no lesson to undo")
+
+
+def test_undo_of_a_named_lesson_leaves_the_later_ones_of_other_rlas() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(teach("b", "2"), place=50.0)
+    assert lesson.say(Undo("u-1", "Ann", "1")).accepted
+    assert lesson.actions == {2: "b"}
+
+
+def test_an_undo_says_what_it_took_back() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"))
+    assert lesson.say(Undo("u-1", "Ann")).text == "undone: RLA 1 taught: a"
+
+
+def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(correct("b", "2"), place=0.0)
+    refused = lesson.say(Undo("u-1", "Ann", "1"))
+    assert (refused.accepted, refused.lesson) == (False, False)
+    assert "'2' came after '1'" in refused.text
+    assert not lesson.say(Undo("u-2", "Ann", "never was")).accepted
+    assert lesson.actions == {1: "b"}
+    assert not lesson.school.has_taken("u-1")
+
+
+def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
+    lesson = Lesson()
+    school = lesson.school
+    assert lesson.say(EndSession("e-0", "Ann")).text == "no session is on"
+    assert school.teaching_ticks(lesson.tick) == 0
+    assert lesson.say(BeginSession("b-1", "Ann", "morning")).text == "session 'morning' begins"
+    began = lesson.tick
+    refused = lesson.say(BeginSession("b-2", "Ann", "noon"))
+    assert (refused.accepted, refused.text) == (False, "the session 'morning' is on; end it first")
+    assert (school.session, school.teaching_ticks(began + 70)) == ("morning", 70)
+
+    lesson.tick = began + 99
+    result = lesson.say(EndSession("e-1", "Ann"))
+    assert (result.text, result.lesson) == ("session 'morning' is over; the robot stands", True)
+    assert school.stopped_because == "the session 'morning' is over"
+    assert school.teaching_ticks(began + 5000) == 100
+    assert lesson.say(EndSession("e-2", "Ann")).text == "no session is on"
+    assert lesson.events == [
+        SessionBegun("morning", Origin("b-1", "Ann", Phase.SUPERVISED, began)),
+        SessionEnded(100, Origin("e-1", "Ann", Phase.SUPERVISED, began + 100)),
+    ]
+    lesson.say(BeginSession("b-3", "Ann", "noon"))
+    assert school.teaching_ticks(lesson.tick) == 0
+
+
+def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"))
+    refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
+    assert (refused.accepted, refused.text) == (False, "Ann teaches now; ask to be handed over to, or take the robot")
+    assert lesson.drive("Ben") == refused.text
+    assert lesson.school.follow(Watch("Ben", lesson.tick), lesson.tick) == refused.text
+    assert lesson.say(Take("3", "Ben")).text == "Ben teaches"
+    assert lesson.say(Teach("2", "Ben", "b"), place=50.0).accepted
+    assert not lesson.say(teach("c", "4"), place=90.0).accepted
+
+
+def test_to_be_there_is_not_to_speak() -> None:
+    lesson = Lesson()
+    assert lesson.school.follow(Watch("Ben", 100), 100) is None
+    assert lesson.school.authority.teacher is None
+
+
+def test_handing_over_to_a_name_and_to_nobody() -> None:
+    lesson = Lesson()
+    assert lesson.say(HandOver("1", "Ann", "Ben")).text == "Ben teaches now"
+    assert not lesson.say(HandOver("2", "Ann")).accepted
+    assert lesson.say(HandOver("3", "Ben")).text == "nobody teaches now"
+    assert lesson.say(Teach("4", "Cleo", "a")).accepted
+    assert lesson.school.authority.teacher == "Cleo"
+
+
+def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
+    lesson = Lesson()
+    assert lesson.say(Stop("1", "Ben")).accepted
+    assert lesson.school.authority.held_by_another("Dora") is None
+    lesson.say(teach("a", "2"))
+    lesson.say(Stop("3", "Cleo"))
+    assert (lesson.school.stopped_because, lesson.school.authority.teacher) == ("Cleo said stop", "Ann")
+
+
+def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
+    lesson = Lesson()
+    assert lesson.drive(hold=1) is None
+    lesson.say(stop())
+    assert lesson.drive(hold=1) == "this press was ended by a stop; let go and press anew"
+    assert lesson.drive(hold=2) is None
+
+
+def test_after_another_ones_stop_a_new_press_waits_for_resume() -> None:
+    lesson = Lesson()
+    assert lesson.drive(hold=1) is None
+    lesson.say(Stop("1", "Ben"))
+    assert lesson.drive(hold=2) == "Ben stopped the robot; say resume first"
+    assert lesson.say(RunBehaviour("2", "Ann", "a", 10)).text == "Ben stopped the robot; say resume first"
+    lesson.say(resume())
+    assert lesson.drive(hold=2) is None
+
+
+@pytest.mark.parametrize("own", [Stop("2", "Ann"), EndSession("2", "Ann")])
+def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
+    """A copy of it may come late; the other one must not have stopped the robot for nothing."""
+    lesson = Lesson()
+    lesson.say(BeginSession("0", "Ann", "morning"))
+    lesson.say(Stop("1", "Ben"))
+    assert lesson.say(own).accepted
+    assert lesson.drive() == "Ben stopped the robot; say resume first"
+    lesson.say(resume())
+    assert lesson.drive() is None
+
+
+def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> None:
+    lesson = Lesson()
+    assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).text == "b for 10 ticks"
+    hand = lesson.school.authority.hand_on_wheel
+    assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
+    assert lesson.school.stopped_because == "b is over"
+
+
+def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
+    lesson = Lesson()
+    result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
+    assert (result.accepted, result.text) == (False, "there is no action 'fly'; the repertoire has: a, b, c")
+    assert not lesson.school.stopped_because
+
+
+def test_resume_ends_what_the_hand_was_doing() -> None:
+    lesson = Lesson()
+    lesson.drive(hold=4)
+    lesson.say(resume())
+    assert not lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert lesson.drive(hold=4) == "this press was ended by a stop; let go and press anew"

@@ -1,0 +1,72 @@
+"""The decisions of the last seconds, by their ticks."""
+
+import numpy as np
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.perception.perception import Situation
+from kurt2rt.teaching.recent import RecentDecisions
+
+
+def remembered(*ticks: int, capacity: int = 10) -> RecentDecisions:
+    """In each tick the situation is its number, and RLA 100 + number drives."""
+    recent = RecentDecisions(2, capacity)
+    for tick in ticks:
+        remember(recent, tick)
+    return recent
+
+
+def remember(recent: RecentDecisions, tick: int, *, blind: bool = False) -> None:
+    situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
+    recent.remember(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None), blind=blind)
+
+
+@pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
+def test_nothing_is_known_before_the_first_tick(tick: int) -> None:
+    assert not remembered().knows(tick)
+    assert remembered().newest == -1
+
+
+def test_each_tick_has_its_own_situation_and_rla() -> None:
+    recent = remembered(3, 4, 5)
+    for tick in (3, 4, 5):
+        assert recent.knows(tick)
+        assert recent.saw(tick)
+        assert recent.situation(tick).tolist() == [tick, -tick]
+        assert recent.rla(tick) == 100 + tick
+    assert recent.newest == 5
+
+
+def test_as_many_as_fit_are_kept_and_the_oldest_is_forgotten() -> None:
+    recent = remembered(*range(1, 11))
+    assert [recent.knows(tick) for tick in (0, 1, 10, 11)] == [False, True, True, False]
+    remember(recent, 11)
+    assert [recent.knows(tick) for tick in (1, 2, 11, 12)] == [False, True, True, False]
+
+
+def test_what_is_forgotten_or_still_to_come_is_not_taken_for_what_lies_in_its_place() -> None:
+    recent = remembered(23)
+    assert not any(recent.knows(tick) for tick in (3, 13, 33, 2**53 - 2**53 % 10 + 3))
+
+
+def test_a_missed_tick_is_not_known() -> None:
+    recent = remembered(1, 2, 5)
+    assert [recent.knows(tick) for tick in range(1, 6)] == [True, True, False, False, True]
+
+
+def test_a_tick_in_which_the_robot_saw_nothing_is_known_as_such() -> None:
+    recent = remembered(1)
+    remember(recent, 2, blind=True)
+    assert recent.knows(2)
+    assert not recent.saw(2)
+    assert recent.saw(1)
+    remember(recent, 12)
+    assert recent.saw(12)
+
+
+def test_a_thousand_ticks_are_kept() -> None:
+    recent = RecentDecisions(2)
+    for tick in range(1, 1002):
+        remember(recent, tick)
+    assert [recent.knows(tick) for tick in (1, 2, 1001)] == [False, True, True]

@@ -1,0 +1,391 @@
+"""The tick as a story, continued: teachers who are there or not, a hand on the wheels, and decisions of the past."""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.rla import Phase, RlaRewarded
+from kurt2rt.teaching.commands import (
+    BeginSession,
+    Command,
+    Correct,
+    DeleteRla,
+    Drive,
+    EndSession,
+    HandOver,
+    Resume,
+    Reward,
+    RunBehaviour,
+    SetPhase,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
+from kurt2rt.tick import TickRecord
+from tests.teaching.helpers import correct, resume, set_phase, stop, teach
+from tests.test_tick import FORWARD, Corridor
+
+LEASE, REACH = 30, 35
+BY_HAND = WheelSpeeds(0.21, 0.19)
+
+
+def press(corridor: Corridor, hold: int = 1, *, teacher: str = "Ann", age: int = 0) -> Drive:
+    """One message of a press that arrives in the next tick, on the picture of `age` ticks before that."""
+    return Drive(teacher, corridor.ticks + 1 - age, hold, *BY_HAND)
+
+
+def watch(corridor: Corridor, teacher: str = "Ann", *, age: int = 0) -> Watch:
+    return Watch(teacher, corridor.ticks + 1 - age)
+
+
+def causes(corridor: Corridor, ticks: int, counts: int | None = None) -> list[Cause]:
+    return [corridor.run(counts).decision.cause for _ in range(ticks)]
+
+
+def stands(record: TickRecord) -> bool:
+    return record.grant.wheel_speeds == STANDSTILL
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    """A robot that needs nobody and drives forward where the counts are 100."""
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    corridor.run(100)
+    return corridor
+
+
+@pytest.fixture
+def attended() -> Corridor:
+    """A robot that needs a teacher, was taught to drive forward at 100, and whose teacher is not there just now."""
+    corridor = Corridor(attended=True)
+    corridor.run(100, teach("forward", "first"))
+    return corridor
+
+
+def test_a_press_drives_for_its_lease_and_then_the_robot_stands_though_it_knows_the_way(driving: Corridor) -> None:
+    first = driving.run(100, press(driving))
+    assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (Cause.TEACHER, "by hand", None)
+    assert first.grant.wheel_speeds == BY_HAND
+    assert first.decision.match is not None  # what the robot would have done stays to be seen
+    assert causes(driving, LEASE - 1) == [Cause.TEACHER] * (LEASE - 1)
+    assert causes(driving, 200) == [Cause.STOPPED] * 200
+    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+
+
+def test_a_press_held_back_on_its_way_drives_until_35_ticks_after_its_picture(driving: Corridor) -> None:
+    driving.run(100, press(driving, age=20))
+    assert causes(driving, 20) == [Cause.TEACHER] * (REACH - 20 - 1) + [Cause.STOPPED] * 6
+
+
+def test_a_press_on_a_picture_35_ticks_old_does_not_move_the_robot(driving: Corridor) -> None:
+    assert stands(driving.run(100, press(driving, age=REACH)))
+    assert stands(driving.run(100, press(driving, 1)))  # and is over
+    assert driving.run(100, press(driving, 2)).grant.wheel_speeds == BY_HAND
+
+
+def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -> None:
+    driving.run(100, press(driving, hold=5))
+    causes(driving, LEASE)
+    assert driving.run(100, press(driving, hold=5)).decision.cause is Cause.STOPPED
+    assert driving.run(100, press(driving, hold=4)).decision.cause is Cause.STOPPED
+    assert driving.run(100, press(driving, hold=6)).decision.cause is Cause.TEACHER
+
+
+@pytest.mark.parametrize("by", ["Ann", "Ben"])
+def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by: str) -> None:
+    driving.run(100, press(driving))
+    record = driving.run(100, press(driving), Stop("s", by), press(driving))
+    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert stands(driving.run(100, press(driving)))
+    assert (driving.run(100, press(driving, hold=2)).decision.cause is Cause.TEACHER) == (by == "Ann")
+    driving.run(100, resume())
+    assert driving.run(100, press(driving, hold=3)).decision.cause is Cause.TEACHER
+
+
+def test_what_is_driven_by_hand_goes_into_the_history_and_belongs_to_no_rla(driving: Corridor) -> None:
+    driving.run(100, press(driving))
+    uses = dict(driving.statistics.uses)
+    record = driving.run(110)
+    assert not record.situation.history_frozen
+    assert driving.statistics.uses == uses
+
+
+def test_a_hand_moves_a_robot_that_knows_nothing() -> None:
+    corridor = Corridor()
+    assert corridor.run(100).decision.asking
+    assert corridor.run(100, press(corridor)).grant.wheel_speeds == BY_HAND
+
+
+def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
+    record = driving.run(100, RunBehaviour("b", "Ann", "back", 5))
+    assert (record.decision.cause, record.decision.action) == (Cause.TEACHER, "back")
+    assert causes(driving, 6) == [Cause.TEACHER] * 4 + [Cause.STOPPED] * 2
+    assert driving.run(100, resume()).decision.action == "forward"
+
+
+def test_without_its_teacher_an_attended_robot_stands_where_it_knows_the_way_and_asks_where_not(
+    attended: Corridor,
+) -> None:
+    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
+    assert causes(attended, 5, 400) == [Cause.UNKNOWN] * 5
+    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
+    assert set(attended.robot.driven) == {STANDSTILL}
+
+
+def test_it_drives_while_its_teacher_is_there_and_stands_until_resume_when_it_lost_him(attended: Corridor) -> None:
+    attended.run(100, watch(attended))
+    assert causes(attended, LEASE - 1) == [Cause.RLA] * (LEASE - 1)
+    assert attended.run(100).decision.cause is Cause.STOPPED
+    assert causes(attended, 50) == [Cause.STOPPED] * 50
+    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
+    assert attended.run(100, watch(attended), resume()).decision.cause is Cause.RLA
+
+
+@pytest.mark.parametrize(("age", "there"), [(0, LEASE), (5, LEASE), (6, LEASE - 1), (34, 1), (35, 0)])
+def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor, age: int, there: int) -> None:
+    attended.ticks += 100
+    cause = [attended.run(100, watch(attended, age=age)).decision.cause, *causes(attended, LEASE)]
+    assert cause[:there] == [Cause.RLA] * there
+    assert set(cause[there:]) == {Cause.STOPPED if there else Cause.UNATTENDED}
+
+
+def test_who_watches_all_the_time_is_never_lost(attended: Corridor) -> None:
+    for _ in range(20):
+        assert attended.run(100, watch(attended, age=10)).decision.cause is Cause.RLA
+        assert causes(attended, REACH - 10 - 1) == [Cause.RLA] * (REACH - 10 - 1)
+
+
+def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:
+    attended.run(400, watch(attended))
+    assert causes(attended, 60, 400) == [Cause.UNKNOWN] * 60
+    assert causes(attended, 2, 100) == [Cause.UNATTENDED] * 2
+    assert attended.run(100, watch(attended)).decision.cause is Cause.RLA
+
+
+def test_another_ones_watching_does_not_count(attended: Corridor) -> None:
+    assert attended.run(100, watch(attended, "Ben")).decision.cause is Cause.UNATTENDED
+
+
+def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corridor) -> None:
+    attended.run(100, watch(attended))
+    record = attended.run(100, watch(attended), Take("take", "Ben"))
+    assert record.results[0].accepted
+    assert stands(record)
+    assert attended.run(100, watch(attended, "Ben"), Resume("r", "Ben")).decision.cause is Cause.RLA
+
+
+def test_in_the_fifth_phase_it_needs_nobody_and_leaving_it_stops_a_robot_that_is_alone(attended: Corridor) -> None:
+    attended.run(100, set_phase(Phase.AUTONOMOUS))
+    assert causes(attended, 200) == [Cause.RLA] * 200
+    assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is Cause.STOPPED
+
+
+@pytest.mark.parametrize("phase", [phase for phase in Phase if phase is not Phase.AUTONOMOUS])
+def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> None:
+    attended.run(100, set_phase(phase))
+    assert attended.run(100).decision.cause is Cause.UNATTENDED
+
+
+def test_a_robot_that_is_taught_inside_its_own_program_needs_nobody(driving: Corridor) -> None:
+    assert causes(driving, 200) == [Cause.RLA] * 200
+
+
+def test_a_press_makes_its_teacher_be_there_but_when_it_ends_the_robot_stands(attended: Corridor) -> None:
+    attended.run(100, press(attended))
+    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
+
+
+def test_a_behaviour_ends_with_the_presence_of_its_teacher(attended: Corridor) -> None:
+    attended.run(100, watch(attended), RunBehaviour("b", "Ann", "back", 500))
+    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
+    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
+
+
+def test_a_blind_robot_takes_no_lesson_of_now_but_one_of_the_time_when_it_saw(driving: Corridor) -> None:
+    seen = driving.run(400).tick
+    driving.robot.infrared_age_s = math.inf
+    dark = driving.run(400).tick
+    record = driving.run(
+        400,
+        Teach("now", "Ann", "back"),
+        Correct("dark", "Ann", "back", dark),
+        Teach("seen", "Ann", "back", seen),
+    )
+    assert [result.accepted for result in record.results] == [False, False, True]
+    assert "silent" in record.results[0].text
+    assert "silent" in record.results[1].text
+    driving.robot.infrared_age_s = 0.0
+    assert not driving.run(400, Correct("late", "Ann", "forward", dark)).results[0].accepted
+    assert driving.run(400).decision.action == "back"
+
+
+def test_in_the_dark_a_copy_of_a_lesson_that_counted_is_not_called_refused(driving: Corridor) -> None:
+    driving.robot.infrared_age_s = math.inf
+    (result,) = driving.run(100, teach("forward", "first")).results
+    assert result.text == "had been taken already; counted once"
+
+
+def test_a_correction_of_a_past_decision_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
+    wrong = driving.run(100).tick
+    driving.run(115, Teach("second", "Ann", "back"))
+    record = driving.run(115, Correct("c", "Ann", "back", wrong))
+    assert record.decision.rla_id == 2
+    assert driving.run(100, correct("back", "again")).results[0].text == "RLA 1 says back already"
+    assert driving.run(100).decision.action == "back"
+
+
+def test_a_reward_for_a_past_decision_goes_to_its_rla_and_is_kept(driving: Corridor) -> None:
+    good = driving.run(100).tick
+    driving.run(115, Teach("second", "Ann", "back"))
+    for _ in range(20):
+        driving.run(115)
+    driving.run(115, Reward("r", "Ann", 1, good))
+    event = driving.notebook.events[-1]
+    assert isinstance(event, RlaRewarded)
+    assert (event.rla_id, event.decided_at_tick, event.origin.tick) == (1, good, driving.ticks)
+
+
+def test_what_the_hand_did_is_not_an_rlas_to_be_blamed_for(driving: Corridor) -> None:
+    by_hand = driving.run(100, press(driving)).tick
+    (result,) = driving.run(100, Reward("r", "Ann", -1, by_hand)).results
+    assert not result.accepted
+    assert "no RLA drove" in result.text
+
+
+def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:
+    driving.robot.emergency_stop("bumper")
+    record = driving.run(100, Resume("r", "Ben"))
+    assert not record.results[0].accepted
+    assert record.grant.latched
+
+
+def test_while_it_is_latched_the_lease_runs_out_and_the_press_is_over(driving: Corridor) -> None:
+    driving.run(100, press(driving))
+    driving.robot.emergency_stop("bumper")
+    causes(driving, LEASE)
+    driving.robot.release()
+    assert stands(driving.run(100, press(driving)))
+
+
+def test_stop_and_resume_of_one_tick_count_in_their_order(driving: Corridor) -> None:
+    assert driving.run(100, resume("1"), stop("2")).decision.cause is Cause.STOPPED
+    assert driving.run(100, stop("3"), resume("4")).decision.cause is Cause.RLA
+
+
+NAMES = st.sampled_from(["Ann", "Ben", "Cleo"])
+TICKS = st.integers(0, 60)
+HOLDS = st.integers(0, 4)
+
+Kind = Callable[[str, str, int, int], Command]
+"""Makes a command of: command id, teacher, tick that is meant, number of the press."""
+
+KINDS: list[Kind] = [
+    lambda _, who, tick, hold: Drive(who, tick, hold, *BY_HAND),
+    lambda _, who, tick, hold: Drive(who, tick, hold + 10, *BY_HAND),
+    lambda _, who, tick, hold: Drive(who, tick, hold + 20, *BY_HAND),
+    lambda _, who, tick, __: Watch(who, tick),
+    lambda name, who, _, __: Stop(name, who),
+    lambda name, who, _, __: Resume(name, who),
+    lambda name, who, _, __: Resume(name, who),
+    lambda name, who, _, __: Take(name, who),
+    lambda name, who, _, hold: HandOver(name, who, [None, "Ann", "Ben", "Cleo", "nobody here"][hold]),
+    lambda name, who, _, hold: RunBehaviour(name, who, "back", 10 * hold + 1),
+    lambda name, who, _, hold: SetPhase(name, who, Phase(hold + 1)),
+    lambda name, who, tick, hold: Teach(name, who, "forward", tick if hold else None),
+    lambda name, who, tick, hold: Correct(name, who, "back", tick if hold else None),
+    lambda name, who, tick, hold: Reward(name, who, 1, tick if hold else None),
+    lambda name, who, _, hold: DeleteRla(name, who, hold),
+    lambda name, who, _, __: Undo(name, who),
+    lambda name, who, _, __: BeginSession(name, who, "morning"),
+    lambda name, who, _, __: EndSession(name, who),
+]
+
+COURSES = st.lists(
+    st.tuples(
+        st.integers(0, 12),  # ticks until then
+        st.lists(st.tuples(st.sampled_from(KINDS), NAMES, st.integers(0, 45), HOLDS, st.booleans()), max_size=3),
+        st.sampled_from([100, 100, 120, 400]),
+    ),
+    max_size=25,
+)
+"""What arrives: after so many ticks, these commands (kind, who, age of the picture, press, whether as an old copy)."""
+
+
+class Witness:
+    """Knows the rules and nothing of the code: who stopped the robot, and which press may drive it."""
+
+    def __init__(self) -> None:
+        self.pressed_at: dict[str, int] = {}
+        self.stops: set[str] = set()
+        """Who said stop since the last resume."""
+
+    def note(self, command: Command, tick: int, *, accepted: bool) -> None:
+        match command:
+            case Drive(teacher=who):
+                self.pressed_at[who] = tick
+            case Stop(teacher=who):
+                self.stops.add(who)
+            case Resume() if accepted:
+                self.stops.clear()
+
+
+@given(courses=COURSES, attended=st.booleans())
+@settings(max_examples=150)
+def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
+    courses: list[tuple[int, list[tuple[Kind, str, int, int, bool]], int]], attended: bool
+) -> None:
+    corridor = Corridor(attended=attended)
+    corridor.run(100, Teach("before", "Ann", "forward"), HandOver("free", "Ann"))
+    witness = Witness()
+    names = itertools.count()
+    said: list[Command] = []
+    for wait, messages, counts in courses:
+        for _ in range(wait):
+            check(corridor.run(counts), corridor, witness, attended=attended)
+        commands: list[Command] = []
+        for kind, who, age, hold, old in messages:
+            command = kind(f"{next(names)}", who, max(0, corridor.ticks + 1 - age), hold)
+            commands.append(said[len(said) // 2] if old and said else command)
+        said += commands
+        taken = {
+            id(command): not isinstance(command, Drive | Watch) and _taken(corridor, command) for command in commands
+        }
+        record = corridor.run(counts, *commands)
+        results = iter(record.results)
+        for command in commands:
+            accepted = isinstance(command, Drive | Watch) or next(results).accepted
+            witness.note(command, record.tick, accepted=accepted and not taken[id(command)])
+        check(record, corridor, witness, attended=attended)
+    assert corridor.school.authority.teacher in (None, "Ann", "Ben", "Cleo", "nobody here")
+
+
+def _taken(corridor: Corridor, command: Command) -> bool:
+    assert not isinstance(command, Drive | Watch)
+    return corridor.school.has_taken(command.command_id)
+
+
+def check(record: TickRecord, corridor: Corridor, witness: Witness, *, attended: bool) -> None:
+    """The rules, in one tick."""
+    school, decision = corridor.school, record.decision
+    moves = not stands(record)
+    if decision.action == "by hand":
+        teacher = school.authority.teacher
+        assert teacher is not None
+        assert record.tick - witness.pressed_at[teacher] < LEASE
+        assert witness.stops <= {teacher}
+    if moves and decision.cause is not Cause.TEACHER:
+        assert not witness.stops
+        assert not attended or school.phase is Phase.AUTONOMOUS or school.authority.present(record.tick)
+    if witness.stops and moves:
+        assert witness.stops == {school.authority.teacher}
+    if moves and decision.cause is Cause.TEACHER and attended:
+        assert school.authority.present(record.tick)
