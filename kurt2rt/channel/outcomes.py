@@ -34,7 +34,8 @@ class Outcomes:
 
     def _forget(self) -> None:
         while len(self._replies) >= self._capacity:
-            oldest = next(iter(self._replies))
-            if not self._replies[oldest].done():
-                return  # what is under way must not be taken for new when it comes again
+            # What is under way must not be taken for new when it comes again.
+            oldest = next((command_id for command_id, reply in self._replies.items() if reply.done()), None)
+            if oldest is None:
+                return
             del self._replies[oldest]

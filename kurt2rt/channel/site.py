@@ -23,6 +23,8 @@ _STATE = "/state"
 _DISCOVERY = ("GET", "/.well-known/core")
 _LINK_FORMAT = 40
 _CONFIRMED_EVERY_S = 1.0
+_NO_RESPONSE = 26
+"""Of no class is an answer to be sent (RFC 7967)."""
 _OBSERVE_MASK = 0xFFFFFF
 """An Observe number has 24 bits (RFC 7641, 4.4); some clients refuse longer ones."""
 
@@ -61,17 +63,17 @@ class _Observer:
     """One who gets every picture; a slow one misses the older ones."""
 
     def __init__(self) -> None:
-        self._next: asyncio.Future[bytes] = asyncio.get_running_loop().create_future()
+        self._newest = b""
+        self._is_new = asyncio.Event()
 
     def show(self, picture: bytes) -> None:
-        if self._next.done():
-            self._next = asyncio.get_running_loop().create_future()
-        self._next.set_result(picture)
+        self._newest = picture
+        self._is_new.set()
 
     async def picture(self) -> bytes:
-        picture = await self._next
-        self._next = asyncio.get_running_loop().create_future()
-        return picture
+        await self._is_new.wait()
+        self._is_new.clear()
+        return self._newest
 
 
 class RobotSite:
@@ -106,6 +108,7 @@ class RobotSite:
             pipe.add_response(_to_a_stranger(pipe.request), is_last=True)
             return
         except oscore.ProtectionInvalid:
+            _stay_silent(pipe)
             return
         try:
             keys = self._keys.find(unprotected)
@@ -115,6 +118,7 @@ class RobotSite:
             return
         except (KeyError, oscore.ProtectionInvalid):
             # Silence, also to a confirmable message: a stranger learns nothing, and nothing is to be amplified.
+            _stay_silent(pipe)
             return
         if self.doorkeeper is not None:
             self.doorkeeper.proved(pipe.request.remote)
@@ -145,15 +149,15 @@ class RobotSite:
             return aiocoap.Message(code=aiocoap.INTERNAL_SERVER_ERROR)
 
     async def _show_state(self, pipe: Any, request: Any, keys: Any, request_id: Any) -> None:
-        if request.opt.observe != 0:
-            pipe.add_response(_protected(keys, _state(self._picture), request_id), is_last=True)
-            return
         observer = _Observer()
         self._observers.add(observer)
         loop = asyncio.get_running_loop()
         try:
             confirm_at = loop.time()
             picture = self._picture or await observer.picture()
+            if request.opt.observe != 0:
+                pipe.add_response(_protected(keys, _state(picture), request_id), is_last=True)
+                return
             while True:
                 message = _state(picture)
                 message.opt.observe = 0
@@ -172,6 +176,11 @@ class RobotSite:
 def path_of(request: Any) -> str:
     """The path that a request names."""
     return "/" + "/".join(request.opt.uri_path)
+
+
+def _stay_silent(pipe: Any) -> None:
+    """Let aiocoap forget a request: one that is left without any answer stays in its memory for good."""
+    pipe.add_response(aiocoap.Message(code=aiocoap.UNAUTHORIZED, no_response=_NO_RESPONSE), is_last=True)
 
 
 def _to_a_stranger(request: Any) -> aiocoap.Message:
