@@ -1,8 +1,11 @@
 """The simulated world for a teacher who looks at it from above and reaches into it (kurt2rt.channel.ground.Ground)."""
 
+import shapely
+
 from hal.robot_settings import GeometrySettings
 from kurt2rt.channel.ground import Post, Wall, WorldView
 from kurt2rt.channel.state import SimulatedPlace
+from simbridge.geometry import rectangle
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
@@ -42,7 +45,7 @@ class SimulatedGround:
             world = self._world.moved(name, dx_m, dy_m)
         except KeyError as error:
             raise ValueError(error.args[0]) from error
-        if world.clearance_m(self._robot.pose, self._geometry) == 0.0:
+        if self._stands_on_robot(world, name):
             raise ValueError(f"{name} would stand where the robot is")
         self._world = world
         self._version += 1
@@ -54,3 +57,16 @@ class SimulatedGround:
         if self._world.clearance_m(pose, self._geometry) == 0.0:
             raise ValueError("there is no room for the robot there")
         self._simulation.ask(lambda: self._robot.place(pose))
+
+    def _stands_on_robot(self, world: WorldSettings, name: str) -> bool:
+        # Only this one: a robot that leans against another wall must not nail down all of them.
+        pose, geometry = self._robot.pose, self._geometry
+        body = shapely.Polygon(
+            rectangle((pose.x_m, pose.y_m), geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
+        )
+        corners = [each.corners for each in world.walls if each.name == name]
+        corners += [each.corners for each in world.polygon_obstacles if each.name == name]
+        posts = [each for each in world.round_obstacles if each.name == name]
+        return any(body.intersects(shapely.Polygon(each)) for each in corners) or any(
+            body.distance(shapely.Point(each.x_m, each.y_m)) <= each.radius_m for each in posts
+        )
