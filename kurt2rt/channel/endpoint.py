@@ -1,0 +1,216 @@
+"""The robot's UDP socket under aiocoap: one port, no matter what arrives there."""
+
+import asyncio
+import errno
+import ipaddress
+import logging
+import socket
+import time
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+import aiocoap
+from aiocoap.message import Direction
+from aiocoap.numbers.constants import TransportTuning
+from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
+
+from kurt2rt.channel.error import ChannelError
+from kurt2rt.channel.gate import Counters, Gate, Limits, SocketAddress
+
+_LOG = logging.getLogger(__name__)
+_LOGGED_EVERY_S = 1.0
+
+
+class Site(Protocol):
+    """Answers requests."""
+
+    async def render_to_pipe(self, pipe: Any) -> None:
+        """Answer one request; called by aiocoap in a task of its own."""
+        ...
+
+
+class _Answered:
+    """The robot's site, with an end for each request: aiocoap keeps one that is never answered, 7 kB, for ever."""
+
+    def __init__(self, site: Site) -> None:
+        self._site = site
+        self.tokens: Any = None
+        """aiocoap's token manager."""
+
+    async def render_to_pipe(self, pipe: Any) -> None:
+        await self._site.render_to_pipe(pipe)
+        key = (pipe.request.token, pipe.request.remote)
+        kept, lose_interest = self.tokens.incoming_requests.get(key, (None, None))
+        # Under the same token the sender may have asked anew meanwhile.
+        if kept is not None and kept.request is pipe.request:
+            lose_interest()
+
+
+class _Brief(TransportTuning):  # type: ignore[misc]  # Any
+    """Each message is remembered as a possible duplicate for so long; OSCORE refuses duplicates for ever anyway."""
+
+    EXCHANGE_LIFETIME = 10.0
+
+
+_BRIEF = _Brief()
+
+
+class _Failures(logging.Handler):
+    """Counts what goes wrong, keeps the newest as text, and logs at most once a second."""
+
+    def __init__(self, counters: Counters, now: Callable[[], float]) -> None:
+        super().__init__(logging.ERROR)
+        self._counters = counters
+        self._now = now
+        self._quiet_until_s = float("-inf")
+        self.newest = ""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """What aiocoap would log."""
+        self._counters.failed += 1
+        self.newest = text = record.getMessage()
+        now_s = self._now()
+        if now_s >= self._quiet_until_s:
+            self._quiet_until_s = now_s + _LOGGED_EVERY_S
+            _LOG.warning("teacher's channel: %s (%d failures so far)", text, self._counters.failed)
+
+
+class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
+    """aiocoap's UDP interface behind a gate. Nothing that arrives makes it raise."""
+
+    gate: Gate | None = None
+    """None until aiocoap's layers above are put together; what comes earlier is as good as lost."""
+
+    def datagram_msg_received(
+        self,
+        data: bytes,
+        ancdata: Sequence[tuple[int, int, bytes]],
+        flags: int,  # noqa: ARG002 - aiocoap's signature
+        address: SocketAddress,
+    ) -> None:
+        if self.gate is None:
+            return
+        try:
+            if not self.gate.admits(data, address):
+                return
+            packet_info = None
+            for level, kind, content in ancdata:
+                if (level, kind) == (socket.IPPROTO_IPV6, socket.IPV6_PKTINFO):
+                    packet_info = content
+            try:
+                message = aiocoap.Message.decode(data, UDP6EndpointAddress(address, self, pktinfo=packet_info))
+            except Exception:  # noqa: BLE001 - its own error, but also Unicode's and others for strange options
+                self.gate.count_junk()
+                return
+            message.direction = Direction.INCOMING
+            message.transport_tuning = _BRIEF
+            self._ctx.dispatch_message(message)
+        except Exception as error:  # noqa: BLE001 - whatever a datagram does, the next one is read
+            self.log.error("a datagram of %d bytes: %r", len(data), error)  # noqa: TRY400 - one line
+
+    def datagram_errqueue_received(
+        self, data: bytes, ancdata: Sequence[tuple[int, int, bytes]], flags: int, address: SocketAddress
+    ) -> None:
+        try:
+            super().datagram_errqueue_received(data, ancdata, flags, address)
+        except Exception as error:  # noqa: BLE001
+            self.log.error("an error report of the network: %r", error)  # noqa: TRY400
+
+    def error_received(self, exc: OSError) -> None:
+        try:
+            super().error_received(exc)
+        except Exception as error:  # noqa: BLE001
+            self.log.error("%r: %r", exc, error)  # noqa: TRY400
+
+
+class Endpoint:
+    """An open port. Keep it: when it is collected, the port closes."""
+
+    def __init__(
+        self, context: aiocoap.Context, port: int, gate: Gate, counters: Counters, failures: _Failures
+    ) -> None:
+        self._context = context
+        self._gate = gate
+        self._failures = failures
+        self.counters = counters
+        self.port = port
+
+    @property
+    def newest_failure(self) -> str:
+        """What went wrong last; empty while nothing did."""
+        return self._failures.newest
+
+    @property
+    def proven_senders(self) -> int:
+        """How many senders have a rate of their own."""
+        return self._gate.proven_senders
+
+    def proved(self, remote: Any) -> None:
+        """The sender of a request (its `remote`) holds a key: it no longer shares the strangers' rate."""
+        self._gate.proved(remote.sockaddr)
+
+    async def close(self) -> None:
+        """Close the port and end what is being answered."""
+        await self._context.shutdown()
+
+
+async def open_endpoint(
+    site: Site, host: str, port: int, *, limits: Limits | None = None, now: Callable[[], float] = time.monotonic
+) -> Endpoint:
+    """Listen on an address of this machine, "::" for all; port 0 takes a free one.
+
+    Raises ChannelError when the address is none of ours, or another program has the port.
+    """
+    loop = asyncio.get_running_loop()
+    counters = Counters()
+    gate = Gate(limits or Limits(), counters, now)
+    failures = _Failures(counters, now)
+    # Not registered anywhere: aiocoap's lines about single messages are neither formatted nor passed on.
+    log = logging.Logger("kurt2rt.channel.coap", logging.ERROR)
+    log.addHandler(failures)
+    answered = _Answered(site)
+    context = aiocoap.Context(loop=loop, serversite=answered)
+    context.log = log
+    bound = _bound(host, port)
+
+    await context._append_tokenmanaged_messagemanaged_transport(
+        lambda messages: _Socket._create_transport_endpoint(bound, messages, log, loop)
+    )
+    (tokens,) = context.request_interfaces
+    answered.tokens = tokens
+    tokens.token_interface.message_interface.gate = gate
+    return Endpoint(context, bound.getsockname()[1], gate, counters, failures)
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    try:
+        address = ipaddress.ip_address(host)
+    except ValueError as error:
+        raise ChannelError(f"{host!r} is no address; give one of this machine, such as 127.0.0.1 or ::") from error
+    text = f"::ffff:{address}" if address.version == 4 else str(address)
+    try:
+        opened = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
+    except OSError as error:
+        raise ChannelError(
+            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4; switch IPv6 on in its kernel"
+        ) from error
+    try:
+        opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
+        # No SO_REUSEPORT: two robot programs would each get a share of the teacher's messages.
+        opened.bind((text, port))
+    except (OSError, OverflowError) as error:
+        opened.close()
+        raise ChannelError(_why(error, host, port)) from error
+    return opened
+
+
+def _why(error: OSError | OverflowError, host: str, port: int) -> str:
+    match error:
+        case OSError(errno=errno.EADDRINUSE):
+            return f"UDP port {port} is in use, by another kurt2rt run perhaps; end that one, or give another port"
+        case OSError(errno=errno.EADDRNOTAVAIL):
+            return f"{host} is no address of this machine; give one that is, or :: for all"
+        case OSError(errno=errno.EACCES):
+            return f"UDP port {port} is not allowed to this user; give one above 1023"
+        case _:
+            return f"UDP port {port} at {host} cannot be opened ({error}); give another port or address"
