@@ -1,0 +1,136 @@
+"""`kurt2rt pair`."""
+
+import io
+import ipaddress
+import socket
+from pathlib import Path
+from typing import Annotated
+
+import segno
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from kurt2rt.channel import credentials
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, Pairing, paired
+from kurt2rt.service_settings import load_service
+
+_SOMEWHERE = ("192.0.2.1", 9)
+"""Nobody's address, which is routed like everybody's."""
+
+_TIME = "%Y-%m-%d %H:%M"
+
+
+def pair(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            help="Name of the device and so of its teacher: up to 24 of a-z, 0-9 and -.", show_default=False
+        ),
+    ] = None,
+    list_: Annotated[bool, typer.Option("--list", help="List who is paired; change nothing.")] = False,
+    renew: Annotated[
+        bool, typer.Option("--renew", help="Give NAME new keys and a new page address; the old ones are refused.")
+    ] = False,
+    revoke: Annotated[
+        bool, typer.Option("--revoke", help="Delete NAME's keys; a running robot refuses it within a second.")
+    ] = False,
+    host: Annotated[
+        str | None,
+        typer.Option(
+            help="Address of the machine that will run kurt2rt teach. Default: this one's.", show_default=False
+        ),
+    ] = None,
+    settings: Annotated[
+        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+    ] = "default",
+) -> None:
+    """Pair a teacher's device with this robot, and show the code that opens its page.
+
+    Makes two folders with a common secret: the robot's side, which stays here,
+    and the device's side, which kurt2rt teach uses. What to do next:
+
+        kurt2rt run                    the robot; a running one knows the new device within a second
+        kurt2rt teach --as NAME        the page for the device
+        then scan the code with the phone, or open the address
+
+    To run kurt2rt teach on another machine than the robot, move the device's
+    folder there (do not copy it: its message numbers count once), and give it
+    --robot and the robot's address. The robot listens beyond its own machine
+    only if a device is paired when it is started.
+
+    Nobody needs to be paired to teach at the robot's own machine.
+    """
+    service = load_service(settings)
+    teachers, devices = Path(service.teachers), Path(service.devices)
+    console = Console()
+    if list_ + renew + revoke > 1:
+        raise typer.BadParameter("one of these at a time", param_hint="--list, --renew, --revoke")
+    if list_:
+        console.print(_table(teachers, devices))
+        return
+    if name is None:
+        raise typer.BadParameter("whose device? Give it a name, such as anna-phone", param_hint="NAME")
+    if revoke:
+        credentials.revoke(teachers, devices, name)
+        _say(console, f"{name} is paired no longer")
+        return
+    change = credentials.renew if renew else credentials.pair
+    pairing = change(teachers, devices, name, port=service.port)
+    address = page_address(pairing, host or own_address(), service.page_port)
+    _say(
+        console,
+        f"{name} is paired",
+        f"robot's side   {pairing.teacher}",
+        f"device's side  {pairing.device.folder}",
+        f"next           kurt2rt run, and kurt2rt teach --as {name}",
+        f"its page       {address}",
+    )
+    # White on black whatever the terminal's colours are: cameras dislike negatives.
+    console.print(Text(_code(address), style="bright_white on black"), soft_wrap=True)
+
+
+def page_address(pairing: Pairing, host: str, port: int) -> str:
+    """What a device opens to be let in to its page."""
+    shown = f"[{host}]" if ":" in host else host
+    return f"http://{shown}:{port}/pair?token={pairing.device.token}"
+
+
+def own_address() -> str:
+    """This machine's address on the network where others are; 127.0.0.1 without a network."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(_SOMEWHERE)  # chooses the way and sends nothing
+        except OSError:
+            return "127.0.0.1"
+        address: str = probe.getsockname()[0]
+    return "127.0.0.1" if ipaddress.ip_address(address).is_unspecified else address
+
+
+def _code(address: str) -> str:
+    drawn = io.StringIO()
+    segno.make(address, micro=False).terminal(drawn, compact=True)
+    return drawn.getvalue().rstrip("\n")
+
+
+def _table(teachers: Path, devices: Path) -> Table | Text:
+    rows = paired(teachers)
+    if not rows:
+        return Text("Nobody is paired. Pair a device: kurt2rt pair NAME")
+    table = Table("name", "made (UTC)", "last used (UTC)", "device's side", box=SIMPLE_HEAD)
+    for row in rows:
+        used = "never" if row.used_at is None else row.used_at.strftime(_TIME)
+        table.add_row(row.name, row.made_at.strftime(_TIME), used, _where(row.name, devices))
+    return table
+
+
+def _where(name: str, devices: Path) -> str:
+    if name in OF_THIS_MACHINE:
+        return "this machine's own"
+    return "here" if (devices / name).is_dir() else "moved away"
+
+
+def _say(console: Console, *lines: str) -> None:
+    console.print(*lines, sep="\n", markup=False, highlight=False, soft_wrap=True)

@@ -1,0 +1,107 @@
+import io
+from pathlib import Path
+
+import pytest
+import segno
+import yaml
+
+from config import CONFIG_DIR
+from kurt2rt.channel.credentials import Device, local_pairing, read_device
+from kurt2rt.channel.teachers import Teachers
+from kurt2rt.cli.pair import own_address, page_address
+from tests.cli.helpers import CommandLine
+
+TEACHERS, DEVICES = Path("var/teachers"), Path("var/devices")
+
+
+def device_of(name: str) -> Device:
+    return read_device(DEVICES / name)
+
+
+def code_of(address: str) -> str:
+    drawn = io.StringIO()
+    segno.make(address).terminal(drawn, compact=True)
+    return drawn.getvalue()
+
+
+def test_a_paired_device_is_told_where_its_page_is_as_text_and_as_a_code(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("pair", "anna-phone", "--host", "10.0.0.7")
+    assert said.exit_code == 0, said.err
+    address = f"http://10.0.0.7:8642/pair?token={device_of('anna-phone').token}"
+    assert address in said.out
+    assert code_of(address) in said.out
+    assert str(TEACHERS / "anna-phone") in said.out
+    assert str(DEVICES / "anna-phone") in said.out
+    assert "kurt2rt teach --as anna-phone" in said.out
+
+
+def test_the_robot_accepts_it_from_now_on(kurt2rt: CommandLine) -> None:
+    kurt2rt("pair", "anna-phone")
+    teachers = Teachers(TEACHERS)
+    assert teachers.names == ("anna-phone",)
+    assert not teachers.only_local
+    teachers.close()
+
+
+def test_without_a_host_the_address_is_this_machines(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("pair", "phone")
+    assert f"http://{own_address()}:8642/pair?token=" in said.out
+
+
+def test_an_address_of_the_newer_kind_is_put_in_brackets(tmp_path: Path) -> None:
+    pairing = local_pairing(tmp_path / "teachers", tmp_path / "devices")
+    assert page_address(pairing, "fe80::7", 80).startswith("http://[fe80::7]:80/pair?token=")
+
+
+def test_folders_and_ports_are_those_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    content = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
+    content |= {"teachers": "keys/robot", "devices": "keys/out", "port": 6000, "page_port": 9000}
+    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    said = kurt2rt("pair", "phone", "--settings", tmp_path / "mine.yaml")
+    assert read_device(Path("keys/out/phone")).port == 6000
+    assert Path("keys/robot/phone/secret.json").exists()
+    assert ":9000/pair?token=" in said.out
+
+
+def test_paired_twice_is_refused_and_told_how_to_renew(kurt2rt: CommandLine) -> None:
+    kurt2rt("pair", "phone")
+    before = device_of("phone")
+    assert "kurt2rt pair phone --renew" in kurt2rt.refused("pair", "phone")
+    assert device_of("phone") == before
+    said = kurt2rt("pair", "phone", "--renew")
+    assert said.exit_code == 0
+    assert device_of("phone").token != before.token
+    assert device_of("phone").token in said.out
+
+
+def test_a_revoked_device_is_listed_no_longer(kurt2rt: CommandLine) -> None:
+    kurt2rt("pair", "phone")
+    kurt2rt("pair", "tablet")
+    assert kurt2rt("pair", "--revoke", "phone").exit_code == 0
+    said = kurt2rt("pair", "--list")
+    assert "tablet" in said.out
+    assert "phone" not in said.out
+    assert "there is no such pairing; paired is: tablet" in kurt2rt.refused("pair", "--revoke", "phone")
+
+
+def test_the_list_tells_who_is_paired_and_where_the_device_is(kurt2rt: CommandLine) -> None:
+    assert "Nobody is paired" in kurt2rt("pair", "--list").out
+    kurt2rt("pair", "phone")
+    kurt2rt("pair", "tablet")
+    (DEVICES / "tablet").rename("tablet")
+    local_pairing(TEACHERS, DEVICES)
+    rows = [line.split() for line in kurt2rt("pair", "--list").out.splitlines() if "never" in line]
+    assert [(row[0], row[-1]) for row in rows] == [("local", "own"), ("phone", "here"), ("tablet", "away")]
+
+
+@pytest.mark.parametrize("name", ["Anna", "a b", "../robot", "local"])
+def test_what_is_no_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
+    assert kurt2rt.refused("pair", name)
+    assert not DEVICES.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "why"), [((), "whose device?"), (("phone", "--renew", "--revoke"), "one of these at a time")]
+)
+def test_what_makes_no_sense_is_told(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.misused("pair", *words)
