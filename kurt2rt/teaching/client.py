@@ -303,9 +303,7 @@ class TeacherClient:
         device = await anyio.to_thread.run_sync(_read_device, self._folder)
         self.name = device.name
         requests = await open_requests(self._folder, self._host or device.host, self._port or device.port)
-        # Larger than any number of an earlier run of this program, and growing slower than the clock.
-        first_number = time.time_ns() // 1_000_000
-        hand = Hand(self.name, self._pictures, requests, now=self._now, first_number=first_number)
+        hand = Hand(self.name, self._pictures, requests, now=self._now)
         self._parts = requests, hand
         try:
             async with anyio.create_task_group() as tasks:
@@ -325,7 +323,6 @@ class TeacherClient:
 
     async def _observe(self, requests: OscoreRequests) -> None:
         while True:
-            await requests.find_robot()
             before, began_s, newest = self._pictures.count, self._now(), -2
 
             def on_response(response: Response) -> None:
@@ -345,6 +342,8 @@ class TeacherClient:
                 if self._now() - began_s > SILENT_AFTER_S and self._pictures.age_s > SILENT_AFTER_S:
                     break
             observation.end()
+            if self._pictures.count == before:
+                await requests.find_robot()  # it may have another address by now
 
     def _show(self, response: Response, requests: OscoreRequests) -> None:
         if not response.successful:

@@ -1,6 +1,5 @@
 """The teacher's presence and the hand at the wheels: a stream of small messages of which the newest counts."""
 
-import itertools
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -51,12 +50,8 @@ class Hand:
         requests: OscoreRequests,
         *,
         now: Callable[[], float],
-        first_number: int,
     ) -> None:
-        """`name` is the teacher's; `now` is a monotonic clock in seconds.
-
-        `first_number` of presses and messages has to be larger than any that this device used before.
-        """
+        """`name` is the teacher's; `now` is a monotonic clock in seconds."""
         self.watching = True
         """Whether the teacher looks at the robot."""
         self.refused = ""
@@ -66,7 +61,6 @@ class Hand:
         self._pictures = pictures
         self._requests = requests
         self._now = now
-        self._numbers = itertools.count(first_number)
         self._press: _Press | None = None
         self._under_way: deque[_Sent] = deque()
 
@@ -92,7 +86,7 @@ class Hand:
         press = self._press
         begins = press is None
         if press is None:
-            press = _Press(next(self._numbers), state.boot, left_m_s, right_m_s)
+            press = _Press(self._requests.next_number, state.boot, left_m_s, right_m_s)
         encode_request(_drive(press, state, 0, left_m_s, right_m_s))
         press.left_m_s, press.right_m_s = left_m_s, right_m_s
         if begins:
@@ -131,12 +125,12 @@ class Hand:
         return self._pictures.newest if self._pictures.age_s <= BLIND_AFTER_S else None
 
     def _send_watch(self, state: State) -> None:
-        seq = next(self._numbers)
+        seq = self._requests.next_number
         request = WatchRequest(boot=state.boot, seq=seq, seen=state.tick)
         self._send(_Sent(seq, self._now(), None), request.path, encode_request(request))
 
     def _send_drive(self, state: State, press: _Press) -> None:
-        seq = next(self._numbers)
+        seq = self._requests.next_number
         request = _drive(press, state, seq, press.left_m_s, press.right_m_s)
         self._send(_Sent(seq, self._now(), press), request.path, encode_request(request))
 

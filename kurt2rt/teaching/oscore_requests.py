@@ -17,6 +17,8 @@ from aiocoap.numbers.constants import TransportTuning
 from aiocoap.pipe import Pipe
 from aiocoap.util import hostportjoin
 
+from kurt2rt.channel.context_folder import SECRET
+from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 from kurt2rt.channel.wire import CONTENT_FORMAT
 
@@ -84,7 +86,7 @@ class Exchange:
 class OscoreRequests:
     """An open socket and the device's side of a pairing. Sending never waits and never raises."""
 
-    def __init__(self, coap: Any, keys: OscoreContext, host: str, port: int) -> None:
+    def __init__(self, coap: Any, keys: OscoreContext, host: str, port: int, paired_ms: int) -> None:
         """Use `open_requests`."""
         self.trouble = ""
         """Why the robot is not reached, as far as the network tells; empty after each answer of the robot."""
@@ -94,7 +96,17 @@ class OscoreRequests:
         self._keys = keys
         self._host = host
         self._port = port
+        self._paired_ms = paired_ms
         self._robot: Any = None
+
+    @property
+    def next_number(self) -> int:
+        """Grows with each message, also from one run of this program to the next, and when the pairing is renewed.
+
+        That is the pairing's own count, which no clock sets back, from the millisecond of the pairing on.
+        """
+        number: int = self._keys.sender_sequence_number
+        return self._paired_ms + number
 
     @property
     def open_exchanges(self) -> int:
@@ -103,10 +115,10 @@ class OscoreRequests:
 
     async def find_robot(self) -> None:
         """Look its address up, anew each time: it may have got another one. A failure is told by `trouble`."""
-        probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
         try:
+            probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
             await self._coap.find_remote_and_interface(probe)
-        except (aiocoap.error.Error, OSError) as error:
+        except (aiocoap.error.Error, OSError, ValueError) as error:
             self.trouble = f"{self._host} is not found: {error}"
         else:
             self._robot = probe.remote
@@ -192,7 +204,7 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
 
     Raises CredentialsError.
     """
-    keys = await anyio.to_thread.run_sync(OscoreContext, folder)
+    keys, paired_ms = await anyio.to_thread.run_sync(_open_keys, folder)
     try:
         # Not even warnings: on a bad link its own ones come by the hundred, and `trouble` tells.
         logging.getLogger(_LOGGER).setLevel(logging.CRITICAL)
@@ -201,6 +213,15 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     except BaseException:
         keys.close()
         raise
-    requests = OscoreRequests(coap, keys, host, port)
+    requests = OscoreRequests(coap, keys, host, port, paired_ms)
     await requests.find_robot()
     return requests
+
+
+def _open_keys(folder: Path) -> tuple[OscoreContext, int]:
+    keys = OscoreContext(folder)
+    try:
+        return keys, (folder / SECRET).stat().st_mtime_ns // 1_000_000
+    except OSError as error:
+        keys.close()
+        raise CredentialsError(f"{folder / SECRET}: cannot be looked at ({error})") from error
