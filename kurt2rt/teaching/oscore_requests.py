@@ -18,7 +18,7 @@ from aiocoap.pipe import Pipe
 from aiocoap.util import hostportjoin
 
 from kurt2rt.channel.context_folder import SECRET
-from kurt2rt.channel.error import CredentialsError
+from kurt2rt.channel.error import ChannelError, CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 from kurt2rt.channel.wire import CONTENT_FORMAT
 
@@ -202,7 +202,7 @@ class OscoreRequests:
 async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     """Open a socket for a device's pairing in `folder`, locked until `close`; the robot need not be there.
 
-    Raises CredentialsError.
+    Raises ChannelError, and CredentialsError where it is the pairing.
     """
     keys, paired_ms = await anyio.to_thread.run_sync(_open_keys, folder)
     try:
@@ -210,9 +210,11 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
         logging.getLogger(_LOGGER).setLevel(logging.CRITICAL)
         coap = await aiocoap.Context.create_client_context(loggername=_LOGGER, transports=["udp6"])
         coap.request_interfaces[0].token_interface.message_interface.transport.max_size = _LARGEST_DATAGRAM
-    except BaseException:
+    except OSError as error:
         keys.close()
-        raise
+        raise ChannelError(
+            f"no UDP socket can be opened ({error.strerror}); IPv6 sockets, which also carry IPv4, have to be switched on"
+        ) from error
     requests = OscoreRequests(coap, keys, host, port, paired_ms)
     await requests.find_robot()
     return requests

@@ -16,6 +16,7 @@ import pytest
 
 import kurt2rt.teaching
 from kurt2rt.channel.credentials import Pairing, pair, renew
+from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
     AnswerRequest,
@@ -132,6 +133,30 @@ async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
     assert client.link.pictures_per_s > 0.0
     assert client.trouble == ""
     assert client.restarts == 0
+
+
+async def test_a_pairing_without_a_note_of_the_robot_has_the_name_of_its_folder(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    (pairing.device.folder / "device.json").unlink()
+    async with TeacherClient(pairing.device.folder, "127.0.0.1", robot.port) as client:
+        await first_state(client)
+        assert client.name == "phone"
+
+
+async def test_a_pairing_that_is_in_use_or_not_there_is_refused_in_a_sentence(
+    client: TeacherClient, pairing: Pairing, tmp_path: Path
+) -> None:
+    assert client.state is not None
+    with pytest.raises(CredentialsError, match="another program uses this pairing"):
+        await TeacherClient(pairing.device.folder).__aenter__()
+    with pytest.raises(CredentialsError, match="there is no pairing to open"):
+        await TeacherClient(tmp_path / "nobody").__aenter__()
+
+
+def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
+    with pytest.raises(RuntimeError, match="use it as: async with"):
+        TeacherClient(pairing.device.folder).press(0.1, 0.1)
 
 
 async def test_a_slow_reader_gets_the_newest_picture_and_misses_those_between(
