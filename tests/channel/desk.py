@@ -1,0 +1,207 @@
+"""The robot's mind with its reception, on ticks that the test makes; no socket, no keys, no clock."""
+
+import asyncio
+from collections.abc import Mapping
+from typing import Any, cast
+
+from hal.robot import Grant, Senses
+from hal.robot_settings import load_robot
+from kurt2rt.channel.channel import Channel, describe
+from kurt2rt.channel.endpoint import Endpoint
+from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.reception import LONGEST_WAIT_S, Copies, Reception
+from kurt2rt.channel.reply import Reply
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    CommandRequest,
+    DriveRequest,
+    Request,
+    StopRequest,
+    StreamRequest,
+    WatchRequest,
+)
+from kurt2rt.channel.site import Keys, RobotSite
+from kurt2rt.channel.telling import Safekeeping, Telling
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.saved_copy import SavedCopy
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from tests.test_tick import CorridorRobot, Notebook
+
+ROBOT = load_robot()
+TASK = load_task("wall_following")
+BOOT = b"boot"
+STAMP = "2004-04-26T10:00:00.000+00:00"
+
+
+class WideRobot(CorridorRobot):
+    """The same count on all sensors that the shipped robot has."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.bumpers = 0
+        self.refuses: tuple[str, ...] = ()
+
+    def sense(self, now_s: float) -> Senses:
+        counts = (self.counts,) * len(ROBOT.infrared.sensors)
+        return Senses(now_s, counts, self.infrared_age_s, 0, 0, 0.0, self.bumpers, 0.0)
+
+    def drive(self, wanted: Any, decided_at_s: float, now_s: float) -> Grant:
+        grant = super().drive(wanted, decided_at_s, now_s)
+        return grant._replace(reasons=(*grant.reasons, *self.refuses))
+
+
+class Shelf:
+    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.reception.Copies)."""
+
+    def __init__(self) -> None:
+        self.labels: list[str | None] = []
+        self.may_finish = asyncio.Event()
+        self.may_finish.set()
+        self.problem = ""
+
+    async def save(self, label: str) -> SavedCopy:
+        return await self._copy(label, "lessons.knowledge")
+
+    async def export(self) -> SavedCopy:
+        return await self._copy(None, "lessons.csv")
+
+    async def _copy(self, label: str | None, name: str) -> SavedCopy:
+        self.labels.append(label)
+        await self.may_finish.wait()
+        if self.problem:
+            raise KnowledgeError(self.problem)
+        return SavedCopy(name, "ab" * 32, 4096)
+
+
+class Desk:
+    """One robot that needs a teacher, and everything of the channel behind the keys."""
+
+    def __init__(
+        self, *, ground: Ground | None = None, keys: Keys | None = None, longest_wait_s: float = LONGEST_WAIT_S
+    ) -> None:
+        self.robot = WideRobot()
+        self.notebook = Notebook()
+        self.shelf = Shelf()
+        self.stamps: dict[str, str] = {}
+        self.bus_trouble = ""
+        clock = LockstepClock(lambda: None)
+        self.runtime: Runtime = build_runtime(self.robot, ROBOT, TASK, (), self.notebook, clock, attended=True)
+        stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
+        hello = describe(self.runtime, BOOT, simulated=ground is not None)
+        copies: Copies = self.shelf
+        self.reception = Reception(self.runtime, BOOT, hello, stamp_of, copies, ground, longest_wait_s=longest_wait_s)
+        safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
+        self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground)
+        # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
+        self.site = RobotSite(cast(Keys, keys), self.reception)
+        self.channel = Channel(self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None))
+        self.record: TickRecord
+        self.written = 0
+        self._number = 0
+        self._ids = 0
+        self._tick = 1000  # long after its start, so that pictures of any age were made
+        self.run()
+
+    @property
+    def unwritten(self) -> int:
+        return len(self.notebook.events) - self.written
+
+    @property
+    def tick(self) -> int:
+        """Of the newest picture."""
+        return self.reception.tick
+
+    def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:
+        """So many ticks, in which the sensors show `counts`; what they teach stays unwritten."""
+        if counts is not None:
+            self.robot.counts = counts
+        for _ in range(ticks):
+            self._tick += 1
+            self.runtime.ledger.begin(0.0)
+            self.record = self.runtime.tick.run(self._tick, self._tick * 0.01)
+            self.channel.after_tick(self.record)
+            self.runtime.ledger.end()
+        return self.record
+
+    def write(self, error: str | None = None) -> None:
+        """The disk takes all lessons that wait, or never will because of `error`."""
+        for event in self.notebook.events[self.written :]:
+            self.written += 1
+            command_id = event.origin.command_id
+            if error is None:
+                self.stamps[command_id] = STAMP
+                self.channel.settled(Acknowledgement(command_id, self.written, None, STAMP))
+            else:
+                self.channel.settled(Acknowledgement(command_id, None, error, ""))
+
+    def new_id(self) -> bytes:
+        self._ids += 1
+        return self._ids.to_bytes(8, "big")
+
+    async def send(self, request: Request, device: str = "ann", number: int | None = None) -> "asyncio.Task[Reply]":
+        """A request arrives, and waits for its reply; it is the newest message of its device unless `number` is given.
+
+        What is waiting must be awaited with `reply_of`, after the tick that answers it.
+        """
+        self._number += 1
+        answer = self.reception.answer(device, self._number if number is None else number, request)
+        task = asyncio.get_running_loop().create_task(answer)
+        await turns()
+        return task
+
+    async def ask(self, request: Request, device: str = "ann", *, write: bool = True) -> Reply:
+        """A request arrives, the next tick takes it, and the disk takes what it taught."""
+        task = await self.send(request, device)
+        if not task.done():
+            self.run()
+            if write:
+                self.write()
+        return await reply_of(task)
+
+    async def stream(self, request: StreamRequest, device: str = "ann", number: int | None = None) -> Reply:
+        """A message of a stream arrives; it is answered at once."""
+        task = await self.send(request, device, number)
+        assert task.done()
+        return task.result()
+
+    def watch(self, *, age: int = 0, boot: bytes = BOOT) -> WatchRequest:
+        return WatchRequest(boot, 0, self.tick - age)
+
+    def press(self, hold: int = 1, *, age: int = 0, boot: bytes = BOOT) -> DriveRequest:
+        return DriveRequest(boot, 0, self.tick - age, hold, 0.2, 0.1)
+
+    def stop(self) -> StopRequest:
+        return StopRequest(self.new_id())
+
+    def command(self, kind: type[CommandRequest], *fields: Any, age: int = 0, boot: bytes = BOOT) -> CommandRequest:
+        """A new command of the kind, given on the picture of `age` ticks ago."""
+        return kind(boot, self.new_id(), self.tick - age, *fields)
+
+    def answer(self, action: str = "forward", of: int | None = None) -> CommandRequest:
+        return self.command(AnswerRequest, action, of)
+
+
+async def turns(count: int = 5) -> None:
+    """Let what can go on go on."""
+    for _ in range(count):
+        await asyncio.sleep(0)
+
+
+async def reply_of(task: "asyncio.Task[Reply]") -> Reply:
+    """The reply that has been made; a request that waits on is an error of the test."""
+    await turns()
+    assert task.done(), "still waits for its reply"
+    return task.result()
+
+
+def why(reply: Reply) -> object:
+    """The word of a refusal; "" where there is none."""
+    return reply.body.get("why", "")
+
+
+def body_of(reply: Reply) -> Mapping[str, Any]:
+    return reply.body

@@ -1,0 +1,29 @@
+"""A world that notes what is done to it (kurt2rt.channel.ground.Ground)."""
+
+from kurt2rt.channel.ground import Post, Wall, WorldView
+from kurt2rt.channel.state import SimulatedPlace
+
+
+class Yard:
+    """A box and a post, and a robot at (1, 2)."""
+
+    def __init__(self) -> None:
+        self.changes: list[tuple[object, ...]] = []
+
+    def place(self) -> SimulatedPlace:
+        return SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, len(self.changes))
+
+    def world(self) -> WorldView:
+        outline = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0))
+        box = Wall("box", ((1.0, 1.0), (2.0, 1.0), (2.0, 2.0)))
+        return WorldView(len(self.changes), "yard", (4.0, 4.0), outline, (box,), (Post("post", 3.0, 3.0, 0.1),))
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        if name != "box":
+            raise ValueError("that cannot be")
+        self.changes.append((name, dx_m, dy_m))
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        if x_m > 4.0:
+            raise ValueError("that cannot be")
+        self.changes.append((x_m, y_m, heading_rad))

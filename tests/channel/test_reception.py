@@ -1,0 +1,493 @@
+"""The rules by which the robot takes what its teachers send, on ticks that the test makes."""
+
+from collections.abc import Callable
+
+import pytest
+
+from kurt2rt.channel.reception import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
+from kurt2rt.channel.reply import Reply, Verdict
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    ExportRequest,
+    HelloRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    PhaseRequest,
+    PlaceRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    ResumeRequest,
+    RewardRequest,
+    SaveRequest,
+    SessionRequest,
+    StopRequest,
+    StreamRequest,
+    TakeRequest,
+    UndoRequest,
+    WorldRequest,
+)
+from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
+from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.commands import Stop, Watch
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of, turns, why
+from tests.channel.grounds import Yard
+
+LAST_START = b"last"
+MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
+    BehaviourRequest: ("forward", 10),
+    ResumeRequest: (),
+    TakeRequest: (),
+}
+LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
+    AnswerRequest: ("forward", None),
+    CorrectRequest: ("forward", None),
+    RewardRequest: (1, None),
+    ReplaceRequest: (1, "forward"),
+    DeleteRequest: (1,),
+    UndoRequest: (None,),
+    PhaseRequest: (Phase.CORRECTIONS,),
+    SessionRequest: ("morning",),
+    ReleaseRequest: (None,),
+    SaveRequest: ("label",),
+    ExportRequest: (),
+    MoveWallRequest: ("box", 0.1, 0.0),
+    PlaceRequest: (1.0, 1.0, 0.0),
+}
+COMMANDS = {**MOVING, **LASTING}
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_every_path_has_a_rule_here() -> None:
+    streams = {kind for kind in PATHS.values() if issubclass(kind, StreamRequest)}
+    assert set(COMMANDS) | streams | {StopRequest, HelloRequest, LessonsRequest, WorldRequest} == set(PATHS.values())
+
+
+# Streams.
+
+
+async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: Desk) -> None:
+    reply = await desk.stream(desk.press())
+    assert reply == Reply(Verdict.DONE, {"t": desk.tick})
+    assert desk.run().decision.cause is Cause.TEACHER
+
+
+async def test_watching_makes_the_teacher_be_there(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    assert desk.record.decision.cause is Cause.UNATTENDED
+    await desk.stream(desk.watch())
+    assert desk.run().decision.cause is Cause.RLA
+
+
+@pytest.mark.parametrize("kind", ["watch", "press"])
+@pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
+async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
+    desk: Desk, kind: str, age: int, answer: str
+) -> None:
+    assert why(await desk.stream(desk.watch(age=age) if kind == "watch" else desk.press(age=age))) == answer
+
+
+async def test_an_old_picture_does_not_move_the_robot_though_it_is_accepted(desk: Desk) -> None:
+    """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
+    assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
+    assert desk.run().decision.cause is not Cause.TEACHER
+
+
+async def test_a_message_for_another_start_of_the_program_is_refused(desk: Desk) -> None:
+    for request in (desk.watch(boot=LAST_START), desk.press(boot=LAST_START)):
+        assert why(await desk.stream(request)) == "boot"
+    assert desk.run().decision.cause is Cause.UNKNOWN
+
+
+async def test_only_the_newest_message_of_a_device_counts(desk: Desk) -> None:
+    assert why(await desk.stream(desk.press(), number=7)) == ""
+    assert why(await desk.stream(desk.press(), number=7)) == "old"
+    assert why(await desk.stream(desk.watch(), number=6)) == "old"
+    assert why(await desk.stream(desk.press(), number=8)) == ""
+
+
+async def test_each_device_counts_for_itself(desk: Desk) -> None:
+    await desk.stream(desk.watch(), "ann", number=1000)
+    assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
+
+
+async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: Desk) -> None:
+    """The first message of a press may be overtaken by the stop that ended it."""
+    stop = await desk.send(desk.stop(), number=12)
+    assert why(await desk.stream(desk.press(hold=1), number=11)) == "old"
+    assert desk.run().decision.cause is Cause.STOPPED
+    await reply_of(stop)
+    assert why(await desk.stream(desk.press(hold=2), number=13)) == ""
+
+
+async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: Desk) -> None:
+    await desk.stream(desk.press(hold=1))
+    desk.run()
+    await desk.ask(desk.stop())
+    assert why(await desk.stream(desk.press(hold=1))) == "stopped"
+    assert why(await desk.stream(desk.watch())) == ""
+    assert why(await desk.stream(desk.press(hold=2))) == ""
+
+
+async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Desk) -> None:
+    await desk.stream(desk.press(hold=1))
+    desk.run()
+    await desk.ask(desk.stop(), "ben")
+    refused = await desk.stream(desk.press(hold=2))
+    assert (why(refused), refused.body["text"]) == ("stopped", "ben stopped the robot; say resume first")
+    await desk.ask(desk.command(ResumeRequest))
+    assert why(await desk.stream(desk.press(hold=2))) == ""
+
+
+async def test_who_is_not_the_teacher_is_told_who_is(desk: Desk) -> None:
+    await desk.stream(desk.press(), "ann")
+    desk.run()
+    for request in (desk.press(), desk.watch()):
+        refused = await desk.stream(request, "ben")
+        assert (why(refused), refused.verdict) == ("held", Verdict.CONFLICT)
+        assert "ann teaches now" in refused.body["text"]
+
+
+async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: Desk) -> None:
+    waiting = 0
+    while why(await desk.stream(desk.watch())) == "":
+        waiting += 1
+    refused = await desk.stream(desk.press())
+    assert (why(refused), refused.body["text"]) == ("refused", "too many commands wait; say it again")
+    refused = await reply_of(await desk.send(desk.answer()))
+    assert (why(refused), refused.body["text"]) == ("refused", "too many commands wait; say it again")
+    assert len(desk.runtime.inbox.take()) == waiting
+    assert why(await desk.stream(desk.watch())) == ""
+
+
+# Commands.
+
+
+@pytest.mark.parametrize("kind", COMMANDS)
+async def test_a_command_for_another_start_of_the_program_is_refused(desk: Desk, kind: type[CommandRequest]) -> None:
+    refused = await desk.ask(desk.command(kind, *COMMANDS[kind], boot=LAST_START))
+    assert (why(refused), refused.body["t"]) == ("boot", desk.tick)
+    assert desk.record.results == ()
+
+
+@pytest.mark.parametrize("kind", COMMANDS)
+async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest]) -> None:
+    desk = Desk(ground=Yard())
+    longest = MOVING_TICKS if kind in MOVING else COMMAND_TICKS
+    for age in (longest + 1, -1):
+        assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=age))) == "stale"
+        assert desk.record.results == ()
+    assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=longest))) in ("", "refused")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not TakeRequest])
+async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[CommandRequest]) -> None:
+    desk = Desk(ground=Yard())
+    await desk.ask(desk.command(TakeRequest), "ann")
+    refused = await desk.ask(desk.command(kind, *COMMANDS[kind]), "ben")
+    assert why(refused) == "held"
+    assert "ann teaches now" in refused.body["text"]
+    assert desk.shelf.labels == []
+
+
+async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: Desk) -> None:
+    task = await desk.send(desk.command(PhaseRequest, Phase.CORRECTIONS))
+    assert not task.done()
+    tick = desk.run().tick
+    assert await reply_of(task) == Reply(Verdict.DONE, {"t": tick, "ok": True, "text": "phase 2, corrections"})
+
+
+async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: Desk) -> None:
+    request = AnswerRequest(BOOT, bytes.fromhex("00ff00ff00ff00ff"), desk.tick, "forward", None)
+    await desk.ask(request, "ann-phone")
+    assert [event.origin.command_id for event in desk.notebook.events] == ["ann-phone-00ff00ff00ff00ff"]
+    assert desk.notebook.events[0].origin.teacher == "ann-phone"
+
+
+async def test_a_lesson_is_answered_only_when_it_is_durable(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run(50)
+    await turns()
+    assert desk.runtime.level.system.rlas  # it acts already
+    assert not task.done()
+    desk.write()
+    reply = await reply_of(task)
+    assert reply == Reply(Verdict.DONE, {"t": desk.tick, "ok": True, "text": "RLA 1 taught: forward", "row": 1})
+
+
+async def test_what_changes_nothing_needs_no_disk(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    reply = await desk.ask(desk.answer(), write=False)
+    assert reply.body["text"] == "RLA 1 says forward already"
+
+
+async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: Desk) -> None:
+    request = desk.answer()
+    first = await desk.send(request)
+    again = await desk.send(request)
+    desk.run()
+    late = await desk.send(request)
+    desk.run()
+    assert not any(task.done() for task in (first, again, late))
+    desk.write()
+    replies = [await reply_of(task) for task in (first, again, late)]
+    assert replies[0].verdict is Verdict.DONE
+    assert replies[1:] == [replies[0]] * 2
+    assert await reply_of(await desk.send(request)) == replies[0]
+    assert len(desk.notebook.events) == 1
+
+
+async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(desk: Desk) -> None:
+    request = desk.answer()
+    first = await desk.ask(request)
+    desk.run(COMMAND_TICKS + 100)
+    assert await reply_of(await desk.send(request)) == first
+
+
+async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(desk: Desk) -> None:
+    request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
+    desk.runtime.school._taken.add(f"ann-{request.command_id.hex()}")
+    reply = await desk.ask(request)
+    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "had been taken already; counted once")
+
+
+async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
+    request = desk.command(PhaseRequest, Phase.CORRECTIONS)
+    assert (await desk.ask(request, "ann")).verdict is Verdict.DONE
+    assert why(await desk.ask(request, "ben")) == "held"
+
+
+async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: Desk) -> None:
+    request = desk.command(DeleteRequest, 1)
+    refused = await desk.ask(request)
+    assert (why(refused), refused.body["text"]) == ("refused", "there is no RLA 1; it may have been deleted")
+    await desk.ask(desk.answer())
+    assert await reply_of(await desk.send(request)) == refused
+    assert len(desk.runtime.level.system) == 1
+
+
+async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run()
+    desk.write(error="the disk is full")
+    reply = await reply_of(task)
+    assert (reply.verdict, why(reply), reply.body["text"]) == (Verdict.UNSAVED, "unsaved", "the disk is full")
+
+
+async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_counts_when_it_is() -> None:
+    desk = Desk(longest_wait_s=0.0)
+    request = desk.answer()
+    reply = await desk.ask(request, write=False)
+    assert (reply.verdict, why(reply)) == (Verdict.UNSAVED, "unsaved")
+    assert "look at the lessons" in reply.body["text"]
+    desk.run()
+    desk.write()
+    assert (await reply_of(await desk.send(request))).body["text"] == "RLA 1 taught: forward"
+
+
+async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk) -> None:
+    for request in (desk.answer(), desk.stop()):
+        first = await desk.send(request)
+        again = await desk.send(request)
+        first.cancel()
+        await turns()
+        desk.run()
+        desk.write()
+        assert (await reply_of(again)).verdict is Verdict.DONE
+
+
+async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: Desk) -> None:
+    await desk.stream(desk.press(), "ann")
+    desk.run()
+    refused = await desk.ask(desk.command(TakeRequest), "ben")
+    assert (why(refused), refused.body["text"]) == ("refused", "ann drives by hand just now; stop the robot first")
+    await desk.ask(desk.stop(), "ben")
+    assert (await desk.ask(desk.command(TakeRequest), "ben")).body["text"] == "ben teaches"
+
+
+async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    meant = desk.run(counts=100).tick
+    desk.run(20, counts=900)
+    reply = await desk.ask(desk.command(RewardRequest, 1, meant))
+    assert reply.body["text"] == "RLA 1 rewarded"
+    reply = await desk.ask(desk.command(CorrectRequest, "back", meant))
+    assert reply.body["text"] == "RLA 1 corrected: back instead of forward"
+    refused = await desk.ask(desk.command(RewardRequest, 1, desk.tick + 50))
+    assert why(refused) == "refused"
+
+
+@pytest.mark.parametrize(
+    ("make", "text"),
+    [
+        (lambda desk: desk.command(SessionRequest, "morning"), "session 'morning' begins"),
+        (lambda desk: desk.command(SessionRequest, None), "no session is on"),
+        (lambda desk: desk.command(ReleaseRequest, "ben"), "ben teaches now"),
+        (lambda desk: desk.command(ReleaseRequest, None), "nobody teaches now"),
+        (lambda desk: desk.command(UndoRequest, None), "there is no lesson to undo"),
+        (lambda desk: desk.command(BehaviourRequest, "back", 7), "back for 7 ticks"),
+        (lambda desk: desk.command(ResumeRequest), "the robot may drive"),
+        (lambda desk: desk.command(ReplaceRequest, 3, "back"), "there is no RLA 3; it may have been deleted"),
+    ],
+)
+async def test_each_request_becomes_its_command(desk: Desk, make: Callable[[Desk], CommandRequest], text: str) -> None:
+    assert (await desk.ask(make(desk))).body["text"] == text
+
+
+# Stop.
+
+
+async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest), "ann")
+    reply = await desk.ask(desk.stop(), "ben")
+    assert reply.body["text"] == "the robot stands until it is told to resume"
+    assert desk.run().decision.cause is Cause.STOPPED
+
+
+async def test_each_copy_of_a_stop_stops_again(desk: Desk) -> None:
+    stop = desk.stop()
+    first = await desk.ask(stop, "ben")
+    await desk.ask(desk.command(ResumeRequest), "ann")
+    assert desk.record.decision.cause is Cause.UNKNOWN
+    assert await desk.ask(stop, "ben") == first
+    assert desk.run().decision.cause is Cause.STOPPED
+
+
+async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> None:
+    for _ in range(100):
+        await desk.stream(desk.watch())
+    task = await desk.send(desk.stop())
+    waiting = desk.runtime.inbox.take()
+    assert {type(command) for command in waiting} == {Watch, Stop}
+    for command in waiting:
+        desk.runtime.inbox.put(command)
+    desk.run()
+    assert (await reply_of(task)).verdict is Verdict.DONE
+
+
+# Copies of the knowledge.
+
+
+async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(desk: Desk) -> None:
+    request = desk.command(SaveRequest, "before lunch")
+    desk.shelf.may_finish.clear()
+    first, again = await desk.send(request), await desk.send(request)
+    desk.run(20)
+    assert not first.done()
+    desk.shelf.may_finish.set()
+    reply = await reply_of(first)
+    assert reply.body == {
+        "t": desk.tick,
+        "ok": True,
+        "text": "lessons.knowledge, 4096 bytes",
+        "name": "lessons.knowledge",
+        "sha256": "ab" * 32,
+    }
+    assert await reply_of(again) == reply
+    assert desk.shelf.labels == ["before lunch"]
+
+
+async def test_an_export_likewise(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(ExportRequest))
+    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.csv")
+
+
+@pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])
+async def test_a_copy_that_the_disk_does_not_take_is_told_with_the_reason(
+    desk: Desk, kind: type[CommandRequest]
+) -> None:
+    desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
+    reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
+    assert (reply.verdict, reply.body["text"]) == (Verdict.UNSAVED, desk.shelf.problem)
+
+
+async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again() -> None:
+    desk = Desk(longest_wait_s=0.0)
+    desk.shelf.may_finish.clear()
+    request = desk.command(SaveRequest, "")
+    assert why(await desk.ask(request)) == "unsaved"
+    desk.shelf.may_finish.set()
+    await turns()
+    assert (await reply_of(await desk.send(request))).body["name"] == "lessons.knowledge"
+    assert desk.shelf.labels == [""]
+
+
+# Looking.
+
+
+async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Desk) -> None:
+    reply = await desk.ask(HelloRequest())
+    told = decode_answer(encode_answer(reply.body))
+    assert told["boot"] == BOOT
+    assert told["tick"] == desk.tick
+    assert (told["robot"], told["task"], told["simulated"]) == (ROBOT.name, "wall_following", False)
+    assert told["actions"] == list(desk.runtime.level.repertoire)
+    assert len(told["sensors"]) == len(ROBOT.infrared.sensors)
+    assert told["period_s"] == 0.01
+
+
+async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: Desk) -> None:
+    assert (await desk.ask(LessonsRequest(20))).body == {"lessons": []}
+    await desk.ask(desk.answer("forward"))
+    taught_at = desk.tick
+    await desk.ask(desk.command(CorrectRequest, "back", None))
+    corrected_at = desk.tick
+    await desk.ask(desk.command(UndoRequest, None))
+    task = await desk.send(desk.command(CorrectRequest, "stand", None))
+    desk.run()
+    rows = (await desk.ask(LessonsRequest(20), "ben", write=False)).body["lessons"]
+    assert [row[1:] for row in rows] == [
+        ["RLA 1 corrected: stand instead of forward", "ann", 1, desk.tick, "", False],
+        ["RLA 1 corrected: back instead of forward", "ann", 1, corrected_at, STAMP, True],
+        ["RLA 1 taught: forward", "ann", 1, taught_at, STAMP, False],
+    ]
+    assert all(row[0].startswith("ann-") for row in rows)
+    assert (await desk.ask(LessonsRequest(1))).body["lessons"] == rows[:1]
+    assert (await desk.ask(LessonsRequest(0))).body["lessons"] == []
+    desk.write()
+    await reply_of(task)
+
+
+async def test_a_real_robot_has_no_world_to_tell_of(desk: Desk) -> None:
+    for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
+        reply = await desk.ask(request)
+        assert (reply.verdict, reply.body["text"]) == (Verdict.NOT_HERE, "this robot is not simulated")
+
+
+async def test_a_simulated_world_is_told_and_changed() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    world = (await desk.ask(WorldRequest())).body
+    assert decode_answer(encode_answer(world)) == {
+        "version": 0,
+        "name": "yard",
+        "size": [4.0, 4.0],
+        "outline": [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]],
+        "walls": [["box", [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]],
+        "round": [["post", 3.0, 3.0, 0.1]],
+    }
+    move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
+    reply = await desk.ask(move)
+    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "box moved")
+    assert await desk.ask(move) == reply  # sent again: it moves once
+    assert (await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))).body["text"] == "the robot stands elsewhere"
+    assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
+
+
+async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_words() -> None:
+    desk = Desk(ground=Yard())
+    for request in (
+        desk.command(MoveWallRequest, "tree", 0.5, 0.0),
+        desk.command(PlaceRequest, 50.0, 0.0, 0.0),
+    ):
+        refused = await desk.ask(request)
+        assert (why(refused), refused.body["text"]) == ("refused", "that cannot be")
