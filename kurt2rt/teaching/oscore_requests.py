@@ -213,7 +213,7 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     except OSError as error:
         keys.close()
         raise ChannelError(
-            f"no UDP socket can be opened ({error.strerror}); IPv6 sockets, which also carry IPv4, have to be switched on"
+            f"no UDP socket can be opened ({error.strerror}); switch on IPv6 sockets, which also carry IPv4"
         ) from error
     requests = OscoreRequests(coap, keys, host, port, paired_ms)
     await requests.find_robot()

@@ -385,7 +385,7 @@ async def test_without_an_answer_it_is_not_known_whether_it_counted_and_nothing_
         results = await asyncio.gather(*(client.reward(1) for _ in range(100)), return_exceptions=True)
         assert all(isinstance(each, NoAnswerError) for each in results)
         assert "not known whether it counted" in str(results[0])
-        assert link.up.lost - lost_before >= 100
+        await link.until(lambda: link.up.lost - lost_before >= 100)
         clock.ahead_s += 2.0
         # What is left is the observation, or the one that is being registered in its place.
         await eventually(lambda: client._requests.open_exchanges <= 1)
