@@ -1,13 +1,17 @@
-# make run    teach a simulated robot, examine it, show what came of it
+# make run    a simulated robot that asks to be taught, and the page to teach it from; ARGS=--auto teaches by itself
+# make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
 # make test   all that CI runs: lint, types, tests
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-.PHONY: run test test-deep bench lint types clean
+.PHONY: run demo test test-deep bench lint types clean
 
 run: $(INSTALLED)
+	$(BIN)/kurt2rt run --page $(ARGS)
+
+demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
 test: lint types

@@ -23,6 +23,7 @@ from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.timing.quiet_gc import quiet_gc
+from kurt2rt.timing.short_turns import short_turns
 from kurt2rt.timing.timerfd import TimerfdClock
 
 
@@ -81,7 +82,7 @@ async def serve(
                 rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel)
                 await tasks.start(_end_on_signal, runtime)
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
-                with quiet_gc():
+                with quiet_gc(), short_turns():
                     try:
                         await runtime.scheduler.run(ticks, rounds)
                     finally:

@@ -74,7 +74,7 @@ class Telling:
             question=question,
             teacher=school.authority.teacher,
             by_hand=school.authority.hand_on_wheel(record.tick),
-            stopped_because=school.stopped_because,
+            stopped_because=school.stopped_because or _latched(record),
             rlas=len(system),
             lessons=system.standing_lessons,
             unsaved=self._safekeeping.unsaved(),
@@ -86,3 +86,8 @@ class Telling:
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
         )
+
+
+def _latched(record: TickRecord) -> str:
+    """Why the guard keeps the robot stopped, in words for the teacher who has to resume; empty while it does not."""
+    return f"the guard: {', '.join(record.grant.reasons)}" if record.grant.latched else ""

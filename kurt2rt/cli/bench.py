@@ -18,7 +18,7 @@ from kurt2rt.tasks.settings import load_task
 
 def bench(
     quick: Annotated[
-        bool, typer.Option("--quick", help="Measure less, in under 20 s; rare lateness may hide.")
+        bool, typer.Option("--quick", help="Measure less, in under a minute; rare lateness may hide.")
     ] = False,
     only: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(Bench)}.", show_default=False)
@@ -30,13 +30,15 @@ def bench(
         Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
     ] = Path(),
 ) -> None:
-    """Measure what the runtime takes, on this machine, with the simulated robot: 2 minutes.
+    """Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.
 
     lateness  how late ticks begin in a minute of driving; asyncio.sleep beside it
     tick      what each stage of these ticks takes
     match     how long the nearest RLA is sought; a brute force beside it
     loop      how many times real time a lesson in lockstep runs on one core
     lesson    how long a teacher waits until a lesson is durable; fsync beside it
+    channel   over UDP: from a press to the wheels, also on the teacher's page; what
+              it costs the loop that a teacher is there; lessons until answered
 
     The ratio says how many times longer the reference took in the same run. The
     goals are meant for an idle machine; a benchmark informs, and ends with code 0

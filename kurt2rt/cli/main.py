@@ -10,18 +10,45 @@ from threadpoolctl import threadpool_limits
 
 from hal.bus import BusError
 from hal.settings import SettingsError
+from kurt2rt.channel.error import ChannelError
 from kurt2rt.cli.bench import bench
 from kurt2rt.cli.demo import demo
 from kurt2rt.cli.doctor import doctor
 from kurt2rt.cli.exam import exam
 from kurt2rt.cli.knowledge import knowledge
 from kurt2rt.cli.lesson import lesson
+from kurt2rt.cli.pair import pair
 from kurt2rt.cli.run import run
+from kurt2rt.cli.teach import teach
 from kurt2rt.experiments.curriculum import LessonLostError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
+from kurt2rt.page.error import PageError
+from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.scripted_lesson import RefusedError
 
-_SIMULATION_PACKAGES = ("pymunk", "matplotlib", "shapely")
+_EXTRAS = {
+    "pymunk": "simulation",
+    "matplotlib": "simulation",
+    "shapely": "simulation",
+    "starlette": "page",
+    "uvicorn": "page",
+    "websockets": "page",
+}
+"""Packages that a robot can do without, and the extra that brings each."""
+
+_ONE_LINERS = (
+    SettingsError,
+    KnowledgeError,
+    UnknownActionError,
+    BusError,
+    LessonLostError,
+    ChannelError,
+    NoAnswerError,
+    RefusedError,
+    PageError,
+)
+"""Errors whose message tells the user what, where and what to do."""
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -38,7 +65,8 @@ _MENDED_BY_ANOTHER_PATH = {
 
 app = typer.Typer(
     help="Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
-    "Begin with `kurt2rt demo`: a simulated robot is taught wall following and examined, in a minute. "
+    "Begin with `kurt2rt run --page`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
+    "scripted teacher teach it wall following and examines it, in a minute. "
     "`kurt2rt doctor` says what this machine offers for the real one.",
     no_args_is_help=True,
     add_completion=False,
@@ -46,6 +74,8 @@ app = typer.Typer(
 )
 app.command()(demo)
 app.command()(run)
+app.command()(teach)
+app.command()(pair)
 app.command()(lesson)
 app.command()(exam)
 app.add_typer(knowledge, name="knowledge")
@@ -60,15 +90,29 @@ def main() -> None:
         try:
             app()
         except ModuleNotFoundError as error:
-            if error.name not in _SIMULATION_PACKAGES:
+            extra = _EXTRAS.get(error.name or "")
+            if extra is None:
                 raise
-            _complain(f"{error.name} is not installed; the simulator needs it: pip install 'kurt2rt[simulation]'")
-        except (SettingsError, KnowledgeError, UnknownActionError, BusError, LessonLostError) as error:
+            _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")
+        except _ONE_LINERS as error:
             _complain(str(error))
+        except BaseExceptionGroup as group:
+            # A task group wraps even the one error that ended it.
+            errors = _leaves(group)
+            if len(errors) != 1 or not isinstance(errors[0], _ONE_LINERS):
+                raise
+            _complain(str(errors[0]))
         except OSError as error:
             if error.errno not in _MENDED_BY_ANOTHER_PATH:
                 raise
             _complain(f"{error}; give a path that can be written, on a disk with room")
+
+
+def _leaves(group: BaseExceptionGroup[BaseException]) -> list[BaseException]:
+    leaves: list[BaseException] = []
+    for error in group.exceptions:
+        leaves += _leaves(error) if isinstance(error, BaseExceptionGroup) else [error]
+    return leaves
 
 
 def _complain(text: str) -> NoReturn:

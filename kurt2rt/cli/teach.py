@@ -1,32 +1,39 @@
 """`kurt2rt teach`."""
 
-import asyncio
-import signal
 import sys
-import threading
+from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import anyio
-import anyio.to_thread
-import segno
 import typer
 from rich.console import Console
 
-from kurt2rt.channel.credentials import LOCAL, Device, local_pairing, read_device
-from kurt2rt.channel.error import CredentialsError
-from kurt2rt.page.access import Access
-from kurt2rt.page.hosts import own_address, own_names
-from kurt2rt.page.server import PageError, listen, run_page
+from hal.robot_settings import load_robot
+from kurt2rt.channel.credentials import AUTO, LOCAL, OF_THIS_MACHINE, Device, local_pairing, read_device
+from kurt2rt.cli.end_of_teaching import end_of_teaching
+from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.service_settings import ServiceSettings, load_service
+from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.teaching.scripted_lesson import teach_by_script
 
-_LOOK_AT_PAIRING_S = 1.0
+
+class _Way(NamedTuple):
+    """How to reach the robot, and as whom."""
+
+    device: Device
+    host: str
+    port: int
 
 
 def teach(
+    terminal: Annotated[bool, typer.Option("--terminal", help="Teach by typing, here; no page is served.")] = False,
+    auto: Annotated[
+        bool, typer.Option("--auto", help="Let the scripted teacher of the task teach; no page is served.")
+    ] = False,
     name: Annotated[
-        str, typer.Option("--as", help="Paired device whose page this is; local: this machine's own teacher.")
+        str, typer.Option("--as", help="Paired device that this teaches as; local: this machine's own teacher.")
     ] = LOCAL,
     robot: Annotated[
         str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
@@ -40,6 +47,7 @@ def teach(
     host_name: Annotated[
         list[str] | None, typer.Option(help="Another name of this machine that browsers may use; can be repeated.")
     ] = None,
+    seed: Annotated[int, typer.Option(min=0, help="Decides the scripted teacher's chance.")] = 1,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",
@@ -61,84 +69,67 @@ def teach(
         kurt2rt pair phone
         kurt2rt teach --as phone
 
+    Without a browser, type: an action answers or corrects, Enter alone stops the
+    robot, help shows the rest.
+
+        kurt2rt teach --terminal
+
     The robot needs not be there yet, and may come and go. Ends on Ctrl-C; a robot
     that is driven by hand stands first.
     """
+    if terminal and auto:
+        raise typer.BadParameter("one teacher at a time: --terminal or --auto", param_hint="--auto")
     service = load_service(settings)
-    device = _device(service, name)
-    host, at = robot or device.host, port or device.port
-    everywhere = name != LOCAL
-    listener = listen(service.page_port if page_port is None else page_port, everywhere=everywhere)
-    address = own_address() if everywhere else "127.0.0.1"
-    link = f"http://{address}:{listener.getsockname()[1]}/pair?token={device.token}"
-    access = Access(name, device.token, own_names() | {each.lower() for each in host_name or ()})
-    console = Console()
-    console.print(f"page for {name}, robot at {host}:{at}; Ctrl-C ends", markup=False, highlight=False, soft_wrap=True)
-    console.print(link, markup=False, highlight=False, soft_wrap=True)
-    if everywhere and console.is_terminal:
-        segno.make(link).terminal(compact=True)
-    ended_because = ""
+    device = _device(service, AUTO if auto and name == LOCAL else name)
+    way = _Way(device, robot or device.host, port or device.port)
+    if terminal:
+        _teach(way, _by_typing, while_stdin=False)
+    elif auto:
+        _teach(way, lambda client, say: _by_script(client, say, service, seed), while_stdin=while_stdin)
+    else:
+        # Here, because the robot's own machine may do without the packages that a page needs: they are an extra.
+        from kurt2rt.cli.teach_page import serve_page
 
-    async def told_to_end() -> None:
-        nonlocal ended_because
-        async with anyio.create_task_group() as tasks:
-
-            async def pairing_ends() -> None:
-                nonlocal ended_because
-                ended_because = await _end_of_pairing(device)
-                tasks.cancel_scope.cancel()
-
-            async def input_ends() -> None:
-                await _end_of_input()
-                tasks.cancel_scope.cancel()
-
-            tasks.start_soon(pairing_ends)
-            if while_stdin:
-                tasks.start_soon(input_ends)
-            with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT, signal.SIGHUP) as signals:
-                async for _ in signals:
-                    tasks.cancel_scope.cancel()
-
-    async def serve() -> None:
-        async with TeacherClient(device.folder, host, at) as client:
-            await run_page(client, access, f"{host}:{at}", listener, told_to_end)
-
-    with listener:
-        anyio.run(serve)
-    if ended_because:
-        raise PageError(ended_because)
+        at = service.page_port if page_port is None else page_port
+        serve_page(device, way.host, way.port, at, tuple(host_name or ()), while_stdin=while_stdin)
 
 
 def _device(service: ServiceSettings, name: str) -> Device:
-    if name == LOCAL:
-        return local_pairing(Path(service.teachers), Path(service.devices), port=service.port).device
+    if name in OF_THIS_MACHINE:
+        return local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port).device
     return read_device(Path(service.devices) / name)
 
 
-async def _end_of_pairing(device: Device) -> str:
-    """Wait until the pairing is renewed or revoked; what to tell then."""
-    while True:
-        await anyio.sleep(_LOOK_AT_PAIRING_S)
-        try:
-            now = await anyio.to_thread.run_sync(read_device, device.folder)
-        except CredentialsError:
-            return f"{device.name}: its pairing was revoked; pair it again: kurt2rt pair {device.name}"
-        if now.token != device.token:
-            return f"{device.name}: its pairing was renewed; start kurt2rt teach anew"
+_Teach = Callable[[TeacherClient, Callable[[str], None]], Awaitable[None]]
 
 
-async def _end_of_input() -> None:
-    ended = asyncio.Event()
-    loop = asyncio.get_running_loop()
+def _teach(way: _Way, teach_it: _Teach, *, while_stdin: bool) -> None:
+    console = Console()
 
-    def read() -> None:
-        for _ in sys.stdin:
-            continue
-        try:
-            loop.call_soon_threadsafe(ended.set)
-        except RuntimeError:
-            return  # the loop has ended before the input did
+    def say(text: str) -> None:
+        console.print(text, markup=False, highlight=False, soft_wrap=True)
 
-    # Daemon: reading cannot be interrupted, and must not keep the process alive.
-    threading.Thread(target=read, name="standard input", daemon=True).start()
-    await ended.wait()
+    async def run() -> None:
+        async with TeacherClient(way.device.folder, way.host, way.port) as client, anyio.create_task_group() as tasks:
+
+            async def until_told() -> None:
+                because = await end_of_teaching(way.device, while_stdin=while_stdin)
+                if because:
+                    say(because)
+                with anyio.move_on_after(1.0, shield=True):
+                    await client.stop()
+                tasks.cancel_scope.cancel()
+
+            tasks.start_soon(until_told)
+            await teach_it(client, say)
+            tasks.cancel_scope.cancel()
+
+    anyio.run(run)
+
+
+async def _by_typing(client: TeacherClient, say: Callable[[str], None]) -> None:
+    await TerminalTeacher(client, sys.stdin, say).teach()
+
+
+async def _by_script(client: TeacherClient, say: Callable[[str], None], service: ServiceSettings, seed: int) -> None:
+    await teach_by_script(client, load_robot(service.robot), load_task(service.task), say, seed=seed)

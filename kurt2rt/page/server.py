@@ -12,14 +12,11 @@ from starlette.types import ASGIApp
 from kurt2rt.page.access import Access
 from kurt2rt.page.app import build_app
 from kurt2rt.page.bridge import Bridge
+from kurt2rt.page.error import PageError
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.teaching.answer import NoAnswerError
 
 _ENDING_S = 1.0
-
-
-class PageError(Exception):
-    """The page cannot be served. The message is one line: what, where, what to do."""
 
 
 def listen(port: int, *, everywhere: bool) -> socket.socket:

@@ -14,6 +14,9 @@ from kurt2rt.teaching.scripted_teacher import Picture, teacher_of
 
 Say = Callable[[str], None]
 
+_STOPPED_ITSELF = ("the guard", "lost the link")
+"""Reasons that a simulated robot may be told to go on after, unlike a person's stop."""
+
 
 async def teach_by_script(
     robot: TeacherClient, settings: RobotSettings, task: TaskSettings, say: Say, *, seed: int = 1
@@ -45,6 +48,8 @@ async def teach_by_script(
             teacher.enter(Phase.CORRECTIONS)
             await _must(robot.set_phase(Phase.CORRECTIONS))
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
+        if state.stopped_because.startswith(_STOPPED_ITSELF):
+            await robot.resume()
         command = teacher.watch(picture_in(state), state.tick - before)
         before = state.tick
         if command is not None:
