@@ -1,3 +1,4 @@
+import functools
 import threading
 
 import pytest
@@ -80,3 +81,48 @@ def test_an_error_in_the_thread_comes_out_of_a_body_that_went_well() -> None:
         rig.robot_end.shutdown()
         with pytest.raises(BusError, match="is shut down"), RealtimeSimulation(rig.robot) as simulation:
             assert simulation.wait(30.0)
+
+
+def test_what_is_asked_is_done_in_order_by_the_thread_that_steps_before_its_next_step() -> None:
+    with Rig() as rig:
+        simulation = RealtimeSimulation(rig.robot)
+        done: list[tuple[str, str, float]] = []
+        finished = threading.Event()
+
+        def job(name: str) -> None:
+            done.append((name, threading.current_thread().name, rig.robot.time_s))
+
+        for name in ("first", "second"):
+            simulation.ask(functools.partial(job, name))
+        simulation.ask(finished.set)
+        with simulation:
+            assert finished.wait(30.0)
+        assert done == [("first", "simulated-robot", 0.0), ("second", "simulated-robot", 0.0)]
+
+
+def test_what_is_asked_of_a_running_simulation_is_done_once_and_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Rig() as rig:
+        steps = Steps(rig, 3)
+        times: list[float] = []
+        with RealtimeSimulation(rig.robot) as simulation:
+            done = threading.Event()
+            simulation.ask(lambda: times.append(rig.robot.time_s))
+            simulation.ask(done.set)
+            assert done.wait(30.0)
+            monkeypatch.setattr(rig.robot, "step", steps)
+            assert steps.enough.wait(30.0)
+        assert len(times) == 1
+
+
+def test_an_error_in_what_is_asked_ends_the_thread_and_comes_out_of_stop() -> None:
+    def fail() -> None:
+        raise ValueError("a wall that is none")
+
+    with Rig() as rig:
+        simulation = RealtimeSimulation(rig.robot)
+        simulation.ask(fail)
+        simulation.start()
+        assert simulation.wait(30.0)
+        with pytest.raises(ValueError, match="a wall that is none"):
+            simulation.stop()
+        assert rig.robot.time_s == 0.0

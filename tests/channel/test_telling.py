@@ -1,0 +1,170 @@
+"""What the picture says of a robot, tick by tick."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from kurt2rt.channel.requests import BehaviourRequest, PhaseRequest, ResumeRequest, SessionRequest
+from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.wire import decode_state, encode_state
+from kurt2rt.rla.rla import Phase
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
+from tests.channel.grounds import Yard
+
+COUNT = len(ROBOT.infrared.sensors)
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def picture(desk: Desk) -> State:
+    """The picture of the newest tick; what comes out of the wire is the same."""
+    told = desk.telling.picture(desk.record)
+    assert decode_state(encode_state(told)) == told
+    return told
+
+
+def test_a_robot_that_knows_nothing(desk: Desk) -> None:
+    desk.run(counts=120)
+    assert picture(desk) == State(
+        boot=BOOT,
+        tick=desk.tick,
+        phase=1,
+        infrared_counts=(120,) * COUNT,
+        infrared_age_s=0.0,
+        bumpers=0,
+        left_m_s=0.0,
+        right_m_s=0.0,
+        cause="unknown",
+        action=None,
+        rla=None,
+        nearest=None,
+        nearest_action=None,
+        distance=math.inf,
+        radius=700.0,
+        taught_by="",
+        taught_at="",
+        question=(),
+        teacher=None,
+        by_hand=False,
+        stopped_because="",
+        rlas=0,
+        lessons=0,
+        unsaved=0,
+        session=None,
+        clock_s=0.0,
+        guard=(),
+        trouble="",
+        late_p99_ms=0.0,
+        missed_ticks=0,
+        place=None,
+    )
+
+
+async def test_a_robot_that_drives_by_what_it_was_taught(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.rla) == ("rla", "forward", 1)
+    assert (told.left_m_s, told.right_m_s) == (0.3, 0.3)
+    assert (told.nearest, told.nearest_action, told.radius) == (1, "forward", 700.0)
+    assert told.distance < 1.0
+    assert (told.taught_by, told.taught_at, told.teacher) == ("ann", STAMP, "ann")
+    assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)
+
+
+async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run()
+    assert (picture(desk).taught_at, picture(desk).unsaved) == ("", 1)
+    desk.write()
+    assert (picture(desk).taught_at, picture(desk).unsaved) == (STAMP, 0)
+    await reply_of(task)
+
+
+async def test_a_question_names_the_features_that_differ_most(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    desk.run(counts=900)
+    told = picture(desk)
+    assert (told.cause, told.nearest, told.rla) == ("unknown", 1, None)
+    assert told.distance > told.radius
+    assert len(told.question) == 5
+    assert all(each.here > each.in_condition for each in told.question)
+    desk.run(counts=100)
+    assert picture(desk).question == ()
+
+
+async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
+    await desk.stream(desk.press())
+    desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.rla, told.by_hand, told.teacher) == ("teacher", "by hand", None, True, "ann")
+    assert (told.left_m_s, told.right_m_s) == (0.2, 0.1)
+    desk.run(30)
+    told = picture(desk)
+    assert (told.cause, told.by_hand, told.stopped_because) == ("stopped", False, "ann drove by hand and let go")
+    assert (told.left_m_s, told.right_m_s) == (0.0, 0.0)
+
+
+async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
+    await desk.stream(desk.watch())
+    await desk.ask(desk.command(BehaviourRequest, "back", 5))
+    assert picture(desk).by_hand is False  # nobody has become the teacher yet who could be there
+    await desk.stream(desk.watch())
+    await desk.ask(desk.command(BehaviourRequest, "back", 5))
+    told = picture(desk)
+    assert (told.action, told.by_hand) == ("back", True)
+
+
+async def test_phase_session_and_clock(desk: Desk) -> None:
+    await desk.ask(desk.command(PhaseRequest, Phase.CORRECTIONS))
+    await desk.ask(desk.command(SessionRequest, "morning"))
+    desk.run(250)
+    told = picture(desk)
+    assert (told.phase, told.session) == (2, "morning")
+    assert told.clock_s == pytest.approx(2.5)
+    await desk.ask(desk.command(SessionRequest, None))
+    desk.run(100)
+    told = picture(desk)
+    assert told.session is None
+    assert told.clock_s == pytest.approx(2.51)
+    assert told.stopped_because == "the session 'morning' is over"
+    await desk.ask(desk.command(ResumeRequest))
+    assert picture(desk).stopped_because == ""
+
+
+def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> None:
+    desk.bus_trouble = "the bus is off"
+    assert picture(desk).trouble == "the bus is off"
+    desk.notebook.trouble = "the disk is full"
+    assert picture(desk).trouble == "the disk is full"
+
+
+def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
+    desk.robot.infrared_age_s = math.inf
+    desk.robot.bumpers = 5
+    desk.robot.refuses = ("infra-red stale", "bumper")
+    desk.run()
+    told = picture(desk)
+    assert (told.infrared_age_s, told.bumpers, told.guard) == (math.inf, 5, ("infra-red stale", "bumper"))
+    assert told.cause == "blind"
+
+
+def test_where_a_simulated_robot_is() -> None:
+    assert picture(Desk(ground=Yard())).place == SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, 0)
+
+
+def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk) -> None:
+    first = picture(desk)
+    ledger = desk.runtime.ledger
+    for _ in range(200):
+        ledger.begin(0.004)
+        ledger.end()
+    ledger.missed_ticks = 3
+    assert picture(desk) == replace(first, missed_ticks=3)
+    assert {picture(desk).late_p99_ms for _ in range(18)} == {0.0}
+    assert picture(desk).late_p99_ms == pytest.approx(4.0)
