@@ -134,7 +134,9 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("run", "--robot", "can7", "--teacher", "scripted"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--robot", "can7", "--auto"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--page", "--teacher", "none"), "come over the channel"),
+        (("teach", "--terminal", "--auto"), "one teacher at a time"),
         (("run", "--seconds", "nan"), "--seconds"),
         (("run", "--seconds", "inf"), "--seconds"),
         (("run", "--seconds", "0"), "--seconds"),

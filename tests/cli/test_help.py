@@ -23,7 +23,22 @@ def _names(parameter: object) -> list[str]:
 
 def test_every_command_is_found() -> None:
     assert {words[-1] for words in commands() if words} == {
-        *("demo", "run", "lesson", "exam", "knowledge", "show", "lessons", "check", "undo", "export", "bench", "doctor")
+        *(
+            "demo",
+            "run",
+            "teach",
+            "pair",
+            "lesson",
+            "exam",
+            "knowledge",
+            "show",
+            "lessons",
+            "check",
+            "undo",
+            "export",
+            "bench",
+            "doctor",
+        )
     }
     assert "--seeds" in commands()["lesson",]
     assert "--limit" in commands()["knowledge", "show"]

@@ -1,36 +1,99 @@
-"""`kurt2rt run`, as a process of its own, with a person at its keyboard."""
+"""`kurt2rt run` and `kurt2rt teach --terminal`, as processes of their own, with a person at the keyboard."""
 
-import os
 import resource
 import signal
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
+from config import CONFIG_DIR
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
+from kurt2rt.rla.rla import RlaCreated
 from tests.cli.helpers import Running, running
 
 
 def actions_in(knowledge: Path) -> list[str]:
     with Journal.read_only(knowledge) as journal:
         assert check_knowledge(journal) == []
-        return [getattr(event, "rla").action for event in journal.events()]  # noqa: B009
+        return [event.rla.action for event in journal.events() if isinstance(event, RlaCreated)]
+
+
+class Lesson(NamedTuple):
+    """A robot and a person who teaches it from a terminal."""
+
+    robot: Running
+    person: Running
+    knowledge: Path
+
+
+@contextmanager
+def lesson(folder: Path) -> Iterator[Lesson]:
+    """The robot has asked, and the terminal teaches."""
+    with running("run", "--seconds", "120", "--port", "0", "--knowledge", "mine.knowledge", folder=folder) as robot:
+        port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
+        with running("teach", "--terminal", "--port", port, folder=folder) as person:
+            person.wait_for("local teaches")
+            yield Lesson(robot, person, folder / "mine.knowledge")
 
 
 def test_a_person_teaches_and_sigterm_ends_it_with_the_lesson_kept(tmp_path: Path) -> None:
-    with running("run", "--seconds", "60", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        robot.wait_for("I know nothing yet, teach me")
-        robot.type("forward")
-        robot.wait_for("RLA 1 taught: forward")
+    with lesson(tmp_path) as (robot, person, knowledge):
+        person.wait_for("I know nothing yet, teach me")
+        person.type("forward")
+        person.wait_for("RLA 1 taught: forward")
         robot.wait_for("  1 RLAs")
         said = robot.end(signal.SIGTERM)
     assert said.exit_code == 0
     assert said.err == ""
     assert said.out.splitlines()[-1] == "the robot stands; 1 RLAs are in mine.knowledge"
-    assert actions_in(tmp_path / "mine.knowledge") == ["forward"]
+    assert actions_in(knowledge) == ["forward"]
+
+
+def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
+    with lesson(tmp_path) as (_, person, knowledge):
+        for line, answer in (
+            ("stand", "RLA 1 taught: stand"),
+            ("begin monday", "session 'monday' begins"),
+            ("replace 1 back", "RLA 1 corrected: back instead of stand"),
+            ("undo", "undone: RLA 1 corrected: back instead of stand"),
+            ("", "the robot stands until it is told to resume"),
+            ("go", "the robot may drive"),
+            ("phase 2", "phase 2, corrections"),
+            ("delete 7", "refused: there is no RLA 7"),
+            ("step stand 0.2", "stand for 20 ticks"),
+            ("lessons", "RLA 1 corrected: back instead of stand, undone"),
+            ("save before lunch", "before-lunch.knowledge"),
+            ("export", ".csv"),
+            ("dance", "an action                answers"),
+            ("end", "session 'monday' is over"),
+        ):
+            person.type(line)
+            person.wait_for(answer)
+        person.type("quit")
+        person.wait_for("nobody teaches now")
+        assert person.process.wait() == 0
+    (copy,) = (tmp_path / "saved").iterdir()
+    assert actions_in(copy)[0] == actions_in(knowledge)[0] == "stand"
+
+
+def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: Path) -> None:
+    words = ("run", "--auto", "--page", "--port", "0", "--settings", "free_ports.yaml", "--knowledge", "mine.knowledge")
+    settings = (CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8")
+    (tmp_path / "free_ports.yaml").write_text(settings.replace("page_port: 8642", "page_port: 0"), encoding="utf-8")
+    with running(*words, folder=tmp_path) as robot:
+        said = [robot.wait_for("http://127.0.0.1:"), robot.wait_for("RLAs | ")]
+        while "  0 RLAs" in said[-1]:
+            said.append(robot.wait_for("RLAs | "))
+        end = robot.end(signal.SIGTERM)
+    assert (end.exit_code, end.err) == (0, "")
+    assert "/pair?token=" in said[0]
+    assert actions_in(tmp_path / "mine.knowledge")
 
 
 def limit_files(process: "subprocess.Popen[str]", size_bytes: int) -> None:
@@ -38,23 +101,23 @@ def limit_files(process: "subprocess.Popen[str]", size_bytes: int) -> None:
     resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (size_bytes, resource.RLIM_INFINITY))
 
 
-def fill_the_disk(robot: Running, knowledge: Path) -> None:
+def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
     """Teach once; then the disk is full, and a second lesson waits."""
-    robot.wait_for("I know nothing yet, teach me")
-    robot.type("stand")
+    person.type("stand")
+    person.wait_for("RLA 1 taught")
     robot.wait_for("  1 RLAs")
     limit_files(robot.process, log_of(knowledge).stat().st_size)
-    robot.type("replace 1 back")
+    person.type("replace 1 back")
     line = robot.wait_for("1 lessons not saved yet")
     assert "stands: unsaved" in line
     assert "mine.knowledge: the disk fails; look at its health and room" in line
+    person.wait_for("refused: not saved yet; it may still count")
 
 
 @pytest.mark.deep
 def test_a_full_disk_is_said_and_the_robot_goes_on_when_there_is_room(tmp_path: Path) -> None:
-    knowledge = tmp_path / "mine.knowledge"
-    with running("run", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        fill_the_disk(robot, knowledge)
+    with lesson(tmp_path) as (robot, person, knowledge):
+        fill_the_disk(robot, person, knowledge)
         limit_files(robot.process, resource.RLIM_INFINITY)
         robot.wait_for("back by RLA 1")
         said = robot.end(signal.SIGINT)
@@ -65,12 +128,11 @@ def test_a_full_disk_is_said_and_the_robot_goes_on_when_there_is_room(tmp_path: 
 
 @pytest.mark.deep
 def test_a_disk_that_stays_full_is_the_last_word(tmp_path: Path) -> None:
-    knowledge = tmp_path / "mine.knowledge"
-    with running("run", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        fill_the_disk(robot, knowledge)
+    with lesson(tmp_path) as (robot, person, knowledge):
+        fill_the_disk(robot, person, knowledge)
         said = robot.end(signal.SIGTERM)
     assert said.exit_code == 2
-    (line,) = said.err.splitlines()
+    line = said.err.splitlines()[-1]
     assert line.startswith(f"kurt2rt: {knowledge}: the disk fails; look at its health and room")
     assert line.endswith("; closed with 1 lessons not written")
     assert actions_in(knowledge) == ["stand"]
@@ -78,12 +140,10 @@ def test_a_disk_that_stays_full_is_the_last_word(tmp_path: Path) -> None:
 
 @pytest.mark.deep
 def test_a_reader_that_goes_away_does_not_stop_the_robot(tmp_path: Path) -> None:
-    with running("run", "--seconds", "60", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        robot.wait_for("I know nothing yet, teach me")
+    with lesson(tmp_path) as (robot, person, knowledge):
         robot.stop_reading()
-        robot.type("stand")
-        while not (tmp_path / "mine.knowledge").exists() or actions_in(tmp_path / "mine.knowledge") != ["stand"]:
-            os.sched_yield()
+        person.type("stand")
+        person.wait_for("RLA 1 taught")
         said = robot.end(signal.SIGTERM)
     assert "Traceback" not in said.err
-    assert actions_in(tmp_path / "mine.knowledge") == ["stand"]
+    assert actions_in(knowledge) == ["stand"]
