@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from kurt2rt.bench.channel import ChannelLengths, measure_channel
+from kurt2rt.bench.channel_load import Shifts
 from kurt2rt.bench.closed_loop import measure_closed_loop
 from kurt2rt.bench.lateness import lateness_result
 from kurt2rt.bench.lesson import measure_lessons
@@ -23,6 +25,7 @@ class Bench(StrEnum):
     MATCH = "match"
     LOOP = "loop"
     LESSON = "lesson"
+    CHANNEL = "channel"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +40,7 @@ class Lengths:
     loop_block_s: int
     """Simulated seconds in a block."""
     lessons: int
+    channel: ChannelLengths
 
 
 FULL = Lengths(
@@ -46,6 +50,7 @@ FULL = Lengths(
     loop_blocks=15,
     loop_block_s=20,
     lessons=200,
+    channel=ChannelLengths(presses=200, shifts=Shifts(rounds=8, ticks=250), lessons=200),
 )
 QUICK = Lengths(
     learning_s=90.0,
@@ -54,6 +59,7 @@ QUICK = Lengths(
     loop_blocks=4,
     loop_block_s=20,
     lessons=50,
+    channel=ChannelLengths(presses=15, shifts=Shifts(rounds=2, ticks=100), lessons=15),
 )
 
 
@@ -87,4 +93,6 @@ async def run_suite(
         )
     if Bench.LESSON in benches:
         results.append(await measure_lessons(subject, folder, lengths.lessons, progress_of("making lessons durable")))
+    if Bench.CHANNEL in benches:
+        results.extend(await measure_channel(subject, folder, lengths.channel, progress_of))
     return tuple(results)

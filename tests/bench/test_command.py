@@ -33,7 +33,7 @@ def test_one_benchmark_prints_its_table_and_writes_json(app: typer.Typer, tmp_pa
 def test_a_benchmark_that_is_not_there_is_refused_with_those_that_are(app: typer.Typer) -> None:
     result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--only", "match,speed"])
     assert result.exit_code == 2
-    assert "there is no speed; give some of lateness, tick, match, loop, lesson" in result.output
+    assert "there is no speed; give some of lateness, tick, match, loop, lesson, channel" in result.output
 
 
 def test_a_report_that_could_not_be_written_is_refused_before_the_work(app: typer.Typer, tmp_path: Path) -> None:
@@ -44,5 +44,5 @@ def test_a_report_that_could_not_be_written_is_refused_before_the_work(app: type
 
 def test_help_says_what_is_measured_and_what_the_exit_code_means(app: typer.Typer) -> None:
     result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--help"])
-    assert "lateness, tick, match, loop, lesson" in result.stdout
+    assert "lateness, tick, match, loop, lesson, channel" in result.stdout
     assert "ends with code 0" in result.stdout

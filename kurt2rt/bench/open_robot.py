@@ -1,0 +1,139 @@
+"""A robot that is open to teachers over the network, put together as the service does it."""
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+import anyio.to_thread
+
+from kurt2rt.bench.presses import WitnessedRobot
+from kurt2rt.bench.punctuality import NotingClock
+from kurt2rt.bench.subject import Subject, kept_knowledge
+from kurt2rt.channel.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.credentials import Device, local_pairing
+from kurt2rt.channel.teachers import Teachers
+from kurt2rt.channel.telling import Safekeeping
+from kurt2rt.knowledge.safe import Safe
+from kurt2rt.knowledge.writer import JournalWriter
+from kurt2rt.rounds import Rounds, Screen
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service_settings import load_service
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.quiet_gc import quiet_gc
+from kurt2rt.timing.timerfd import TimerfdClock
+
+_PATIENCE_S = 30.0
+
+
+class Turnstile:
+    """What happens after each tick: what the service does, and a look whether what is waited for has come."""
+
+    def __init__(self, with_channel: Rounds, without: Rounds) -> None:
+        self.open = True
+        """Whether the channel has its part in it."""
+        self.ticks = 0
+        self.driving = 0
+        """Ticks in which an action drove the wheels."""
+        self.newest: TickRecord | None = None
+        self._with_channel = with_channel
+        self._without = without
+        self._come: Callable[[], bool] | None = None
+        self._noticed = anyio.Event()
+
+    def __call__(self, record: TickRecord) -> None:
+        """The round after one tick."""
+        self.ticks += 1
+        self.driving += record.decision.driving
+        self.newest = record
+        (self._with_channel if self.open else self._without)(record)
+        if self._come is not None and self._come():
+            self._come = None
+            self._noticed.set()
+
+    async def until(self, come: Callable[[], bool]) -> None:
+        """Wait until something is so after a tick; one waits at a time. Raises TimeoutError after half a minute."""
+        self._noticed = anyio.Event()
+        self._come = come
+        with anyio.fail_after(_PATIENCE_S):
+            await self._noticed.wait()
+
+    async def go_on_for(self, ticks: int) -> None:
+        """Let so many ticks go by."""
+        last = self.ticks + ticks
+        await self.until(lambda: self.ticks >= last)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenRobot:
+    """Ticks by itself while it is open."""
+
+    runtime: Runtime
+    writer: JournalWriter
+    channel: Channel
+    witness: WitnessedRobot
+    clock: NotingClock
+    device: Device
+    """A teacher's device that is paired with it."""
+    rounds: Turnstile
+
+    @property
+    def address(self) -> tuple[str, ...]:
+        """Folder of the pairing and port, as a program on the device's side wants them."""
+        return str(self.device.folder), str(self.channel.endpoint.port)
+
+
+@asynccontextmanager
+async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]:
+    """Set the robot down, standing and open to teachers; knowledge and pairing go to `folder`, which is made.
+
+    Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
+    """
+    pairing = local_pairing(folder / "teachers", folder / "devices")
+    service = load_service().model_copy(update={"knowledge": str(folder / "bench.knowledge")})
+    failed: Exception | None = None
+    arena = subject.open_arena(f"bench {folder.name}")
+    try:
+        with (
+            kept_knowledge(subject, Path(service.knowledge)) as writer,
+            TimerfdClock() as real_clock,
+            arena.live(),
+            quiet_gc(),
+        ):
+            clock = NotingClock(real_clock)
+            witness = WitnessedRobot(arena.robot, clock)
+            runtime = build_runtime(
+                witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
+            )
+            runtime.school.stop("the benchmark begins")
+            stamps: dict[str, str] = {}
+            safekeeping = Safekeeping(
+                unsaved=lambda: writer.unwritten,
+                trouble=lambda: writer.trouble,
+                stamp_of=lambda command_id: stamps.get(command_id, ""),
+            )
+            surroundings = Surroundings(safekeeping, Safe(Path(service.knowledge), writer), lambda: "", None)
+            screen = Screen(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
+            teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
+            try:
+                async with (
+                    anyio.create_task_group() as tasks,
+                    open_channel(runtime, teachers, 0, surroundings) as channel,
+                ):
+                    rounds = Turnstile(
+                        Rounds(runtime, writer, stamps, service, screen, None, channel),
+                        Rounds(runtime, writer, stamps, service, screen, None, None),
+                    )
+                    tasks.start_soon(runtime.scheduler.run, None, rounds)
+                    try:
+                        yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds)
+                    except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
+                        failed = error
+                    runtime.scheduler.end()
+            finally:
+                teachers.close()
+    finally:
+        arena.close()
+    if failed is not None:
+        raise failed

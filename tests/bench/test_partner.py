@@ -1,0 +1,39 @@
+"""Processes beside the robot's: whatever happens, they end."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.bench.partner import PartnerLostError, partner
+
+DEVICE = "kurt2rt.bench.device"
+
+
+def assert_gone(pid: int) -> None:
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> None:
+    async with partner(DEVICE, "nowhere", "1") as device:
+        assert await device.ask("leave") == {}
+        assert await device.ask("leave") == {}
+    assert_gone(device.pid)
+
+
+async def test_a_partner_that_fails_is_missed_and_says_why_itself(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(PartnerLostError, match=r"kurt2rt\.bench\.device ended while it was asked to look"):
+        async with partner(DEVICE, str(tmp_path / "no-pairing"), "1") as device:
+            await device.ask("look")
+    assert_gone(device.pid)
+    assert "no-pairing" in capfd.readouterr().err
+
+
+async def test_a_silent_partner_is_given_up_and_ended() -> None:
+    with pytest.raises(PartnerLostError, match="did not leave within 0 s"):
+        async with partner(DEVICE, "nowhere", "1") as device:
+            await device.ask("leave", patience_s=0.0)
+    assert_gone(device.pid)
