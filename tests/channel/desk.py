@@ -27,7 +27,7 @@ from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.test_tick import CorridorRobot, Notebook
 
@@ -81,15 +81,23 @@ class Desk:
     """One robot that needs a teacher, and everything of the channel behind the keys."""
 
     def __init__(
-        self, *, ground: Ground | None = None, keys: Keys | None = None, longest_wait_s: float = LONGEST_WAIT_S
+        self,
+        *,
+        ground: Ground | None = None,
+        keys: Keys | None = None,
+        keeper: LessonKeeper | None = None,
+        longest_wait_s: float = LONGEST_WAIT_S,
     ) -> None:
+        """`keeper` takes the lessons in place of the notebook."""
         self.robot = WideRobot()
         self.notebook = Notebook()
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
         clock = LockstepClock(lambda: None)
-        self.runtime: Runtime = build_runtime(self.robot, ROBOT, TASK, (), self.notebook, clock, attended=True)
+        self.runtime: Runtime = build_runtime(
+            self.robot, ROBOT, TASK, (), keeper or self.notebook, clock, attended=True
+        )
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)
         copies: Copies = self.shelf
