@@ -20,6 +20,7 @@ from kurt2rt.channel.wire import encode_state
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.commands import HandOver, Stop
 from kurt2rt.tick import TickRecord
 
 VERSION = 1
@@ -102,7 +103,7 @@ async def open_channel(
     site.doorkeeper = endpoint
     try:
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_refresh, teachers)
+            tasks.start_soon(_refresh, teachers, runtime)
             yield Channel(runtime, reception, site, telling, endpoint)
             tasks.cancel_scope.cancel()
     finally:
@@ -110,11 +111,15 @@ async def open_channel(
             await endpoint.close()
 
 
-async def _refresh(teachers: Teachers) -> None:
-    """New pairings are taken in and revoked ones thrown out while the robot runs."""
+async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
+    """New pairings are taken in and revoked ones thrown out while the robot runs; it stands when it was theirs."""
     while True:
         await anyio.sleep(_REFRESH_S)
-        await teachers.refresh()
+        for name in (await teachers.refresh()).gone:
+            if runtime.school.authority.teacher == name:
+                revoked = f"{name}-gone-{secrets.token_hex(4)}"
+                runtime.inbox.put(Stop(f"{revoked}-stop", name))
+                runtime.inbox.put(HandOver(f"{revoked}-release", name))
 
 
 def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
@@ -79,6 +79,16 @@ class Copies(Protocol):
         ...
 
 
+class Sender(NamedTuple):
+    """Whose message it is, for certain."""
+
+    device: str
+    pairing: bytes
+    """Of the device; another one after it was renewed."""
+    number: int
+    """Grows with each message of a pairing."""
+
+
 class Reception:
     """Takes requests in the robot's own loop, between two ticks."""
 
@@ -102,7 +112,7 @@ class Reception:
         self._ground = ground
         self._longest_wait_s = longest_wait_s
         self._outcomes = Outcomes()
-        self._newest: dict[str, int] = {}
+        self._newest: dict[str, Sender] = {}
         self._under_way: set[asyncio.Task[None]] = set()
         self.tick = 0
         """Of the newest picture."""
@@ -111,13 +121,14 @@ class Reception:
         """What became of a command that had come in."""
         self._outcomes.settle(command_id, reply)
 
-    async def answer(self, device: str, number: int, request: Request) -> Reply:
-        """The reply to a request of a device. `number` grows with each message that the device made."""
+    async def answer(self, sender: Sender, request: Request) -> Reply:
+        """The reply to a request."""
+        device = sender.device
         match request:
             case StreamRequest():
-                return self._stream(device, number, request)
+                return self._stream(sender, request)
             case StopRequest(command_id=identity):
-                return await self._stop(device, number, f"{device}-{identity.hex()}")
+                return await self._stop(sender, f"{device}-{identity.hex()}")
             case CommandRequest():
                 return await self._command(device, request)
             case HelloRequest():
@@ -128,14 +139,13 @@ class Reception:
                 return self._world()
         return Reply(Verdict.NOT_HERE)
 
-    def _stream(self, device: str, number: int, request: StreamRequest) -> Reply:
-        tick, school = self.tick, self._runtime.school
+    def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
+        tick, school, device = self.tick, self._runtime.school, sender.device
         stale = self._stale(request.boot, request.seen, STREAM_TICKS)
         if stale is not None:
             return stale
-        if number <= self._newest.get(device, -1):
+        if not self._is_newest(sender):
             return refusal("old", "a newer message came before this one", tick)
-        self._newest[device] = number
         command: Watch | Drive = Watch(device, request.seen)
         if isinstance(request, DriveRequest):
             command = Drive(device, request.seen, request.hold, request.left_m_s, request.right_m_s)
@@ -147,11 +157,11 @@ class Reception:
             return refusal("stopped", ended, tick)
         return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
 
-    async def _stop(self, device: str, number: int, command_id: str) -> Reply:
+    async def _stop(self, sender: Sender, command_id: str) -> Reply:
         # What of a press was sent before the stop and comes after it is over, too.
-        self._newest[device] = max(number, self._newest.get(device, -1))
+        self._is_newest(sender)
         # Each copy stops again, whatever came of the one before: the robot may have been told to drive meanwhile.
-        if not self._hand_in(Stop(command_id, device)):
+        if not self._hand_in(Stop(command_id, sender.device)):
             return self._too_many()
         # Shielded: the end of one copy's request must not end what the next copy waits for.
         return await asyncio.shield(self._outcomes.get(command_id) or self._outcomes.begin(command_id))
@@ -227,6 +237,14 @@ class Reception:
         except ValueError as error:
             return refusal("refused", str(error), self.tick)
         return done(self.tick, "the robot stands elsewhere")
+
+    def _is_newest(self, sender: Sender) -> bool:
+        """Whether nothing newer came from this device; notes it."""
+        newest = self._newest.get(sender.device)
+        if newest is not None and newest.pairing == sender.pairing and sender.number <= newest.number:
+            return False
+        self._newest[sender.device] = sender
+        return True
 
     def _stale(self, boot: bytes, seen: int, longest: int) -> Reply | None:
         if boot != self._boot:

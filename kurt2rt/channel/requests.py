@@ -41,10 +41,11 @@ class StreamRequest(Request):
 
     boot: _Boot
     """Start of the robot program that it was meant for."""
-    seq: _Number
-    """Grows with each message of the stream."""
     seen: _Number
-    """Tick of the newest picture that the teacher had when he acted."""
+    """Tick of the newest sign of the robot that the device had, a picture or an answer.
+
+    Which of two messages is the newer one OSCORE tells: each has a number of its own.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +56,7 @@ class CommandRequest(Request):
     command_id: _CommandId
     """Random, one per command, the same each time it is sent."""
     seen: _Number
+    """Tick of the newest picture that the teacher had when he acted."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel, describe
 from kurt2rt.channel.endpoint import Endpoint
 from kurt2rt.channel.ground import Ground
-from kurt2rt.channel.reception import LONGEST_WAIT_S, Copies, Reception
+from kurt2rt.channel.reception import LONGEST_WAIT_S, Copies, Reception, Sender
 from kurt2rt.channel.reply import Reply
 from kurt2rt.channel.requests import (
     AnswerRequest,
@@ -156,7 +156,8 @@ class Desk:
         What is waiting must be awaited with `reply_of`, after the tick that answers it.
         """
         self._number += 1
-        answer = self.reception.answer(device, self._number if number is None else number, request)
+        sender = Sender(device, device.encode(), self._number if number is None else number)
+        answer = self.reception.answer(sender, request)
         task = asyncio.get_running_loop().create_task(answer)
         await turns()
         return task
@@ -177,10 +178,10 @@ class Desk:
         return task.result()
 
     def watch(self, *, age: int = 0, boot: bytes = BOOT) -> WatchRequest:
-        return WatchRequest(boot, 0, self.tick - age)
+        return WatchRequest(boot, self.tick - age)
 
     def press(self, hold: int = 1, *, age: int = 0, boot: bytes = BOOT) -> DriveRequest:
-        return DriveRequest(boot, 0, self.tick - age, hold, 0.2, 0.1)
+        return DriveRequest(boot, self.tick - age, hold, 0.2, 0.1)
 
     def stop(self) -> StopRequest:
         return StopRequest(self.new_id())

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import anyio
 
 from kurt2rt.channel.endpoint import open_endpoint
-from kurt2rt.channel.reception import Reception
+from kurt2rt.channel.reception import Reception, Sender
 from kurt2rt.channel.reply import Reply, done, refusal
 from kurt2rt.channel.requests import CommandRequest, DriveRequest, Request, StreamRequest, WatchRequest
 from kurt2rt.channel.site import RobotSite
@@ -43,7 +43,7 @@ class StandInRobot:
         self.heard: list[Request] = []
         self._news = anyio.Event()
 
-    async def answer(self, _device: str, _number: int, request: Request) -> Reply:
+    async def answer(self, _sender: Sender, request: Request) -> Reply:
         """What the site asks of a reception."""
         self.heard.append(request)
         self._wake()

@@ -419,14 +419,14 @@ async def test_without_a_robot_it_says_what_the_network_says(pairing: Pairing) -
 # Presence
 
 
-async def test_while_in_charge_and_watching_it_says_so_33_times_a_second(
+async def test_while_in_charge_and_watching_it_says_so_40_times_a_second(
     client: TeacherClient, robot: StandInRobot
 ) -> None:
     await seen(client, lambda: client.state == robot.state)
     assert robot.heard == []
     await be_in_charge(client, robot)
     heard = await robot.hears(WatchRequest, 10)
-    assert all(later.seq > earlier.seq for earlier, later in pairwise(heard))
+    assert all(later.seen >= earlier.seen for earlier, later in pairwise(heard))
     assert heard[-1].boot == b"boot"
     assert client.state is not None
     assert heard[-1].seen >= client.state.tick - 10
@@ -509,8 +509,6 @@ async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_de
     holds = list(dict.fromkeys(each.hold for each in heard))
     assert len(holds) == 6
     assert holds == sorted(holds)
-    numbers = [each.seq for each in heard]
-    assert numbers == sorted(set(numbers))
 
 
 async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: StandInRobot) -> None:
