@@ -150,13 +150,15 @@ class Desk:
         self._ids += 1
         return self._ids.to_bytes(8, "big")
 
-    async def send(self, request: Request, device: str = "ann", number: int | None = None) -> "asyncio.Task[Reply]":
+    async def send(
+        self, request: Request, device: str = "ann", number: int | None = None, pairing: bytes = b"first"
+    ) -> "asyncio.Task[Reply]":
         """A request arrives, and waits for its reply; it is the newest message of its device unless `number` is given.
 
         What is waiting must be awaited with `reply_of`, after the tick that answers it.
         """
         self._number += 1
-        sender = Sender(device, device.encode(), self._number if number is None else number)
+        sender = Sender(device, pairing, self._number if number is None else number)
         answer = self.reception.answer(sender, request)
         task = asyncio.get_running_loop().create_task(answer)
         await turns()
@@ -171,9 +173,11 @@ class Desk:
                 self.write()
         return await reply_of(task)
 
-    async def stream(self, request: StreamRequest, device: str = "ann", number: int | None = None) -> Reply:
+    async def stream(
+        self, request: StreamRequest, device: str = "ann", number: int | None = None, pairing: bytes = b"first"
+    ) -> Reply:
         """A message of a stream arrives; it is answered at once."""
-        task = await self.send(request, device, number)
+        task = await self.send(request, device, number, pairing)
         assert task.done()
         return task.result()
 

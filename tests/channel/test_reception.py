@@ -119,6 +119,26 @@ async def test_each_device_counts_for_itself(desk: Desk) -> None:
     assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
 
 
+async def test_a_renewed_pairing_begins_to_count_anew(desk: Desk) -> None:
+    await desk.stream(desk.watch(), number=1000)
+    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == ""
+    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == "old"
+
+
+async def test_a_message_that_was_refused_as_stale_says_nothing_about_the_next_one(desk: Desk) -> None:
+    assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1), number=7)) == "stale"
+    assert why(await desk.stream(desk.watch(), number=6)) == ""
+
+
+async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_message(desk: Desk) -> None:
+    await desk.stream(desk.watch(), number=20)
+    stop = await desk.send(desk.stop(), number=12)
+    desk.run()
+    await reply_of(stop)
+    assert why(await desk.stream(desk.watch(), number=20)) == "old"
+    assert why(await desk.stream(desk.watch(), number=21)) == ""
+
+
 async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: Desk) -> None:
     """The first message of a press may be overtaken by the stop that ended it."""
     stop = await desk.send(desk.stop(), number=12)
