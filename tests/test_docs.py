@@ -41,7 +41,8 @@ LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"],
-    "run": lambda words: [*words, "--seconds", "1", "--teacher", "none"],
+    "run": lambda words: [*words, "--seconds", "2", "--port", "0", "--page-port", "0"],
+    "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick", "--only", "match"],
 }

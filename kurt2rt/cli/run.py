@@ -55,6 +55,10 @@ def run(
         int | None,
         typer.Option(min=0, max=65535, help="UDP port of the channel; 0: any. Default: as the settings say."),
     ] = None,
+    page_port: Annotated[
+        int | None,
+        typer.Option(min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."),
+    ] = None,
     seconds: Annotated[
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
@@ -117,10 +121,12 @@ def run(
             # The line is made by the printer as well: the percentiles in it cost more than a tick.
             printer.put(lambda: tell(status_line(status, opened.robot.health)))
 
+        at = () if page_port is None else ("--page-port", str(page_port))
+
         def listening(channel: Channel) -> None:
             say(f"teachers are listened to on UDP port {channel.endpoint.port}", "cyan")
             if page:
-                companions.start("teach", "--port", str(channel.endpoint.port))
+                companions.start("teach", "--port", str(channel.endpoint.port), *at)
             if auto:
                 companions.start("teach", "--auto", "--port", str(channel.endpoint.port))
 

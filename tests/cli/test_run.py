@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import pytest
 
-from config import CONFIG_DIR
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
@@ -83,9 +82,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
 
 
 def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: Path) -> None:
-    words = ("run", "--auto", "--page", "--port", "0", "--settings", "free_ports.yaml", "--knowledge", "mine.knowledge")
-    settings = (CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8")
-    (tmp_path / "free_ports.yaml").write_text(settings.replace("page_port: 8642", "page_port: 0"), encoding="utf-8")
+    words = ("run", "--auto", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
     with running(*words, folder=tmp_path) as robot:
         said = [robot.wait_for("http://127.0.0.1:"), robot.wait_for("RLAs | ")]
         while "  0 RLAs" in said[-1]:
