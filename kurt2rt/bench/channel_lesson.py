@@ -41,9 +41,9 @@ async def measure_channel_lessons(subject: Subject, folder: Path, lessons: int, 
     took, inside = share_of(took_ns), share_of(inside_ns)
     return Result(
         "channel",
-        "lesson, answered",
+        "lesson answered",
         took,
-        Reference("durable inside", inside.median_us, took.median_us),
+        Reference("durable", inside.median_us, took.median_us),
         (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
         f"{lessons} lessons; durable, without the channel: p99 {inside.p99_us / 1000:.1f} ms",
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
+from kurt2rt.bench.pace import Pace
 from kurt2rt.bench.presses import WitnessedRobot
 from kurt2rt.bench.punctuality import NotingClock
 from kurt2rt.bench.subject import Subject, kept_knowledge
@@ -77,6 +78,7 @@ class OpenRobot:
     device: Device
     """A teacher's device that is paired with it."""
     rounds: Turnstile
+    pace: Pace
 
     @property
     def address(self) -> tuple[str, ...]:
@@ -125,12 +127,13 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
                         Rounds(runtime, writer, stamps, service, screen, None, channel),
                         Rounds(runtime, writer, stamps, service, screen, None, None),
                     )
-                    tasks.start_soon(runtime.scheduler.run, None, rounds)
+                    pace = Pace(runtime.scheduler, clock)
+                    tasks.start_soon(pace.run, rounds)
                     try:
-                        yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds)
+                        yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)
                     except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
                         failed = error
-                    runtime.scheduler.end()
+                    pace.end()
             finally:
                 teachers.close()
     finally:
