@@ -38,7 +38,7 @@ class Device:
         return {}
 
     async def watch(self) -> dict[str, Any]:
-        """Get the pictures and say some 33 times a second that the teacher is there."""
+        """Get the pictures and say many times a second that the teacher is there."""
         await self._join(watching=True)
         return {}
 
