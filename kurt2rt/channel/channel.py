@@ -99,7 +99,7 @@ async def open_channel(
     reception = Reception(runtime, boot, hello, stamp_of, surroundings.copies, surroundings.ground)
     telling = Telling(runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground)
     site = RobotSite(teachers, reception)
-    endpoint = await open_endpoint(site, LOOPBACK if teachers.only_local else EVERYWHERE, port)
+    endpoint = await open_endpoint(site, LOOPBACK if teachers.only_local else EVERYWHERE, port, hears=site.hears)
     site.doorkeeper = endpoint
     try:
         async with anyio.create_task_group() as tasks:

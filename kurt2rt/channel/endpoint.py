@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 import aiocoap
+from aiocoap.error import ConRetransmitsExceeded
 from aiocoap.message import Direction
 from aiocoap.numbers.constants import TransportTuning
 from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
@@ -154,11 +155,22 @@ class Endpoint:
         await self._context.shutdown()
 
 
+def _nobody(_: Any) -> bool:
+    return False
+
+
 async def open_endpoint(
-    site: Site, host: str, port: int, *, limits: Limits | None = None, now: Callable[[], float] = time.monotonic
+    site: Site,
+    host: str,
+    port: int,
+    *,
+    limits: Limits | None = None,
+    hears: Callable[[Any], bool] = _nobody,
+    now: Callable[[], float] = time.monotonic,
 ) -> Endpoint:
     """Listen on an address of this machine, "::" for all; port 0 takes a free one.
 
+    `hears`: whether somebody (a request's `remote`) is there for certain, though he confirmed nothing.
     Raises ChannelError when the address is none of ours, or another program has the port.
     """
     loop = asyncio.get_running_loop()
@@ -179,6 +191,14 @@ async def open_endpoint(
     (tokens,) = context.request_interfaces
     answered.tokens = tokens
     tokens.token_interface.message_interface.gate = gate
+    end_all = tokens.dispatch_error
+
+    def dispatch_error(error: Exception, remote: Any) -> None:
+        # aiocoap ends all that somebody observes for one message that he did not confirm in time.
+        if not (isinstance(error, ConRetransmitsExceeded) and hears(remote)):
+            end_all(error, remote)
+
+    tokens.dispatch_error = dispatch_error
     return Endpoint(context, bound.getsockname()[1], gate, counters, failures)
 
 

@@ -63,15 +63,24 @@ class Doorkeeper(Protocol):
 class _Observer:
     """One who gets every picture; a slow one misses the older ones."""
 
-    def __init__(self, remote: Any) -> None:
+    def __init__(self, remote: Any, device: str, now_s: float) -> None:
         self.remote = remote
-        self.silent_since_s = float("-inf")
-        """Of the loop's time: when he was last heard, or asked whether he is there."""
+        self.device = device
+        self.heard_s = now_s
+        """When something came that only he can have sent; of the loop's time."""
+        self.asked_s = float("-inf")
+        """When he was last asked whether he is there."""
+        self.over = False
         self._newest = b""
         self._is_new = asyncio.Event()
 
     def show(self, picture: bytes) -> None:
         self._newest = picture
+        self._is_new.set()
+
+    def end(self) -> None:
+        """No more pictures for this one."""
+        self.over = True
         self._is_new.set()
 
     async def picture(self) -> bytes:
@@ -97,6 +106,11 @@ class RobotSite:
     def observers(self) -> int:
         """How many get the pictures."""
         return len(self._observers)
+
+    def hears(self, remote: Any) -> bool:
+        """Whether an observer there has just said something, so that he is not gone."""
+        now_s = asyncio.get_running_loop().time()
+        return any(each.remote == remote and now_s - each.heard_s < _CONFIRMED_EVERY_S for each in self._observers)
 
     def show(self, picture: bytes) -> None:
         """A new encoded picture for everyone who looks."""
@@ -127,10 +141,10 @@ class RobotSite:
         now_s = asyncio.get_running_loop().time()
         for observer in self._observers:
             if observer.remote == pipe.request.remote:
-                observer.silent_since_s = now_s
+                observer.heard_s = now_s
         sender = Sender(keys.authenticated_claims[0], keys.recipient_id, int.from_bytes(request_id.partial_iv, "big"))
         if (request.code, path_of(request)) == (aiocoap.GET, _STATE):
-            await self._show_state(pipe, request, keys, request_id)
+            await self._show_state(pipe, request, keys, request_id, sender.device)
             return
         response = await self._respond(request, sender)
         pipe.add_response(_protected(keys, response, request_id), is_last=True)
@@ -153,21 +167,26 @@ class RobotSite:
             self.failures += 1
             return aiocoap.Message(code=aiocoap.INTERNAL_SERVER_ERROR)
 
-    async def _show_state(self, pipe: Any, request: Any, keys: Any, request_id: Any) -> None:
-        observer = _Observer(pipe.request.remote)
-        self._observers.add(observer)
+    async def _show_state(self, pipe: Any, request: Any, keys: Any, request_id: Any, device: str) -> None:
         loop = asyncio.get_running_loop()
+        observer = _Observer(pipe.request.remote, device, loop.time())
+        if request.opt.observe == 0:
+            # A device looks once: when it asks anew it has given up the one before, and does not always say so.
+            for other in self._observers:
+                if other.device == device:
+                    other.end()
+        self._observers.add(observer)
         try:
             picture = self._picture or await observer.picture()
             if request.opt.observe != 0:
                 pipe.add_response(_protected(keys, _state(picture), request_id), is_last=True)
                 return
-            while True:
+            while not observer.over:
                 message = _state(picture)
                 message.opt.observe = 0
                 message.transport_tuning = _Loose()
-                if loop.time() - observer.silent_since_s >= _CONFIRMED_EVERY_S:
-                    observer.silent_since_s = loop.time()
+                if loop.time() - max(observer.heard_s, observer.asked_s) >= _CONFIRMED_EVERY_S:
+                    observer.asked_s = loop.time()
                     message.transport_tuning = _Confirmed()
                 outer = _protected(keys, message, request_id)
                 outer.opt.observe = keys.sender_sequence_number & _OBSERVE_MASK
