@@ -1,0 +1,151 @@
+"""The real service with its channel on loopback, over a robot that only notes what it is told."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import anyio
+
+from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot_settings import load_robot
+from kurt2rt.channel.channel import Channel
+from kurt2rt.channel.credentials import AUTO, LOCAL, Pairing, local_pairing
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rounds import Screen
+from kurt2rt.runtime import Runtime
+from kurt2rt.service import Openness, serve
+from kurt2rt.service_settings import ServiceSettings, load_service
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
+
+SETTINGS = load_robot()
+PERIOD_S = SETTINGS.can.cycle_s
+REACH_TICKS = 35
+"""A robot whose teacher is gone stands so many ticks after the last message that he sent (350 ms)."""
+
+
+class CheapRobot:
+    """Sees the same on all sensors until the test changes it, and drives as it is told (hal.robot.Robot)."""
+
+    def __init__(self) -> None:
+        self.counts = 100
+        self.latched = False
+
+    def sense(self, now_s: float) -> Senses:
+        """Always fresh."""
+        count = len(SETTINGS.infrared.sensors)
+        return Senses(now_s, (self.counts,) * count, 0.0, 0, 0, 0.0, 0, 0.0)
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002
+        """Grants all until it is latched."""
+        return Grant(STANDSTILL if self.latched else wanted, (), self.latched)
+
+    def emergency_stop(self, reason: str) -> None:  # noqa: ARG002
+        self.latched = True
+
+    def release(self) -> None:
+        self.latched = False
+
+    def close(self) -> None:
+        self.latched = True
+
+
+@dataclass
+class RobotAtWork:
+    """The running service, and all that its ticks did."""
+
+    robot: CheapRobot
+    pairing: Pairing
+    other: Pairing
+    """Of another teacher."""
+    channel: Channel
+    knowledge: Path
+    records: list[TickRecord] = field(default_factory=list)
+
+    @property
+    def runtime(self) -> Runtime:
+        runtime: Runtime = self.channel._reception._runtime
+        return runtime
+
+    @property
+    def port(self) -> int:
+        port: int = self.channel.endpoint.port
+        return port
+
+    @property
+    def tick(self) -> int:
+        """Of the newest record."""
+        return self.records[-1].tick if self.records else 0
+
+    def moved_since(self, tick: int) -> list[int]:
+        """Ticks after this one in which the wheels were told to turn."""
+        late: list[int] = []
+        for record in reversed(self.records):
+            if record.tick <= tick:
+                break
+            if record.grant.wheel_speeds != STANDSTILL:
+                late.append(record.tick)
+        return late[::-1]
+
+    def end(self) -> None:
+        self.runtime.scheduler.end()
+
+
+def service_settings(folder: Path) -> ServiceSettings:
+    """All files in one folder, any free port."""
+    names = {"knowledge": "lessons.knowledge", "teachers": "teachers", "devices": "devices"}
+    paths = {key: str(folder / name) for key, name in names.items()}
+    return load_service().model_copy(update={**paths, "port": 0})
+
+
+@asynccontextmanager
+async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
+    """Serve in the running loop until the block ends; then the journal is closed.
+
+    Its teachers are those of this machine, so it listens on loopback only.
+    """
+    service = service_settings(folder)
+    mine, other = (local_pairing(folder / "teachers", folder / "devices", name) for name in (LOCAL, AUTO))
+    robot = CheapRobot()
+    records: list[TickRecord] = []
+    opened: dict[str, Channel] = {}
+    is_open = anyio.Event()
+
+    def listening(channel: Channel) -> None:
+        opened["channel"] = channel
+        is_open.set()
+
+    async def serve_it() -> None:
+        as_robot: Robot = robot
+        await serve(
+            as_robot,
+            SETTINGS,
+            service,
+            load_task("wall_following"),
+            Screen(status=_nothing, question=_nothing, settled=_nothing),
+            teacher=records.append,
+            openness=Openness(lambda: "", None, listening),
+            duration_s=None,
+        )
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(serve_it)
+        await is_open.wait()
+        at_work = RobotAtWork(robot, mine, other, opened["channel"], Path(service.knowledge), records)
+        try:
+            yield at_work
+        finally:
+            at_work.end()
+
+
+def journal_of(folder: Path) -> list[TeachingEvent]:
+    """What the journal holds when the service has ended."""
+    with Journal.read_only(folder / "lessons.knowledge") as journal:
+        return list(journal.events())
+
+
+def _nothing(_: Any) -> None:
+    pass
