@@ -105,6 +105,7 @@ class Bridge:
                 self._heartbeat(visitor, message)
             case Hidden():
                 visitor.visible = False
+                self._seat.hide(visitor.number)
                 if self._has_pad(visitor):
                     self._attention.lose()
                     self._look()

@@ -24,6 +24,11 @@ class Seat:
         if page == self.holder:
             self._heard_s = now_s
 
+    def hide(self, page: int) -> None:
+        """Nobody sees the page: the next one that is opened has its seat."""
+        if page == self.holder:
+            self._heard_s = float("-inf")
+
     def leave(self, page: int) -> None:
         """The page was closed. Nobody moves up unasked: another page may lie in a pocket."""
         if page == self.holder:

@@ -14,6 +14,7 @@ export class Link extends EventTarget {
   #number = 0;
   #waiting = new Map();
   #stopWantedMs = -Infinity;
+  #left = false;
   picture = null; // number of the picture on the screen
   state = null;
   pageRttMs = null;
@@ -25,7 +26,18 @@ export class Link extends EventTarget {
       if (document.visibilityState === "hidden") this.#send({ kind: "hidden" });
       else this.#beat();
     });
-    for (const gone of ["pagehide", "freeze"]) addEventListener(gone, () => this.#send({ kind: "hidden" }));
+    addEventListener("freeze", () => this.#send({ kind: "hidden" }));
+    // A page that is left may be kept for the way back: its link is not.
+    addEventListener("pagehide", () => {
+      this.#left = true;
+      this.#send({ kind: "hidden" });
+      this.#socket.close();
+    });
+    addEventListener("pageshow", (event) => {
+      if (!event.persisted) return;
+      this.#left = false;
+      this.#connect();
+    });
   }
 
   get open() {
@@ -109,12 +121,13 @@ export class Link extends EventTarget {
       }
       this.#waiting.clear();
       this.dispatchEvent(new Event("closed"));
-      setTimeout(() => this.#again(), RECONNECT_MS);
+      if (!this.#left) setTimeout(() => this.#again(), RECONNECT_MS);
     };
   }
 
   // A pairing that was renewed or revoked closes the door; the server's page then says what to do.
   async #again() {
+    if (this.#left || this.open) return;
     try {
       const response = await fetch("/", { method: "HEAD", cache: "no-store" });
       if (response.status === 403) {

@@ -64,7 +64,7 @@ export class Why {
     this.#gauge.classList.toggle("beyond", share > 1);
     this.#gauge.classList.toggle("none", !known);
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
-    setText(this.#nearest, asks && known ? `nearest: RLA ${state.nearest}, ${words(state.nearest_action ?? "–")}` : "");
+    setText(this.#nearest, known ? `nearest: RLA ${state.nearest}, ${words(state.nearest_action ?? "–")}` : "touch the action that is right here");
     setText(this.#text, known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}` : "no RLA yet");
     this.#trace.see(state.tick, known ? share : null);
     if (asks) this.#show(state.question);

@@ -1,0 +1,132 @@
+"""A phone with the page open: a real browser without a window, touched as a finger does it."""
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium import webdriver
+from selenium.webdriver.chrome.service import Service
+from selenium.webdriver.common.by import By
+from selenium.webdriver.remote.webelement import WebElement
+from selenium.webdriver.support.wait import WebDriverWait
+
+BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
+PORTRAIT, LANDSCAPE, LAPTOP = (390, 844), (844, 390), (1280, 800)
+PATIENCE_S = 10.0
+"""Ends a story whose event never comes."""
+
+_FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
+
+
+class Phone:
+    """The page in its browser."""
+
+    def __init__(self, driver: webdriver.Chrome, screenshots: Path | None) -> None:
+        self.driver = driver
+        self._screenshots = screenshots
+
+    def turn(self, size: tuple[int, int], *, touch: bool = True) -> None:
+        """Give the screen another size."""
+        screen = {"width": size[0], "height": size[1], "deviceScaleFactor": 2, "mobile": touch}
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+        self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": touch})
+
+    def open(self, address: str) -> None:
+        """Go to an address."""
+        self.driver.get(address)
+
+    def find(self, selector: str) -> WebElement:
+        """The first element of a CSS selector."""
+        return self.driver.find_element(By.CSS_SELECTOR, selector)
+
+    def text(self, selector: str) -> str:
+        """What stands there."""
+        return self.find(selector).text
+
+    def run(self, script: str, *arguments: object) -> Any:
+        """What a script in the page returns."""
+        return self.driver.execute_script(script, *arguments)
+
+    def wait(self, until: Callable[[], object], what: str) -> None:
+        """Wait for something to be so."""
+        WebDriverWait(self.driver, PATIENCE_S, poll_frequency=0.05).until(lambda _: until(), f"never: {what}")
+
+    def touch(self, selector: str) -> None:
+        """A short touch in the middle of an element."""
+        self.finger_down(*self.middle(selector))
+        self.finger_up()
+
+    def middle(self, selector: str) -> tuple[float, float]:
+        """Middle of an element on the screen; it is scrolled there first."""
+        script = (
+            "const e = document.querySelector(arguments[0]); e.scrollIntoView({block: 'nearest'});"
+            "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2];"
+        )
+        x, y = self.run(script, selector)
+        return float(x), float(y)
+
+    def finger_down(self, x: float, y: float) -> None:
+        """Put a finger on the screen."""
+        self._finger("touchStart", [{"x": x, "y": y}])
+
+    def finger_to(self, x: float, y: float) -> None:
+        """Move it."""
+        self._finger("touchMove", [{"x": x, "y": y}])
+
+    def finger_up(self) -> None:
+        """Lift it."""
+        self._finger("touchEnd", [])
+
+    def key(self, kind: str, code: str) -> None:
+        """Press or lift a key of a laptop: keyDown or keyUp, and its code."""
+        key = {"Space": " ", "KeyW": "w"}.get(code, code)
+        self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": key})
+
+    def show(self, name: str) -> None:
+        """Keep a picture of the screen where the environment asks for it."""
+        if self._screenshots is not None:
+            self._screenshots.mkdir(parents=True, exist_ok=True)
+            assert self.driver.save_screenshot(str(self._screenshots / f"{name}.png"))
+
+    def complaints(self) -> list[str]:
+        """What the browser's console said since the last call."""
+        return [entry["message"] for entry in self.driver.get_log("browser")]  # type: ignore[no-untyped-call]
+
+    def _finger(self, kind: str, points: list[dict[str, float]]) -> None:
+        self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+
+@contextmanager
+def phone(screenshots: Path | None) -> Iterator[Phone]:
+    """A browser of its own, with nothing in it. Skips where none is installed, unless this is CI."""
+    if not (BROWSER.exists() and DRIVER.exists()):
+        why = "the browser's stories need Debian's chromium and chromium-driver"
+        if os.environ.get("CI") == "true":
+            pytest.fail(why)
+        pytest.skip(why)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        options = webdriver.ChromeOptions()
+        options.binary_location = str(BROWSER)
+        for flag in (*_FLAGS, f"--user-data-dir={profile}"):
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        driver = webdriver.Chrome(options, Service(str(DRIVER)))
+        try:
+            opened = Phone(driver, screenshots)
+            opened.turn(PORTRAIT)
+            yield opened
+        finally:
+            driver.quit()

@@ -1,0 +1,232 @@
+"""The page in a real browser, with the real client and a simulated robot: what a teacher with a phone lives through."""
+
+import itertools
+
+import pytest
+
+from tests.page.classroom import Classroom
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, Phone
+
+ACTIONS = ("along_left_wall", "forward", "curve_right", "spin_right", "bear_left")
+TABS = ("teach", "drive", "lessons", "more")
+LEAST_TARGET_PX = 48
+LEAST_CONTRAST = 7.0
+
+TEXTS = """
+const luminance = (rgb) => {
+  const [r, g, b] = rgb.map((v) => (v /= 255) <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const colour = (text) => text.match(/[\\d.]+/g).map(Number);
+const ground = (e) => {
+  for (; e; e = e.parentElement) {
+    const [r, g, b, a] = colour(getComputedStyle(e).backgroundColor);
+    if (a === undefined || a > 0.8) return [r, g, b];
+  }
+  return [255, 255, 255];
+};
+return [...document.querySelectorAll("body *")]
+  .filter((e) => e.checkVisibility() && [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim()))
+  .map((e) => {
+    const [a, b] = [luminance(colour(getComputedStyle(e).color).slice(0, 3)), luminance(ground(e))];
+    return [e.textContent.trim().slice(0, 30), (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05)];
+  });
+"""
+TARGETS = """
+return [...document.querySelectorAll("button, input, #stick")].filter((e) => e.checkVisibility()).map((e) => {
+  const b = e.getBoundingClientRect();
+  return [e.id || e.textContent.trim(), b.width, b.height, b.left, b.right];
+});
+"""
+
+
+def lessons_shown(phone: Phone) -> int:
+    return int(phone.text("#lesson-count"))
+
+
+def no_picture(phone: Phone) -> bool:
+    return phone.find("#no-picture").is_displayed()
+
+
+def said(phone: Phone) -> str:
+    phone.wait(lambda: phone.find("#said").get_attribute("class") != "pending", "an answer")
+    assert phone.find("#said").get_attribute("class") == "saved", phone.text("#said")
+    return phone.text("#said")
+
+
+def begin(phone: Phone, room: Classroom) -> None:
+    """Open the page and be the teacher."""
+    room.mend()
+    phone.turn(PORTRAIT)
+    phone.open(room.address)
+    phone.wait(lambda: not no_picture(phone), "a picture")
+    if room.state().teacher != "local":
+        phone.touch("#claim-button")
+    phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+    room.put_robot_in_the_open()
+
+
+def hold_stick(phone: Phone) -> None:
+    """Put a finger on the circle and push it forward."""
+    phone.touch("#tab-drive")
+    x, y = phone.middle("#stick")
+    phone.finger_down(x, y)
+    phone.finger_to(x, y - 60)
+
+
+def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+
+    # The code of the pairing opens the page; the robot shows itself and knows nothing.
+    phone.open(room.address)
+    phone.wait(lambda: "teach me" in phone.text("#sentence"), "the robot asks")
+    assert phone.text("#sentence") == "I know nothing yet, teach me"
+    phone.show("1-nobody-teaches")
+    phone.touch("#claim-button")
+    phone.wait(lambda: room.state().teacher == "local", "this device teaches")
+    phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+    phone.show("2-it-asks")
+
+    # Ten lessons by touching actions: answers while it asks, corrections while it drives.
+    for action in itertools.cycle(ACTIONS):
+        before = lessons_shown(phone)
+        phone.touch(f"[data-action={action}]")
+        if "says" in said(phone):
+            continue  # it knew that already
+        phone.wait(lambda: lessons_shown(phone) == before + 1, "one lesson more")  # noqa: B023 - called at once
+        if before == 0:
+            phone.wait(lambda: phone.text("#sentence").startswith("RLA 1 does along left wall"), "the lesson acts")
+            phone.show("3-it-drives")
+        if before == 9:
+            break
+    assert room.state().lessons == 10
+
+    # The last one is taken back, with a second touch to be sure.
+    phone.touch("#undo-last")
+    assert phone.text("#undo-last .word") == "sure?"
+    assert room.state().lessons == 10
+    phone.touch("#undo-last")
+    phone.wait(lambda: room.state().lessons == 9, "the lesson is undone")
+    assert said(phone).startswith("undone")
+    phone.touch("#tab-lessons")
+    phone.wait(lambda: "undone" in phone.text("#lesson-list li"), "the list says so")
+    phone.show("4-lessons")
+
+    # A finger on the circle drives the robot; lifted, it stands until GO.
+    room.put_robot_in_the_open()
+    hold_stick(phone)
+    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
+    phone.wait(lambda: phone.text("#sentence") == "local drives by hand", "the page says who drives")
+    phone.show("5-by-hand")
+    phone.finger_up()
+    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.show("6-let-go")
+
+    # The link breaks while the circle is held: no picture, and the press is over for good.
+    hold_stick(phone)
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    room.cut()
+    phone.wait(lambda: no_picture(phone), "the page says that it sees nothing")
+    phone.wait(lambda: "held" not in str(phone.find("#stick").get_attribute("class")), "the circle lets go")
+    assert not phone.find("#go").is_enabled()
+    assert phone.find("#stop").is_enabled()
+    phone.show("7-no-picture")
+    room.mend()
+    phone.wait(lambda: not no_picture(phone), "the picture is back")
+    back = room.state().tick
+    phone.wait(lambda: room.state().tick > back + 30, "some more pictures")
+    assert not room.state().by_hand  # though the finger is still there
+    phone.finger_up()
+
+    # STOP, and GO again.
+    phone.touch("#stop")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.touch("#go")
+    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    assert phone.complaints() == []
+
+
+def test_a_page_whose_scripts_stand_still_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    hold_stick(phone)
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone.run("setTimeout(() => { for (const end = Date.now() + 1000; Date.now() < end; ); })")
+    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+    phone.wait(lambda: "held" not in str(phone.find("#stick").get_attribute("class")), "the circle lets go")
+    phone.finger_up()
+
+
+def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    hold_stick(phone)
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone.open("about:blank")
+    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+
+
+def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.turn(LAPTOP, touch=False)
+    phone.key("keyDown", "KeyW")
+    phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
+    phone.key("keyUp", "KeyW")
+    phone.wait(lambda: not room.state().by_hand, "the robot stands")
+    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.key("keyDown", "Space")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+
+
+def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.touch("#stop")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.touch("#view")
+    before = room.state().place
+    assert before is not None
+    width_m, height_m = 3.0, 4.0
+    left, top, width, height = phone.run(
+        "const b = document.querySelector('#world-view').getBoundingClientRect(); return [b.x, b.y, b.width, b.height];"
+    )
+    scale = min((width - 24) / width_m, (height - 24) / height_m)
+    at = (
+        left + (width - width_m * scale) / 2 + before.x_m * scale,
+        top + (height + height_m * scale) / 2 - before.y_m * scale,
+    )
+    to = (at[0] - 1.2 * scale, at[1] + 0.8 * scale)
+    phone.finger_down(*at)
+    phone.finger_to(*to)
+    phone.show("8-hand")
+    assert room.state().place == before  # nothing is sent before it is put down
+    phone.finger_up()
+    phone.wait(lambda: (place := room.state().place) is not None and abs(place.x_m - 1.0) < 0.1, "it stands there")
+    phone.touch("#view")
+
+
+@pytest.mark.parametrize("size", [PORTRAIT, LANDSCAPE, LAPTOP], ids=["portrait", "landscape", "laptop"])
+def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
+    a_phone: Phone, room: Classroom, size: tuple[int, int]
+) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.turn(size, touch=size != LAPTOP)
+    for tab in TABS:
+        if phone.find(f"#tab-{tab}").is_displayed():
+            phone.touch(f"#tab-{tab}")
+        phone.show(f"9-{size[0]}x{size[1]}-{tab}")
+        for text, contrast in phone.run(TEXTS):
+            assert contrast >= LEAST_CONTRAST, f"{tab}: {text!r} has a contrast of {contrast:.1f}"
+        for name, width, height, left, right in phone.run(TARGETS):
+            assert width >= LEAST_TARGET_PX, f"{tab}: {name} is {width} wide"
+            assert height >= LEAST_TARGET_PX, f"{tab}: {name} is {height} high"
+            assert left >= 0, f"{tab}: {name} begins at {left}"
+            assert right <= size[0], f"{tab}: {name} ends at {right}"
+    (stop_bottom,) = phone.run("return [document.querySelector('#stop').getBoundingClientRect().bottom]")
+    assert stop_bottom <= size[1]
