@@ -11,6 +11,7 @@ from typing import Any
 import aiocoap
 import cbor2
 import pytest
+from aiocoap import oscore
 from aiocoap.pipe import Pipe
 
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
@@ -31,7 +32,7 @@ from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.channel.wire import CONTENT_FORMAT, PATHS, decode_answer, decode_state, encode_request, encode_state
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
-from tests.channel.desk import BOOT, Desk, turns
+from tests.channel.desk import BOOT, ROBOT, Desk, turns
 from tests.channel.sides import carried
 from tests.channel.states import state
 
@@ -385,22 +386,46 @@ async def test_who_wants_one_picture_before_there_is_any_waits_for_it(school: Sc
     assert school.site.observers == 0
 
 
-async def test_one_picture_a_second_is_confirmed_and_their_numbers_grow_within_24_bits(school: School) -> None:
-    show(school, 5)
-    robot_keys = next(iter(school.teachers._by_id.values()))
+async def test_numbers_of_pictures_differ_and_stay_within_24_bits(school: School) -> None:
+    phone = school.phone()
+    robot_keys = school.teachers.find({oscore.COSE_KID: phone.keys.sender_id})
     robot_keys.sender_sequence_number = 2**24 - 3
     robot_keys.sequence_number_persisted = 2**24 + 10_000
-    phone = school.phone("ann" if robot_keys.name == "ann" else "ben")
     observer = Observer(phone, look())
-    messages = []
-    for tick in (10, 15, 20, 25):
-        await turns()
+    for tick in (5, 10, 15, 20, 25):
         show(school, tick)
-    await turns()
-    messages = [event.message for event in observer.events]
-    assert [message.transport_tuning.reliability for message in messages] == [True, False, False, False, False]
-    assert all(0 <= message.opt.observe < 2**24 for message in messages)
-    assert len({message.opt.observe for message in messages}) == len(messages)
+        await turns()
+    numbers = [event.message.opt.observe for event in observer.events]
+    assert len(set(numbers)) == 5
+    assert all(0 <= number < 2**24 for number in numbers)
+    await observer.gone()
+
+
+async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_there(
+    school: School, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loop = asyncio.get_running_loop()
+    later_s, time_of = 0.0, loop.time
+    monkeypatch.setattr(loop, "time", lambda: time_of() + later_s)
+    phone = school.phone()
+    observer = Observer(phone, look())
+
+    async def is_asked() -> bool:
+        observer.events.clear()
+        show(school, 5)
+        await turns()
+        (event,) = observer.events
+        confirmed: bool = event.message.transport_tuning.reliability
+        return confirmed
+
+    await is_asked()
+    assert not await is_asked()
+    later_s += 1.0
+    assert await is_asked()
+    assert not await is_asked()
+    later_s += 1.0
+    await phone.post(HelloRequest())  # he is there
+    assert not await is_asked()
     await observer.gone()
 
 
@@ -469,12 +494,11 @@ class OnLine:
         desk.channel = channel
 
     async def call(self, request: Request) -> dict[str, Any]:
-        """The answer to a request, while the robot ticks."""
+        """The answer to a request, while the robot ticks as fast as it does."""
         task = asyncio.create_task(self.line.call(request))
-        while not task.done():
+        while not (await asyncio.wait([task], timeout=ROBOT.can.cycle_s))[0]:
             self.desk.run()
             self.desk.write()
-            await asyncio.sleep(0)
         answer = await task
         assert answer.code == aiocoap.CHANGED, answer.payload
         return decode_answer(answer.payload)
