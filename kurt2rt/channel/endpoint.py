@@ -118,10 +118,19 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
             self.log.error("an error report of the network: %r", error)  # noqa: TRY400
 
     def error_received(self, exc: OSError) -> None:
+        # Not now: this comes out of the sending of a response, and would end the very exchange that is sending it.
+        remote = self._remote_being_sent_to.get()
+        if remote is not None:
+            self.loop.call_soon(self._give_up, exc, remote)
+
+    def _give_up(self, failure: OSError, remote: UDP6EndpointAddress) -> None:
+        """Nobody listens there any more: end what is under way for him."""
+        if self._shutting_down is not None:
+            return
         try:
-            super().error_received(exc)
+            self._ctx.dispatch_error(failure, remote)
         except Exception as error:  # noqa: BLE001
-            self.log.error("%r: %r", exc, error)  # noqa: TRY400
+            self.log.error("%r: %r", failure, error)  # noqa: TRY400
 
 
 class Endpoint:
