@@ -22,7 +22,8 @@ _SCAN_AGAIN = """<!doctype html>
 """
 # Not a redirect: a browser that came by a link from elsewhere would follow it without the new SameSite cookie.
 _WELCOME = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/"><link rel="icon" href="/icon.svg" type="image/svg+xml">
+<html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/">
+<link rel="icon" href="/icon.svg" type="image/svg+xml">
 <title>kurt2rt</title></head>
 <body><p><a href="/">Go on to the robot</a></p></body></html>
 """

@@ -9,7 +9,7 @@ class Grip:
     """
 
     def __init__(self, lease_s: float = 0.25, oldest_picture_s: float = 0.4) -> None:
-        """A press is good for `lease_s`, and only on a picture sent at most `oldest_picture_s` ago."""
+        """A press is good for `lease_s`, and never longer than `oldest_picture_s` after its picture was sent."""
         self._lease_s = lease_s
         self._oldest_picture_s = oldest_picture_s
         self._hold: int | None = None
@@ -27,14 +27,14 @@ class Grip:
 
     def press(self, hold: int, picture_age_s: float, now_s: float) -> bool:
         """Begin or renew press number `hold` (they grow); False when it does not count."""
-        if hold <= self._ended or picture_age_s > self._oldest_picture_s:
+        if hold <= self._ended or picture_age_s >= self._oldest_picture_s:
             return False
-        if self._hold is not None and hold > self._hold:
-            self._ended = self._hold
-        elif self._hold is not None and hold < self._hold:
-            return False
-        self._hold = hold
-        self._until_s = now_s + self._lease_s
+        if self._hold != hold:
+            # A larger number than that of the press that is on, which has ended by it; smaller ones ended before.
+            self._ended = hold - 1
+            self._hold = hold
+            self._until_s = now_s
+        self._until_s = max(self._until_s, now_s + min(self._lease_s, self._oldest_picture_s - picture_age_s))
         return True
 
     def release(self) -> None:

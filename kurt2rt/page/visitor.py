@@ -38,10 +38,11 @@ class Visitor:
 
     def tell(self, message: Mapping[str, Any], *, about: object = None) -> None:
         """A message; one that still waits `about` the same thing is replaced by it."""
-        if len(self._waiting) >= _MOST_WAITING:
+        key = object() if about is None else about
+        if key not in self._waiting and len(self._waiting) >= _MOST_WAITING:
             self.lost = True
         else:
-            self._waiting[object() if about is None else about] = message
+            self._waiting[key] = message
         self.look()
 
     def look(self) -> None:

@@ -90,6 +90,7 @@ class FakeRobot:
     state: State | None = None
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
+    _heard: anyio.Event = field(default_factory=anyio.Event)
 
     def show(self, **changes: Any) -> State:
         """A new picture, changed from the last one, two ticks later unless told otherwise."""
@@ -99,6 +100,11 @@ class FakeRobot:
         self._news.set()
         self._news = anyio.Event()
         return self.state
+
+    async def is_told(self, name: str) -> None:
+        """Wait until it is."""
+        while not any(each[0] == name for each in self.told):
+            await self._heard.wait()
 
     async def states(self) -> AsyncIterator[State]:
         seen = None
@@ -110,7 +116,7 @@ class FakeRobot:
             yield seen
 
     def press(self, left_m_s: float, right_m_s: float) -> bool:
-        self.told.append(("press", left_m_s, right_m_s))
+        self._hear(("press", left_m_s, right_m_s))
         self.pressing = True
         return True
 
@@ -177,10 +183,15 @@ class FakeRobot:
         return await self._answer("place", x, y, heading)
 
     async def _answer(self, *told: Any) -> Answer:
-        self.told.append(told)
+        self._hear(told)
         if self.silent:
             raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
         await anyio.lowlevel.checkpoint()
         if self.refuses:
             return Answer(False, "refused", self.refuses, 0)
         return Answer(True, "", f"{told[0]} done", 0)
+
+    def _hear(self, told: tuple[Any, ...]) -> None:
+        self.told.append(told)
+        self._heard.set()
+        self._heard = anyio.Event()

@@ -13,6 +13,8 @@ const $ = (id) => document.getElementById(id);
 const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
 const TABS = ["teach", "drive", "lessons", "more"];
 const FASTEST_BY_HAND_M_S = 0.6;
+const SAID_MS = 8000;
+const AUTONOMOUS = 5;
 
 const link = new Link();
 const drive = new Drive(link);
@@ -39,10 +41,14 @@ function heed(answer) {
   return answer;
 }
 
+let forgetting = null;
+
 function say(outcome, text) {
   const line = $("said");
   line.className = outcome;
   setText(line, text);
+  clearTimeout(forgetting);
+  if (outcome !== "pending") forgetting = setTimeout(() => setText(line, "\u00a0"), SAID_MS);
 }
 
 async function teach(action) {
@@ -120,7 +126,7 @@ function show() {
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
   const stopped = Boolean(state.stopped_because);
-  $("go").disabled = !stopped || page.seat !== "here";
+  $("go").disabled = !stopped || state.by_hand || !inCharge();
   showLink(state);
   why.show(state);
   pad.show(state);
@@ -221,9 +227,13 @@ function buildPhases() {
       const number = document.createElement("b");
       number.textContent = `${i + 1} `;
       const label = document.createElement("small");
+      label.className = "word";
       label.textContent = name;
       button.append(number, label);
-      button.addEventListener("click", () => tell("phase", { phase: i + 1 }, `phase ${i + 1}`));
+      const enter = () => tell("phase", { phase: i + 1 }, `phase ${i + 1}`);
+      // From then on it drives with nobody looking: not by a slip of the thumb.
+      if (i + 1 === AUTONOMOUS) twice(button, "sure?", enter);
+      else button.addEventListener("click", enter);
       return button;
     }),
   );

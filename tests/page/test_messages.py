@@ -1,0 +1,122 @@
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.channel.schema import WireError
+from kurt2rt.page.messages import (
+    LONGEST_MESSAGE,
+    ORDERS,
+    Beat,
+    Hidden,
+    Order,
+    Press,
+    Release,
+    StopNow,
+    parse,
+)
+from kurt2rt.rla.rla import Phase
+
+
+@pytest.mark.parametrize(
+    ("said", "understood"),
+    [
+        ({"kind": "beat", "picture": 7, "at_ms": 12.5}, Beat(7, 12.5)),
+        ({"kind": "beat", "picture": None, "at_ms": 0}, Beat(None, 0.0)),
+        ({"kind": "hidden"}, Hidden()),
+        ({"kind": "press", "hold": 2, "left_m_s": 0.3, "right_m_s": -1, "picture": 9}, Press(2, 0.3, -1.0, 9)),
+        ({"kind": "release"}, Release()),
+        ({"kind": "stop", "number": 3}, StopNow(3)),
+        (
+            {"kind": "order", "number": 1, "name": "correct", "arguments": {"action": "forward"}, "picture": 4},
+            Order(1, "correct", {"action": "forward"}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "phase", "arguments": {"phase": 2}, "picture": 4},
+            Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": None}, "picture": 4},
+            Order(1, "undo", {"lesson": None}, 4),
+        ),
+    ],
+)
+def test_what_a_page_says_is_understood(said: dict[str, Any], understood: object) -> None:
+    assert parse(json.dumps(said)) == understood
+
+
+def order(name: str, **arguments: object) -> str:
+    return json.dumps({"kind": "order", "number": 1, "name": name, "arguments": arguments, "picture": 1})
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "",
+        "[]",
+        "{",
+        "[" * 500,
+        '"stop"',
+        "{}",
+        '{"kind": 1}',
+        '{"kind": "drive"}',
+        '{"kind": "stop"}',
+        '{"kind": "stop", "number": true}',
+        '{"kind": "stop", "number": 0}',
+        '{"kind": "stop", "number": 1, "more": 2}',
+        '{"kind": "beat", "picture": 1, "at_ms": NaN}',
+        '{"kind": "beat", "picture": 1, "at_ms": 1e400}',
+        '{"kind": "beat", "picture": 1.5, "at_ms": 0}',
+        '{"kind": "press", "hold": 1, "left_m_s": 2.01, "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": Infinity, "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": "0", "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": ' + "9" * 400 + ', "right_m_s": 0, "picture": 1}',
+        '{"kind": "order", "number": 1, "name": "answer", "arguments": null, "picture": 1}',
+        order("drive"),
+        order("answer"),
+        order("answer", action=""),
+        order("answer", action="x" * 65),
+        order("answer", action="for\nward"),
+        order("answer", action="forward", of=1),
+        order("reward", value=0),
+        order("reward", value=2),
+        order("phase", phase=6),
+        order("place", x_m=101, y_m=0, heading_rad=0),
+        json.dumps({"kind": "hidden", "padding": "x" * LONGEST_MESSAGE}),
+    ],
+)
+def test_anything_else_is_refused_in_a_sentence(said: str) -> None:
+    with pytest.raises(WireError) as refusal:
+        parse(said)
+    assert str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@given(st.text(max_size=200) | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))
+def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
+    try:
+        parse(text)
+    except WireError:
+        return
+
+
+@given(
+    st.fixed_dictionaries(
+        {"kind": st.sampled_from(["beat", "press", "stop", "order"])},
+        optional={
+            "name": st.sampled_from(sorted(ORDERS)),
+            **dict.fromkeys(
+                ("number", "hold", "picture", "at_ms", "left_m_s", "right_m_s"),
+                st.integers() | st.floats() | st.none() | st.booleans(),
+            ),
+            "arguments": st.dictionaries(st.text(max_size=8), st.integers() | st.text(max_size=8), max_size=3),
+        },
+    )
+)
+def test_no_fields_do_either(fields: dict[str, Any]) -> None:
+    try:
+        parse(json.dumps(fields))
+    except WireError:
+        return

@@ -1,0 +1,208 @@
+"""The page's server as a browser, a stranger and another site meet it."""
+
+import http.client
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import anyio
+import anyio.to_thread
+import pytest
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import InvalidStatus
+
+from kurt2rt.page.access import Access
+from kurt2rt.page.app import STATIC
+from kurt2rt.page.error import PageError
+from kurt2rt.page.server import listen, run_page
+from tests.page.fake_robot import FakeRobot
+
+TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
+
+
+@dataclass
+class Got:
+    status: int
+    headers: http.client.HTTPMessage
+    body: str
+
+
+@dataclass
+class Served:
+    robot: FakeRobot
+    access: Access
+    port: int
+    end: anyio.Event
+
+    @property
+    def cookie(self) -> dict[str, str]:
+        return {"Cookie": f"{self.access.cookie_name}={self.access.cookie}"}
+
+    async def get(self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET") -> Got:
+        def ask() -> Got:
+            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+            try:
+                connection.request(method, path, headers=headers or {})
+                response = connection.getresponse()
+                return Got(response.status, response.headers, response.read().decode())
+            finally:
+                connection.close()
+
+        return await anyio.to_thread.run_sync(ask)
+
+    def websocket(self, *, origin: str | None = "same", cookie: bool = True, host: str | None = None) -> connect:
+        at = f"127.0.0.1:{self.port}"
+        headers = dict(self.cookie) if cookie else {}
+        if host is not None:
+            headers["Host"] = host
+        if origin is not None:
+            headers["Origin"] = f"http://{at}" if origin == "same" else origin
+        return connect(f"ws://{at}/robot", additional_headers=headers, proxy=None)
+
+
+@asynccontextmanager
+async def served() -> AsyncIterator[Served]:
+    robot = FakeRobot()
+    access = Access("local", TOKEN, ["desk"])
+    end = anyio.Event()
+    with listen(0, everywhere=False) as listener:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(run_page, robot, access, "127.0.0.1:5683", listener, end.wait)
+            yield Served(robot, access, listener.getsockname()[1], end)
+            end.set()
+
+
+async def hear(socket: ClientConnection, kind: str) -> dict[str, Any]:
+    """The next message of a kind."""
+    while True:
+        message: dict[str, Any] = json.loads(await socket.recv())
+        if message["kind"] == kind:
+            return message
+
+
+async def see(page: Served, socket: ClientConnection) -> int:
+    """A picture comes to the page; its number."""
+    await socket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
+    page.robot.show(teacher="local")
+    number: int = (await hear(socket, "state"))["picture"]
+    return number
+
+
+async def test_without_the_cookie_there_is_nothing_but_how_to_get_it() -> None:
+    async with served() as page:
+        for path in ("/", "/index.html", "/app.js", "/style.css", "/robot", "/nothing"):
+            got = await page.get(path)
+            assert got.status == 403
+            assert "Scan the code again" in got.body
+            assert "kurt2rt teach" in got.body
+            wrong = await page.get(path, {"Cookie": f"{page.access.cookie_name}={'0' * 64}"})
+            assert wrong.status == 403
+
+
+async def test_the_token_brings_the_cookie_and_the_cookie_the_page() -> None:
+    async with served() as page:
+        got = await page.get(f"/pair?token={TOKEN}")
+        assert got.status == 200
+        assert 'content="0;url=/"' in got.body
+        cookie = got.headers["Set-Cookie"]
+        assert "HttpOnly" in cookie
+        assert "SameSite=strict" in cookie
+        assert TOKEN not in cookie
+        brought = {"Cookie": cookie.split(";")[0]}
+        for path in ("/", *(f"/{file.name}" for file in STATIC.iterdir())):
+            assert (await page.get(path, brought)).status == 200
+        assert (await page.get("/nothing", brought)).status == 404
+        assert (await page.get("/../app.py", brought)).status == 404
+
+
+async def test_wrong_tokens_are_refused_and_soon_not_even_looked_at() -> None:
+    async with served() as page:
+        for _ in range(5):
+            assert (await page.get("/pair?token=guess")).status == 403
+        assert (await page.get("/pair?token=guess")).status == 429
+        assert (await page.get(f"/pair?token={TOKEN}")).status == 429
+
+
+async def test_under_a_foreign_name_nothing_is_served() -> None:
+    async with served() as page:
+        for path in ("/", f"/pair?token={TOKEN}"):
+            assert (await page.get(path, {**page.cookie, "Host": f"evil.example:{page.port}"})).status == 421
+        assert (await page.get("/", {**page.cookie, "Host": f"desk:{page.port}"})).status == 200
+        with pytest.raises(InvalidStatus):
+            async with page.websocket(host="evil.example", origin="http://evil.example"):
+                pass
+
+
+async def test_no_other_site_opens_the_websocket() -> None:
+    async with served() as page:
+        for origin in (None, "null", "http://evil.example", "https://127.0.0.1"):
+            with pytest.raises(InvalidStatus):
+                async with page.websocket(origin=origin):
+                    pass
+        with pytest.raises(InvalidStatus):
+            async with page.websocket(cookie=False):
+                pass
+
+
+async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
+    async with served() as page:
+        got = await page.get("/", page.cookie)
+        policy = got.headers["Content-Security-Policy"]
+        assert "default-src 'self'" in policy
+        assert "frame-ancestors 'none'" in policy
+        assert "unsafe" not in policy
+        assert got.headers["X-Content-Type-Options"] == "nosniff"
+        assert got.headers["Referrer-Policy"] == "no-referrer"
+        assert "server" not in got.headers
+        for file in STATIC.iterdir():
+            text = file.read_text(encoding="utf-8")
+            assert "<script>" not in text
+            assert "style=" not in text
+            assert "http" not in text.replace("http://www.w3.org/", "").replace("http-equiv", ""), file.name
+
+
+async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
+    async with served() as page, page.websocket() as socket:
+        assert (await hear(socket, "page"))["seat"] == "here"
+        number = await see(page, socket)
+        order = {"kind": "order", "number": 7, "name": "answer", "arguments": {"action": "forward"}, "picture": number}
+        await socket.send(json.dumps(order))
+        answer = await hear(socket, "answer")
+        assert (answer["number"], answer["accepted"]) == (7, True)
+
+
+async def test_what_no_page_of_ours_says_closes_its_websocket() -> None:
+    async with served() as page, page.websocket() as socket:
+        await socket.send('{"kind": "drive"}')
+        await socket.wait_closed()
+        assert socket.close_code == 1008
+
+
+async def test_a_page_that_is_gone_lets_go_of_the_robot() -> None:
+    async with served() as page:
+        async with page.websocket() as socket:
+            number = await see(page, socket)
+            press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+            await socket.send(json.dumps(press))
+            await page.robot.is_told("press")
+        await page.robot.is_told("let_go")
+
+
+async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
+    async with served() as page, page.websocket() as socket:
+        number = await see(page, socket)
+        press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+        await socket.send(json.dumps(press))
+        await page.robot.is_told("press")
+        page.end.set()
+        await socket.wait_closed()
+        assert page.robot.told[-1] == ("let_go",)
+
+
+async def test_a_port_in_use_is_said() -> None:
+    with listen(0, everywhere=False) as listener:
+        port = listener.getsockname()[1]
+        with pytest.raises(PageError, match=f"port {port}: cannot listen .* give another one with --page-port"):
+            listen(port, everywhere=False)
