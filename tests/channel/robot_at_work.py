@@ -1,6 +1,6 @@
 """The real service with its channel on loopback, over a robot that only notes what it is told."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +25,7 @@ SETTINGS = load_robot()
 PERIOD_S = SETTINGS.can.cycle_s
 REACH_TICKS = 35
 """A robot whose teacher is gone stands so many ticks after the last message that he sent (350 ms)."""
+_LONGEST_S = 60.0
 
 
 class CheapRobot:
@@ -89,6 +90,12 @@ class RobotAtWork:
             if record.grant.wheel_speeds != STANDSTILL:
                 late.append(record.tick)
         return late[::-1]
+
+    async def until(self, holds: Callable[[], bool]) -> None:
+        """Wait for something that a tick may have changed; at most a minute of the loop's time."""
+        with anyio.fail_after(_LONGEST_S):
+            while not holds():  # noqa: ASYNC110 - a tick tells nobody
+                await anyio.sleep(PERIOD_S)
 
     def end(self) -> None:
         self.runtime.scheduler.end()

@@ -4,7 +4,9 @@ import asyncio
 import itertools
 import os
 import random
+import signal
 import statistics
+import sys
 from collections import Counter
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager
@@ -14,6 +16,7 @@ from typing import Any
 
 import anyio
 import pytest
+from anyio.abc import Process
 
 from kurt2rt.channel.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
 from kurt2rt.layers.decision import Cause
@@ -24,7 +27,7 @@ from kurt2rt.teaching.oscore_requests import Exchange, OnResponse
 from tests.channel.bad_links import BAD_LINKS, BadLink
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.lossy_link import LossyLink, Weather
-from tests.channel.robot_at_work import PERIOD_S, REACH_TICKS, RobotAtWork, journal_of, robot_at_work
+from tests.channel.robot_at_work import REACH_TICKS, RobotAtWork, journal_of, robot_at_work
 
 _LONGEST_S = 60.0
 """Of simulated time, for anything that has to come sooner or later."""
@@ -152,10 +155,9 @@ class Story:
         await self._freezes_while_driving_by_hand()
         await self._freezes_while_rlas_drive()
         if self._told.link.holds_back:
-            await self._all_he_says_is_held_back()
-        await self._press_until_it_drives()
-        self._teacher.die()
-        await self._must_stand(_HELD_S if self._told.link.holds_back else 1.0)
+            await self._dies_while_all_he_says_is_held_back()
+        else:
+            await self._dies()
 
     async def _begin(self) -> None:
         await self._insist(self._teacher.take)
@@ -209,7 +211,7 @@ class Story:
     async def _mend(self) -> None:
         self._link.mend()
         mended_s, before = self._now(), self._teacher._pictures.count
-        await self._until(lambda: self._teacher._pictures.count > before)
+        await self._at_work.until(lambda: self._teacher._pictures.count > before)
         self._told.back_s.append(self._now() - mended_s)
 
     async def _drive_by_hand(self, lasts_s: float) -> None:
@@ -260,9 +262,13 @@ class Story:
         wake()
         await self._must_not_move(1.0)
 
-    async def _all_he_says_is_held_back(self) -> None:
+    async def _dies(self) -> None:
         await self._press_until_it_drives()
-        fair = self._told.link.weather
+        self._teacher.die()
+        await self._must_stand(1.0)
+
+    async def _dies_while_all_he_says_is_held_back(self) -> None:
+        await self._press_until_it_drives()
         self._link.change_weather(up=Weather(held_back=1.0, held_back_s=5.0))
         tick = self._at_work.tick
         sent = max(self._teacher.sent_ticks)
@@ -271,7 +277,8 @@ class Story:
             tasks.start_soon(self._keep_pressing, _HOLE_S)
             with pytest.raises(NoAnswerError):
                 await self._teacher.answer("back")
-        self._link.change_weather(up=fair)
+        # With nothing newer behind it OSCORE takes what comes now for new: the rules above it have to know better.
+        self._teacher.die()
         await anyio.sleep(_HELD_S)
         self._note_standing(sent)
         assert self._at_work.moved_since(tick + REACH_TICKS) == []
@@ -289,19 +296,14 @@ class Story:
             self._teacher.press(0.2, 0.2)
             return self._at_work.records[-1].decision.cause is Cause.TEACHER
 
-        await self._until(drives)
+        await self._at_work.until(drives)
 
     async def _until_rlas_drive(self) -> None:
         with anyio.fail_after(_LONGEST_S):
             while self._at_work.records[-1].decision.cause not in (Cause.RLA, Cause.HELD):
                 await self._insist(self._teacher.resume)
                 with anyio.move_on_after(0.5):
-                    await self._until(lambda: self._at_work.records[-1].decision.driving)
-
-    async def _until(self, holds: Callable[[], bool]) -> None:
-        with anyio.fail_after(_LONGEST_S):
-            while not holds():  # noqa: ASYNC110 - in simulated time nothing is waited for
-                await anyio.sleep(PERIOD_S)
+                    await self._at_work.until(lambda: self._at_work.records[-1].decision.driving)
 
     async def _must_stand(self, lasts_s: float) -> None:
         """From now on nothing new reaches the robot."""
@@ -387,6 +389,39 @@ def report() -> Iterator[list[Told]]:
 @pytest.mark.parametrize("link", _FEW, ids=lambda link: link.name)
 def test_over_a_bad_link_lessons_count_once_and_silence_stops_the_wheels(link: BadLink, tmp_path: Path) -> None:
     _must_be_good(_tell(link, tmp_path, SHORT), tmp_path)
+
+
+@asynccontextmanager
+async def _driver(at_work: RobotAtWork) -> AsyncIterator[Process]:
+    """A teacher's program that drives, in real time; killed at the end."""
+    command = [sys.executable, "-m", "tests.channel.driver_process", str(at_work.pairing.device.folder)]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    async with await anyio.open_process([*command, str(at_work.port)], env=environment, stderr=None) as process:
+        try:
+            await at_work.until(lambda: bool(at_work.moved_since(at_work.tick - 1)))
+            yield process
+        finally:
+            if process.returncode is None:
+                process.kill()
+
+
+async def _must_stand_from(at_work: RobotAtWork, tick: int) -> None:
+    """Nobody drives from this tick on; a second longer than the robot may take is looked at."""
+    await at_work.until(lambda: at_work.tick >= tick + REACH_TICKS + 100)
+    assert at_work.moved_since(tick + REACH_TICKS) == []
+
+
+async def test_a_program_that_hangs_or_is_killed_leaves_a_robot_that_stands(tmp_path: Path) -> None:
+    async with robot_at_work(tmp_path) as at_work:
+        async with _driver(at_work) as process:
+            process.send_signal(signal.SIGSTOP)
+            # The tick that is next may still hear what was sent before the signal came.
+            await _must_stand_from(at_work, at_work.tick + 1)
+            process.send_signal(signal.SIGCONT)
+            await _must_stand_from(at_work, at_work.tick - REACH_TICKS)
+        async with _driver(at_work) as process:
+            process.kill()
+            await _must_stand_from(at_work, at_work.tick + 1)
 
 
 @pytest.mark.deep
