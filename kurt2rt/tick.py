@@ -128,9 +128,12 @@ class Tick:
         stand = self._reason_to_stand(tick, blind=blind)
         # Also when something else stands in its way: the loop ends the hand's lease, whatever happens.
         by_hand = authority.hand_on_wheel(tick)
-        if by_hand and stand in (None, Cause.STOPPED, Cause.UNATTENDED):
+        if by_hand:
+            unable = self._unable(blind=blind)
+            aside = self._level.decide(situation, senses, unable or Cause.TEACHER)
+            if unable is not None:
+                return aside
             name, wheel_speeds = authority.step(senses)
-            aside = self._level.decide(situation, senses, Cause.TEACHER)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
         decision = self._level.decide(situation, senses, stand)
         if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
@@ -141,10 +144,17 @@ class Tick:
         school = self._school
         if school.stopped_because:
             return Cause.STOPPED
+        unable = self._unable(blind=blind)
+        if unable is not None:
+            return unable
+        if school.needs_a_teacher and not school.authority.present(tick):
+            return Cause.UNATTENDED
+        return None
+
+    def _unable(self, *, blind: bool) -> Cause | None:
+        """Why neither an RLA nor the teacher's hand may drive."""
         if blind:
             return Cause.BLIND
         if self._keeper.trouble is not None:
             return Cause.UNSAVED
-        if school.needs_a_teacher and not school.authority.present(tick):
-            return Cause.UNATTENDED
         return None

@@ -406,3 +406,23 @@ def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
             carried_out = result is not None and result.accepted and "counted once" not in result.text
             witness.note(command, record.tick, carried_out=carried_out)
         witness.check(record, corridor)
+
+
+@pytest.mark.parametrize(("trouble", "cause"), [("disk full", Cause.UNSAVED), (None, Cause.BLIND)])
+def test_a_hand_does_not_move_a_robot_that_is_blind_or_cannot_save(
+    driving: Corridor, trouble: str | None, cause: Cause
+) -> None:
+    assert not stands(driving.run(100, press(driving)))
+    driving.notebook.trouble = trouble
+    driving.robot.infrared_age_s = 0.0 if trouble else 1.0
+    record = driving.run(100, press(driving))
+    assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)
+
+
+def test_a_reward_does_not_cut_an_action_short(driving: Corridor) -> None:
+    driving.run(200, replace := Teach("turn back", "Ann", "back"))
+    assert driving.run(200).decision.action == "back"
+    began = driving.ticks - 1
+    assert replace.action == "back"
+    held = driving.run(100, Reward("praise", "Ann", 1, began))
+    assert (held.decision.cause, held.decision.action) == (Cause.HELD, "back")

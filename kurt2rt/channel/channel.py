@@ -2,7 +2,7 @@
 
 import secrets
 from collections.abc import AsyncIterator, Callable, Sequence
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,6 +21,7 @@ from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import HandOver, Stop
+from kurt2rt.teaching.inbox import InboxFullError
 from kurt2rt.tick import TickRecord
 
 VERSION = 1
@@ -107,6 +108,7 @@ async def open_channel(
             yield Channel(runtime, reception, site, telling, endpoint)
             tasks.cancel_scope.cancel()
     finally:
+        reception.close()
         with anyio.CancelScope(shield=True):
             await endpoint.close()
 
@@ -119,7 +121,8 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
             if runtime.school.authority.teacher == name:
                 revoked = f"{name}-gone-{secrets.token_hex(4)}"
                 runtime.inbox.put(Stop(f"{revoked}-stop", name))
-                runtime.inbox.put(HandOver(f"{revoked}-release", name))
+                with suppress(InboxFullError):  # it stands, and whoever comes takes it
+                    runtime.inbox.put(HandOver(f"{revoked}-release", name))
 
 
 def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:

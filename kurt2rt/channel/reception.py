@@ -117,6 +117,11 @@ class Reception:
         self.tick = 0
         """Of the newest picture."""
 
+    def close(self) -> None:
+        """Give up the copies that are being made."""
+        for task in self._under_way:
+            task.cancel()
+
     def settle(self, command_id: str, reply: Reply) -> None:
         """What became of a command that had come in."""
         self._outcomes.settle(command_id, reply)
@@ -217,8 +222,9 @@ class Reception:
     async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
         try:
             copy = await copying
-        except KnowledgeError as error:
-            self._outcomes.settle(command_id, unsaved(str(error), self.tick))
+        except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
+            text = str(error) if isinstance(error, KnowledgeError) else f"the copy failed: {error!r}"
+            self._outcomes.settle(command_id, unsaved(text, self.tick))
         else:
             text = f"{copy.name}, {copy.size_bytes} bytes"
             self._outcomes.settle(command_id, done(self.tick, text, name=copy.name, sha256=copy.sha256))

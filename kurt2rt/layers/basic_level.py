@@ -5,7 +5,7 @@ from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import RlaRewarded, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.rla.rla_system import Match, RlaSystem
 
 
@@ -29,9 +29,10 @@ class BasicLevel:
         self._rla_id: int | None = None
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge; the next decision follows it at once, whatever action was being held."""
+        """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
         self.system.apply(event)
-        self._held.yield_next()
+        if not isinstance(event, RlaRewarded | SessionBegun | SessionEnded):
+            self._held.yield_next()
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""

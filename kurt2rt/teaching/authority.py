@@ -68,6 +68,13 @@ class Authority:
         """Whether a stop, or silence, has ended this press."""
         return command.hold <= self._ended_hold.get(command.teacher, -1)
 
+    @property
+    def why_absent(self) -> str:
+        """Why nobody is there, in words."""
+        if self.teacher is None:
+            return "no teacher is there"
+        return f"lost the link to {self.teacher}" if self._there_until >= 0 else f"{self.teacher} is not there yet"
+
     def drive(self, command: Drive, tick: int) -> None:
         """Take or keep the wheels; for the teacher, with a press that is not over."""
         self._hold[command.teacher] = command.hold

@@ -62,6 +62,7 @@ SILENT_AFTER_S = 1.0
 """Without a picture for so long the robot is asked for them anew."""
 _LOOK_EVERY_S = 0.1
 _STOP_WITHIN_S = 0.5
+_SEEN_IN_CHARGE_WITHIN_S = 1.0
 _STATE = "/state"
 
 _Told = TypeVar("_Told")
@@ -199,8 +200,15 @@ class TeacherClient:
         return await self._command(SessionRequest, name=None)
 
     async def take(self) -> Answer:
-        """Be the teacher from now on."""
-        return await self._command(TakeRequest)
+        """Be the teacher from now on; the robot knows that he is there when this returns."""
+        answer = await self._command(TakeRequest)
+        if answer.accepted:
+            with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
+                async for state in self.states():
+                    if state.teacher == self.name:
+                        self._hand.beat()
+                        break
+        return answer
 
     async def hand_over(self, to: str | None = None) -> Answer:
         """Be the teacher no longer; `to` is who is next, None: whoever takes it."""

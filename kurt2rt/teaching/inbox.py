@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from kurt2rt.teaching.commands import Command
+from kurt2rt.teaching.commands import Command, Stop
 
 
 class InboxFullError(RuntimeError):
@@ -17,8 +17,8 @@ class TeacherInbox:
         self._capacity = capacity
 
     def put(self, command: Command) -> None:
-        """Hand a command to the next tick. Raises InboxFullError."""
-        if len(self._waiting) >= self._capacity:
+        """Hand a command to the next tick. Raises InboxFullError; a stop is always taken."""
+        if len(self._waiting) >= self._capacity and not isinstance(command, Stop):
             raise InboxFullError(
                 f"{self._capacity} commands wait already; is the robot's loop running? Send it again later"
             )

@@ -100,7 +100,7 @@ class School:
         """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume."""
         authority = self.authority
         if was_driving and not self.stopped_because and self.needs_a_teacher and not authority.present(tick):
-            self.stop(f"lost the link to {authority.teacher}" if authority.teacher else "no teacher is there")
+            self.stop(authority.why_absent)
 
     @property
     def needs_a_teacher(self) -> bool:
@@ -119,7 +119,7 @@ class School:
         authority.claim(command.teacher)
         authority.drive(command, tick)
         # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
-        self.stopped_because = f"{command.teacher} drove by hand and let go"
+        self.stopped_because = _let_go(command.teacher)
         self._stopped_by = {command.teacher}
         return None
 
@@ -139,11 +139,14 @@ class School:
         # A stop that comes twice stops twice: it may be the second one that is meant.
         if self.has_taken(command.command_id) and not isinstance(command, Stop):
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
+        nobody_taught = self.authority.teacher is None
         try:
             text, event = self._carry_out(command, situation, tick)
             if event is not None:
                 self._level.apply(event)
         except (_RefusedError, UnfitEventError) as error:
+            if nobody_taught and self.authority.teacher is not None:
+                self.authority.hand_over(None)  # who was refused has not become the teacher by it
             return CommandResult(command.command_id, False, str(error)), None
         self._taken.add(command.command_id)
         return CommandResult(command.command_id, True, text, lesson=event is not None), event
@@ -154,7 +157,11 @@ class School:
             self.stop(f"{command.teacher} said stop", command.teacher)
             return "the robot stands until it is told to resume", None
         if isinstance(command, Take):
+            before = authority.teacher
             self._refuse(authority.take(command.teacher, tick))
+            if before is not None and self.stopped_because == _let_go(before):
+                # Nobody said stop: the one who takes over may drive by hand at once.
+                self._stopped_by = {command.teacher}
             return f"{command.teacher} teaches", None
         self._refuse(authority.held_by_another(command.teacher))
         authority.claim(command.teacher)
@@ -192,6 +199,8 @@ class School:
     def _run(self, command: RunBehaviour, tick: int) -> str:
         self._require_action(command.action)
         self._refuse(self._stopped_by_another(command.teacher))
+        if not self.authority.present(tick):
+            raise _RefusedError("a behaviour runs only while its teacher is there and watches")
         self.stop(f"{command.action} is over", command.teacher)
         self.authority.run(command.action, tick, command.ticks)
         return f"{command.action} for {command.ticks} ticks"
@@ -297,3 +306,7 @@ class School:
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
+
+
+def _let_go(teacher: str) -> str:
+    return f"{teacher} drove by hand and let go"

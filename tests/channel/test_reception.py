@@ -354,7 +354,10 @@ async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: 
         (lambda desk: desk.command(ReleaseRequest, "ben"), "ben teaches now"),
         (lambda desk: desk.command(ReleaseRequest, None), "nobody teaches now"),
         (lambda desk: desk.command(UndoRequest, None), "there is no lesson to undo"),
-        (lambda desk: desk.command(BehaviourRequest, "back", 7), "back for 7 ticks"),
+        (
+            lambda desk: desk.command(BehaviourRequest, "back", 7),
+            "a behaviour runs only while its teacher is there and watches",
+        ),
         (lambda desk: desk.command(ResumeRequest), "the robot may drive"),
         (lambda desk: desk.command(ReplaceRequest, 3, "back"), "there is no RLA 3; it may have been deleted"),
     ],

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from kurt2rt.channel.requests import BehaviourRequest, PhaseRequest, ResumeRequest, SessionRequest
+from kurt2rt.channel.requests import BehaviourRequest, PhaseRequest, ResumeRequest, SessionRequest, TakeRequest
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.rla.rla import Phase
@@ -111,10 +111,11 @@ async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
 
 
 async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(BehaviourRequest, "back", 5))
+    assert reply.body["text"] == "a behaviour runs only while its teacher is there and watches"
+    await desk.ask(desk.command(TakeRequest))
     await desk.stream(desk.watch())
-    await desk.ask(desk.command(BehaviourRequest, "back", 5))
-    assert picture(desk).by_hand is False  # nobody has become the teacher yet who could be there
-    await desk.stream(desk.watch())
+    desk.run()
     await desk.ask(desk.command(BehaviourRequest, "back", 5))
     told = picture(desk)
     assert (told.action, told.by_hand) == ("back", True)

@@ -24,3 +24,12 @@ def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
     assert inbox.take() == (teach("a"), stop())
     inbox.put(resume())
     assert inbox.take() == (resume(),)
+
+
+def test_a_stop_finds_room_in_a_full_inbox() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(teach("a"))
+    inbox.put(stop())
+    with pytest.raises(InboxFullError):
+        inbox.put(teach("b"))
+    assert inbox.take() == (teach("a"), stop())

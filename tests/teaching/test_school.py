@@ -504,3 +504,21 @@ def test_resume_ends_what_the_hand_was_doing() -> None:
     lesson.say(resume())
     assert not lesson.school.authority.hand_on_wheel(lesson.tick)
     assert lesson.drive(hold=4) == "this press was ended by a stop; let go and press anew"
+
+
+def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
+    lesson = Lesson()
+    assert not lesson.say(teach("dance")).accepted
+    assert lesson.school.authority.teacher is None
+    assert lesson.say(Teach("2", "Ben", "a")).accepted
+
+
+def test_who_takes_over_a_robot_that_was_let_go_may_drive_at_once_but_not_one_that_was_stopped() -> None:
+    lesson = Lesson()
+    assert lesson.drive(hold=1) is None
+    lesson.school.authority.end_hand()
+    lesson.say(Take("1", "Ben"))
+    assert lesson.drive("Ben", hold=1) is None
+    lesson.say(Stop("2", "Ben"))
+    lesson.say(Take("3", "Ann"))
+    assert lesson.drive(hold=9) == "Ben stopped the robot; say resume first"
