@@ -15,7 +15,7 @@ from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.wait import WebDriverWait
 
 BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
-PORTRAIT, LANDSCAPE, LAPTOP = (390, 844), (844, 390), (1280, 800)
+PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 800)
 PATIENCE_S = 10.0
 """Ends a story whose event never comes."""
 

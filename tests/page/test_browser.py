@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from tests.page.classroom import Classroom
-from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, Phone
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
 
 ACTIONS = ("along_left_wall", "forward", "curve_right", "spin_right", "bear_left")
 TABS = ("teach", "drive", "lessons", "more")
@@ -210,7 +210,7 @@ def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, 
     phone.touch("#view")
 
 
-@pytest.mark.parametrize("size", [PORTRAIT, LANDSCAPE, LAPTOP], ids=["portrait", "landscape", "laptop"])
+@pytest.mark.parametrize("size", [PORTRAIT, SMALL, LANDSCAPE, LAPTOP], ids=["portrait", "small", "landscape", "laptop"])
 def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
     a_phone: Phone, room: Classroom, size: tuple[int, int]
 ) -> None:
@@ -228,5 +228,7 @@ def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
             assert height >= LEAST_TARGET_PX, f"{tab}: {name} is {height} high"
             assert left >= 0, f"{tab}: {name} begins at {left}"
             assert right <= size[0], f"{tab}: {name} ends at {right}"
-    (stop_bottom,) = phone.run("return [document.querySelector('#stop').getBoundingClientRect().bottom]")
-    assert stop_bottom <= size[1]
+        for name in ("#stop", "#go", "#sentence", "#link"):
+            box = phone.run("return document.querySelector(arguments[0]).getBoundingClientRect().toJSON();", name)
+            assert 0 <= box["top"] < box["bottom"] <= size[1], f"{tab}: {name} lies at {box}"
+            assert 0 <= box["left"] < box["right"] <= size[0], f"{tab}: {name} lies at {box}"

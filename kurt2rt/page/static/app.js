@@ -87,7 +87,7 @@ link.addEventListener("hello", ({ detail }) => {
   setText($("keys-actions"), hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
   $("view").hidden = !hello.simulated;
   document.body.classList.toggle("simulated", hello.simulated);
-  showView("robot");
+  if (!hello.simulated) showView("robot");
   buildPhases();
   pace();
 });

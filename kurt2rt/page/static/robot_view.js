@@ -88,7 +88,14 @@ function bumpers(paint, length, breadth, bits, scale) {
 }
 
 function wheel(paint, x, height, speed, most, name) {
+  paint.textAlign = "center";
+  paint.font = "600 15px system-ui, sans-serif";
+  paint.fillStyle = INK;
   const top = 74; // below the button that changes the view
+  if (height < top + 80) {
+    paint.fillText(speed.toFixed(2), x, height - 8); // no room for a bar
+    return;
+  }
   const middle = (top + height - 28) / 2;
   const half = Math.max(10, Math.min(middle - top, 90));
   paint.fillStyle = "#edf0f4";
@@ -108,8 +115,6 @@ function wheel(paint, x, height, speed, most, name) {
   }
   paint.fillStyle = INK;
   paint.fillRect(x - 12, middle - 1, 24, 2);
-  paint.textAlign = "center";
-  paint.font = "600 15px system-ui, sans-serif";
   paint.fillText(speed.toFixed(2), x, middle + half + 20);
   paint.fillStyle = GREY;
   paint.font = "600 12px system-ui, sans-serif";
