@@ -4,33 +4,25 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
+from kurt2rt.channel.command_of import command_of
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
-    AnswerRequest,
     BehaviourRequest,
     CommandRequest,
-    CorrectRequest,
-    DeleteRequest,
     DriveRequest,
     ExportRequest,
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
-    PhaseRequest,
     PlaceRequest,
-    ReleaseRequest,
-    ReplaceRequest,
     Request,
     ResumeRequest,
-    RewardRequest,
     SaveRequest,
-    SessionRequest,
     StopRequest,
     StreamRequest,
     TakeRequest,
-    UndoRequest,
     WorldRequest,
 )
 from kurt2rt.knowledge.error import KnowledgeError
@@ -38,22 +30,9 @@ from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
-    BeginSession,
     Command,
-    Correct,
-    DeleteRla,
     Drive,
-    EndSession,
-    HandOver,
-    ReplaceAction,
-    Resume,
-    Reward,
-    RunBehaviour,
-    SetPhase,
     Stop,
-    Take,
-    Teach,
-    Undo,
     Watch,
 )
 from kurt2rt.teaching.inbox import InboxFullError
@@ -303,35 +282,3 @@ class Reception:
             "round": [list(post) for post in view.posts],
         }
         return Reply(Verdict.DONE, body)
-
-
-def command_of(device: str, command_id: str, request: CommandRequest) -> Command:
-    """The command that a request asks for."""
-    match request:
-        case BehaviourRequest(action=action, ticks=ticks):
-            return RunBehaviour(command_id, device, action, ticks)
-        case AnswerRequest(action=action, decision_tick=tick):
-            return Teach(command_id, device, action, tick)
-        case CorrectRequest(action=action, decision_tick=tick):
-            return Correct(command_id, device, action, tick)
-        case RewardRequest(value=value, decision_tick=tick):
-            return Reward(command_id, device, value, tick)
-        case ReplaceRequest(rla_id=rla_id, action=action):
-            return ReplaceAction(command_id, device, rla_id, action)
-        case DeleteRequest(rla_id=rla_id):
-            return DeleteRla(command_id, device, rla_id)
-        case UndoRequest(lesson=lesson):
-            return Undo(command_id, device, lesson)
-        case PhaseRequest(phase=phase):
-            return SetPhase(command_id, device, phase)
-        case SessionRequest(name=None):
-            return EndSession(command_id, device)
-        case SessionRequest(name=str(name)):
-            return BeginSession(command_id, device, name)
-        case ResumeRequest():
-            return Resume(command_id, device)
-        case TakeRequest():
-            return Take(command_id, device)
-        case ReleaseRequest(to=to):
-            return HandOver(command_id, device, to)
-    raise AssertionError(f"{request.path} is no command for the tick")
