@@ -19,6 +19,7 @@ from typing import Any
 
 from kurt2rt.channel.context_folder import SECRET, SEQUENCE
 from kurt2rt.channel.error import CredentialsError
+from kurt2rt.durable import sync_folder
 
 LOCAL = "local"
 """Name of whoever teaches at the robot's own machine."""
@@ -227,7 +228,7 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
     aside = [_write_aside(devices, name, of_device), _write_aside(teachers, name, of_robot)]
     for unborn, folder in zip(aside, (devices, teachers), strict=True):
         unborn.rename(folder / name)
-        _sync_folder(folder)
+        sync_folder(folder)
     return Pairing(teachers / name, device)
 
 
@@ -240,7 +241,7 @@ def _write_aside(folder: Path, name: str, files: dict[str, dict[str, Any]]) -> P
             json.dump(content, file, indent=2)
             file.flush()
             os.fsync(file.fileno())
-    _sync_folder(unborn)
+    sync_folder(unborn)
     return unborn
 
 
@@ -253,7 +254,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
         # Away in one step, whatever happens while its files are deleted.
         revoked = side / f"{_REVOKED}{name}"
         (side / name).rename(revoked)
-        _sync_folder(side)
+        sync_folder(side)
         shutil.rmtree(revoked)
 
 
@@ -300,11 +301,3 @@ def _changed_at(path: Path) -> datetime | None:
         return datetime.fromtimestamp(path.stat().st_mtime, UTC)
     except FileNotFoundError:
         return None
-
-
-def _sync_folder(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

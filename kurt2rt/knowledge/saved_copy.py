@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
+from kurt2rt.durable import sync_folder
 from kurt2rt.knowledge.error import KnowledgeError
 
 _LONGEST_PART = 32
@@ -37,7 +38,7 @@ def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str
             name = f"{stem}{ending}" if number == 1 else f"{stem}-{number}{ending}"
             if _is_born(content, folder, name):
                 break
-        _sync_folder(folder)
+        sync_folder(folder)
     except OSError as error:
         raise KnowledgeError(
             f"{folder}: nothing can be saved there ({error}); give a folder that may be written and has room"
@@ -74,11 +75,3 @@ def _is_born(content: bytes, folder: Path, name: str) -> bool:
     finally:
         unborn.unlink(missing_ok=True)
     return True
-
-
-def _sync_folder(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
