@@ -13,7 +13,8 @@ class RecentDecisions:
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:
         self._capacity = capacity
         self._ticks = np.full(capacity, -1, dtype=np.int64)
-        self._situations = np.zeros((capacity, dimensions))
+        # Written once here: memory that is only promised costs the first tick that touches it half a millisecond.
+        self._situations = np.full((capacity, dimensions), np.nan)
         self._seeing = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
         self.newest = -1
