@@ -37,7 +37,7 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
     """The command that a request asks for."""
     match request:
         case BehaviourRequest(action=action, ticks=ticks):
-            return RunBehaviour(command_id, device, action, ticks)
+            return RunBehaviour(command_id, device, action, ticks, request.seen)
         case AnswerRequest(action=action, decision_tick=tick):
             return Teach(command_id, device, action, tick)
         case CorrectRequest(action=action, decision_tick=tick):
@@ -51,13 +51,13 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
         case UndoRequest(lesson=lesson):
             return Undo(command_id, device, lesson)
         case PhaseRequest(phase=phase):
-            return SetPhase(command_id, device, phase)
+            return SetPhase(command_id, device, phase, request.seen)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
         case SessionRequest(name=str(name)):
             return BeginSession(command_id, device, name)
         case ResumeRequest():
-            return Resume(command_id, device)
+            return Resume(command_id, device, request.seen)
         case TakeRequest():
             return Take(command_id, device)
         case ReleaseRequest(to=to):

@@ -111,8 +111,8 @@ class Reception:
         match request:
             case StreamRequest():
                 return self._stream(sender, request)
-            case StopRequest(command_id=identity):
-                return await self._stop(sender, f"{device}-{identity.hex()}")
+            case StopRequest(command_id=identity, hold=hold):
+                return await self._stop(sender, f"{device}-{identity.hex()}", hold)
             case CommandRequest():
                 return await self._command(device, request)
             case HelloRequest():
@@ -141,11 +141,11 @@ class Reception:
             return refusal("stopped", ended, tick)
         return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
 
-    async def _stop(self, sender: Sender, command_id: str) -> Reply:
+    async def _stop(self, sender: Sender, command_id: str, hold: int | None) -> Reply:
         # What of a press was sent before the stop and comes after it is over, too.
         self._is_newest(sender)
         # Each copy stops again, whatever came of the one before: the robot may have been told to drive meanwhile.
-        if not self._hand_in(Stop(command_id, sender.device)):
+        if not self._hand_in(Stop(command_id, sender.device, hold)):
             return self._too_many()
         # Shielded: the end of one copy's request must not end what the next copy waits for.
         return await asyncio.shield(self._outcomes.get(command_id) or self._outcomes.begin(command_id))

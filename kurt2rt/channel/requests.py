@@ -90,6 +90,8 @@ class StopRequest(Request):
 
     path: ClassVar[str] = "/stop"
     command_id: _CommandId
+    hold: _TickOrNone = None
+    """The press that is let go, so that a copy that comes late does not end the next one; None: everything."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,6 +64,15 @@ class Authority:
         """Whether the teacher is there; always where none is needed."""
         return not self.attended or tick < self._there_until
 
+    def drives_on(self, teacher: str, hold: int, tick: int) -> bool:
+        """Whether this teacher drives by a later press than `hold`."""
+        return self.hand_on_wheel(tick) and self.teacher == teacher and self._hold.get(teacher, -1) > hold
+
+    def forget(self, teacher: str) -> None:
+        """His device has new keys, and counts its presses anew."""
+        self._hold.pop(teacher, None)
+        self._ended_hold.pop(teacher, None)
+
     def is_over(self, command: Drive) -> bool:
         """Whether a stop, or silence, has ended this press."""
         return command.hold <= self._ended_hold.get(command.teacher, -1)

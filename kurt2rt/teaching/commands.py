@@ -44,6 +44,8 @@ class RunBehaviour:
     teacher: str
     action: str
     ticks: int
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +127,8 @@ class SetPhase:
     command_id: str
     teacher: str
     phase: Phase
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +172,8 @@ class Stop:
 
     command_id: str
     teacher: str
+    hold: int | None = None
+    """The press that he lets go, which is no reason to end a later one; None: whatever moves the robot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +182,8 @@ class Resume:
 
     command_id: str
     teacher: str
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
 
 
 Command = (

@@ -72,6 +72,8 @@ class School:
         self.stopped_because = ""
         """Empty while nobody stopped the robot."""
         self._stopped_by: set[str] = set()
+        self.stopped_at_tick = -1
+        """When a teacher last said stop: what was said on an older picture must not lift it."""
         self.corrections = 0
         self.session: str | None = None
         """Name of the session that is on."""
@@ -133,11 +135,10 @@ class School:
 
     def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
-        if isinstance(command, Watch | Drive):
-            refusal = self.follow(command, tick)
-            return CommandResult("", refusal is None, refusal or ""), None
+        assert not isinstance(command, Watch | Drive)
         # A stop that comes twice stops twice: it may be the second one that is meant.
-        if self.has_taken(command.command_id) and not isinstance(command, Stop):
+        stops_again = isinstance(command, Stop) and command.hold is None
+        if self.has_taken(command.command_id) and not stops_again:
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
         nobody_taught = self.authority.teacher is None
         try:
@@ -154,27 +155,28 @@ class School:
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
         authority = self.authority
         if isinstance(command, Stop):
-            self.stop(f"{command.teacher} said stop", command.teacher)
-            return "the robot stands until it is told to resume", None
+            return self._stop(command, tick), None
         if isinstance(command, Take):
             before = authority.teacher
             self._refuse(authority.take(command.teacher, tick))
-            if before is not None and self.stopped_because == _let_go(before):
-                # Nobody said stop: the one who takes over may drive by hand at once.
-                self._stopped_by = {command.teacher}
+            self._pass_on(before)
             return f"{command.teacher} teaches", None
         self._refuse(authority.held_by_another(command.teacher))
         authority.claim(command.teacher)
         match command:
             case HandOver(to=to):
                 authority.hand_over(to)
+                self._pass_on(command.teacher)
                 return "nobody teaches now" if to is None else f"{to} teaches now", None
             case Resume():
+                self._refuse(self._stopped_since(command))
                 self.stopped_because = ""
                 self._stopped_by.clear()
                 authority.end_hand()
                 return "the robot may drive", None
             case SetPhase():
+                if command.phase is Phase.AUTONOMOUS:
+                    self._refuse(self._stopped_since(command))
                 self.phase = command.phase
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
             case RunBehaviour():
@@ -196,9 +198,23 @@ class School:
             case Watch() | Drive():
                 raise AssertionError("streams are followed, not carried out")
 
+    def _stop(self, command: Stop, tick: int) -> str:
+        if command.hold is not None and self.authority.drives_on(command.teacher, command.hold, tick):
+            return "that press is over; a later one drives"
+        self.stopped_at_tick = tick
+        self.stop(
+            _let_go(command.teacher) if command.hold is not None else f"{command.teacher} said stop", command.teacher
+        )
+        return "the robot stands until it is told to resume"
+
+    def _pass_on(self, before: str | None) -> None:
+        """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""
+        if before is not None:
+            self._stopped_by.discard(before)
+
     def _run(self, command: RunBehaviour, tick: int) -> str:
         self._require_action(command.action)
-        self._refuse(self._stopped_by_another(command.teacher))
+        self._refuse(self._stopped_since(command) or self._stopped_by_another(command.teacher))
         if not self.authority.present(tick):
             raise _RefusedError("a behaviour runs only while its teacher is there and watches")
         self.stop(f"{command.action} is over", command.teacher)
@@ -298,6 +314,12 @@ class School:
     def _stopped_by_another(self, teacher: str) -> str | None:
         others = sorted(self._stopped_by - {teacher})
         return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
+
+    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase) -> str | None:
+        """What was said before a stop, and comes after it, must not lift it."""
+        if command.seen_tick is None or command.seen_tick >= self.stopped_at_tick:
+            return None
+        return "the robot was stopped after this was said; look at it, then say it again"
 
     def _refuse(self, reason: str | None) -> None:
         if reason is not None:

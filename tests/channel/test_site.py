@@ -122,7 +122,7 @@ def school(tmp_path: Path) -> Iterator[School]:
 @pytest.mark.parametrize("code", CODES, ids=str)
 async def test_without_keys_everything_but_discovery_is_refused(school: School, code: Any) -> None:
     for path in EVERYWHERE:
-        payload = cbor2.dumps([b"12345678"]) if path == "/stop" else b""
+        payload = cbor2.dumps([b"12345678", None]) if path == "/stop" else b""
         (event,) = await answers(school.site, carried(plain(path, code, payload)))
         assert event.is_last
         if (code, path) == (aiocoap.GET, CORE):

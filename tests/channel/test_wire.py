@@ -170,12 +170,12 @@ def refusal(path: str, payload: bytes) -> str:
 
 
 def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
-    good = cbor2.dumps([ID])
+    good = cbor2.dumps([ID, None])
     assert "not the CBOR" in refusal("/stop", b"")
     assert "not the CBOR" in refusal("/stop", good[:-1])
     assert "1 bytes too many" in refusal("/stop", good + b"\x00")
-    assert "a list of 1: [command_id]" in refusal("/stop", cbor2.dumps([ID, ID]))
-    assert "a list of 1: [command_id]" in refusal("/stop", cbor2.dumps({"id": ID}))
+    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps([ID]))
+    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps({"id": ID}))
     assert "nesting" in refusal("/stop", cbor2.dumps([[ID]]))
     assert "indefinite" in refusal("/stop", b"\x9f" + good[1:] + b"\xff")
     assert "tag 2: tagged values are not taken" in refusal("/lessons", b"\x81\xc2\x41\x01")
@@ -186,8 +186,8 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
 @pytest.mark.parametrize(
     ("path", "body", "sentence"),
     [
-        ("/stop", [b"short"], "command_id has to be 8 bytes"),
-        ("/stop", ["12345678"], "command_id has to be 8 bytes"),
+        ("/stop", [b"short", None], "command_id has to be 8 bytes"),
+        ("/stop", ["12345678", None], "command_id has to be 8 bytes"),
         ("/lessons", [True], "count has to be a whole number from 0 to 20"),
         ("/lessons", [21], "count has to be a whole number from 0 to 20"),
         ("/lessons", [2.0], "count has to be a whole number from 0 to 20"),

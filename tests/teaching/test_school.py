@@ -1,6 +1,7 @@
 """What becomes of a teacher's commands."""
 
 import math
+from collections.abc import Callable
 
 import pytest
 
@@ -28,8 +29,10 @@ from kurt2rt.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    Resume,
     Reward,
     RunBehaviour,
+    SetPhase,
     Stop,
     Take,
     Teach,
@@ -513,12 +516,47 @@ def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
     assert lesson.say(Teach("2", "Ben", "a")).accepted
 
 
-def test_who_takes_over_a_robot_that_was_let_go_may_drive_at_once_but_not_one_that_was_stopped() -> None:
+def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_not_from_a_bystander() -> None:
     lesson = Lesson()
-    assert lesson.drive(hold=1) is None
-    lesson.school.authority.end_hand()
-    lesson.say(Take("1", "Ben"))
+    lesson.drive(hold=1)
+    lesson.say(stop("1"))
+    lesson.say(Take("2", "Ben"))
+    assert lesson.school.stopped_because
     assert lesson.drive("Ben", hold=1) is None
-    lesson.say(Stop("2", "Ben"))
-    lesson.say(Take("3", "Ann"))
-    assert lesson.drive(hold=9) == "Ben stopped the robot; say resume first"
+    lesson.say(Stop("3", "Cleo"))
+    lesson.say(Take("4", "Ann"))
+    assert lesson.drive(hold=9) == "Cleo stopped the robot; say resume first"
+
+
+def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
+    lesson = Lesson()
+    lesson.drive(hold=1)
+    release = Stop("1", "Ann", hold=1)
+    lesson.drive(hold=2)
+    assert lesson.say(release).text == "that press is over; a later one drives"
+    assert lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert lesson.say(Stop("2", "Ann", hold=2)).accepted
+    assert not lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert lesson.school.stopped_because == "Ann drove by hand and let go"
+    lesson.say(resume())
+    assert lesson.say(Stop("2", "Ann", hold=2)).text == "had been taken already; counted once"
+    assert not lesson.school.stopped_because
+
+
+@pytest.mark.parametrize(
+    "late",
+    [
+        lambda tick: Resume("2", "Ann", tick),
+        lambda tick: RunBehaviour("2", "Ann", "a", 10, tick),
+        lambda tick: SetPhase("2", "Ann", Phase.AUTONOMOUS, tick),
+    ],
+)
+def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
+    late: Callable[[int], Command],
+) -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    refused = lesson.say(late(lesson.tick - 1))
+    assert refused.text == "the robot was stopped after this was said; look at it, then say it again"
+    assert lesson.school.stopped_because
+    assert lesson.say(late(lesson.tick)).accepted
