@@ -25,6 +25,8 @@ class Status:
     runtime: Runtime
     unsaved_lessons: int
     trouble: str | None
+    channel_trouble: str
+    """What is wrong with the teacher's channel; empty when nothing is, or there is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,8 @@ class Rounds:
         if ticks % self._checkpoint_ticks == 0:
             self.save_statistics()
         if ticks % self._status_ticks == 0:
-            self.last = Status(record, runtime, writer.unwritten, writer.trouble)
+            channel_trouble = "" if self._channel is None else self._channel.trouble
+            self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble)
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
             sweep()

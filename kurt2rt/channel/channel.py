@@ -44,11 +44,18 @@ class Channel:
     """Hands what teachers send to the next tick, and tells them what became of it and what the robot does."""
 
     def __init__(
-        self, runtime: Runtime, reception: Reception, site: RobotSite, telling: Telling, endpoint: Endpoint
+        self,
+        runtime: Runtime,
+        reception: Reception,
+        site: RobotSite,
+        telling: Telling,
+        endpoint: Endpoint,
+        pairing_trouble: Callable[[], tuple[str, ...]],
     ) -> None:
         self._reception = reception
         self._site = site
         self._telling = telling
+        self._pairing_trouble = pairing_trouble
         self._texts: dict[str, str] = {}
         self._every_ticks = max(1, round(1 / (PICTURES_PER_S * runtime.robot.can.cycle_s)))
         self._ticks = 0
@@ -58,6 +65,15 @@ class Channel:
     def failures(self) -> int:
         """Requests that ended in an error of ours; none should."""
         return self._site.failures
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong with pairings or channel, in a line; empty when nothing is."""
+        lines = list(self._pairing_trouble())
+        failed = self.endpoint.counters.failed + self._site.failures
+        if failed:
+            lines.append(f"teacher's channel: {failed} failures {self.endpoint.newest_failure}".strip())
+        return "; ".join(lines)
 
     @property
     def observers(self) -> int:
@@ -105,7 +121,7 @@ async def open_channel(
     try:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(_refresh, teachers, runtime)
-            yield Channel(runtime, reception, site, telling, endpoint)
+            yield Channel(runtime, reception, site, telling, endpoint, lambda: teachers.trouble)
             tasks.cancel_scope.cancel()
     finally:
         reception.close()
@@ -118,6 +134,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
     while True:
         await anyio.sleep(_REFRESH_S)
         for name in (await teachers.refresh()).gone:
+            runtime.school.authority.forget(name)
             if runtime.school.authority.teacher == name:
                 revoked = f"{name}-gone-{secrets.token_hex(4)}"
                 runtime.inbox.put(Stop(f"{revoked}-stop", name))

@@ -18,9 +18,6 @@ from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
 from kurt2rt.channel.error import ChannelError
 from kurt2rt.channel.gate import Counters, Gate, Limits, SocketAddress
 
-_LOG = logging.getLogger(__name__)
-_LOGGED_EVERY_S = 1.0
-
 
 class Site(Protocol):
     """Answers requests."""
@@ -57,23 +54,17 @@ _BRIEF = _Brief()
 
 
 class _Failures(logging.Handler):
-    """Counts what goes wrong, keeps the newest as text, and logs at most once a second."""
+    """Counts what goes wrong and keeps the newest as text. It writes nowhere: a terminal may block, the loop not."""
 
-    def __init__(self, counters: Counters, now: Callable[[], float]) -> None:
+    def __init__(self, counters: Counters) -> None:
         super().__init__(logging.ERROR)
         self._counters = counters
-        self._now = now
-        self._quiet_until_s = float("-inf")
         self.newest = ""
 
     def emit(self, record: logging.LogRecord) -> None:
         """What aiocoap would log."""
         self._counters.failed += 1
-        self.newest = text = record.getMessage()
-        now_s = self._now()
-        if now_s >= self._quiet_until_s:
-            self._quiet_until_s = now_s + _LOGGED_EVERY_S
-            _LOG.warning("teacher's channel: %s (%d failures so far)", text, self._counters.failed)
+        self.newest = record.getMessage()
 
 
 class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
@@ -185,7 +176,7 @@ async def open_endpoint(
     loop = asyncio.get_running_loop()
     counters = Counters()
     gate = Gate(limits or Limits(), counters, now)
-    failures = _Failures(counters, now)
+    failures = _Failures(counters)
     # Not registered anywhere: aiocoap's lines about single messages are neither formatted nor passed on.
     log = logging.Logger("kurt2rt.channel.coap", logging.ERROR)
     log.addHandler(failures)

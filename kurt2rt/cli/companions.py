@@ -1,11 +1,17 @@
 """Programs that run beside the robot's: the teacher's page, the scripted teacher."""
 
+import os
 import subprocess
 import sys
 from types import TracebackType
 from typing import Self
 
 _ENDING_S = 5.0
+
+
+def _give_way() -> None:
+    """The loop may run at a real-time priority; who keeps it company must not hold it up."""
+    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 
 class Companions:
@@ -23,7 +29,9 @@ class Companions:
     def start(self, *words: str) -> None:
         """Start `kurt2rt WORDS`."""
         command = [sys.executable, "-m", "kurt2rt.cli.main", *words, "--settings", self._settings, "--while-stdin"]
-        self._processes.append(subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True))
+        self._processes.append(
+            subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True, preexec_fn=_give_way)
+        )
 
     def __enter__(self) -> Self:
         return self

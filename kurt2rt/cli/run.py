@@ -191,6 +191,8 @@ def status_line(status: Status, health: Health) -> str:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
     if status.trouble is not None:
         parts.append(status.trouble)
+    if status.channel_trouble:
+        parts.append(status.channel_trouble)
     if health.latched is not None and health.bus_trouble:
         parts.append(health.bus_trouble)
     if health.foreign_control:

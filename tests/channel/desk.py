@@ -106,7 +106,7 @@ class Desk:
         self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground)
         # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
         self.site = RobotSite(cast(Keys, keys), self.reception)
-        self.channel = Channel(self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None))
+        self.channel = Channel(self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None), tuple)
         self.record: TickRecord
         self.written = 0
         self._number = 0

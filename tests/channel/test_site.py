@@ -575,3 +575,17 @@ async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Pat
         transport = tokens.token_interface.message_interface.transport
         assert transport.get_extra_info("socket").getsockname()[0] == "::ffff:127.0.0.1"
     teachers.close()
+
+
+async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(tmp_path: Path) -> None:
+    local_pairing(tmp_path / "teachers", tmp_path / "devices")
+    damaged = pair(tmp_path / "teachers", tmp_path / "devices", "bob").teacher / "secret.json"
+    damaged.write_text("{}", encoding="utf-8")
+    desk = Desk()
+    teachers = Teachers(tmp_path / "teachers")
+    safekeeping = Safekeeping(int, lambda: None, str)
+    async with open_channel(desk.runtime, teachers, 0, Surroundings(safekeeping, desk.shelf, str, None)) as channel:
+        assert teachers.names == ("local",)
+        assert "the pairing is damaged" in channel.trouble
+        assert "kurt2rt pair bob --renew" in channel.trouble
+    teachers.close()

@@ -193,3 +193,13 @@ def test_a_hand_on_the_wheels_ends_a_behaviour_and_a_behaviour_the_hand() -> Non
     assert hands.authority.step(sensed())[0] == "by hand"
     hands.authority.run("a", NOW + 2, 1000)
     assert hands.authority.step(sensed())[0] == "a"
+
+
+def test_a_device_with_new_keys_counts_its_presses_anew() -> None:
+    authority = Authority({}, attended=False)
+    authority.claim("Ann")
+    authority.drive(Drive("Ann", 0, 7, 0.1, 0.1), 0)
+    authority.end_hand()
+    assert authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))
+    authority.forget("Ann")
+    assert not authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))
