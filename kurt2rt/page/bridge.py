@@ -1,5 +1,6 @@
 """Between the open pages and the robot: pictures one way, orders and the teacher's hand the other."""
 
+import contextlib
 import time
 from collections.abc import Callable
 from functools import partial
@@ -12,14 +13,15 @@ from kurt2rt.channel.state import State
 from kurt2rt.page.attention import Attention
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
 from kurt2rt.page.mirror import Mirror
-from kurt2rt.page.orders import carry_out
+from kurt2rt.page.orders import carry_out, lets_drive, oldest_picture_s
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.seat import Seat
 from kurt2rt.page.views import answer_view, hello_view, lessons_view, refusal_view, state_view, world_view
 from kurt2rt.page.visitor import Visitor
+from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import NoAnswerError
 
-_LOOK_EACH_S = 0.02
+_LOOK_EACH_S = 0.01
 """How late a silent page is noticed at most."""
 _SILENT_S = 0.5
 """A robot not heard of for so long is said to be silent, and so often."""
@@ -28,6 +30,10 @@ _MOST_ORDERS = 8
 _LESSONS = 10
 
 _NOT_YOURS = "another page has the pad; press Take to have it here"
+_NO_PICTURE = "the page showed no picture of the robot as it runs now; look, and press again"
+_OLD_PICTURE = "given on an old picture; look at the robot, then say it again"
+_STOPPED_MEANWHILE = "the robot was stopped meanwhile; look at the robot, then say it again"
+_NOBODY_LOOKED = "nobody saw the robot on this page: it was stopped; GO lets it drive on"
 
 
 class Bridge:
@@ -51,6 +57,9 @@ class Bridge:
         self._opened = 0
         self._carried_out = 0
         self._newest: State | None = None
+        self._stopped_s = float("-inf")
+        self._unseen_stop_due = False
+        self._ending = 0
         self._said_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
         self._hello = Mirror(self._fetch_hello, partial(self._tell_all, about="hello"))
@@ -115,6 +124,7 @@ class Bridge:
             case Release():
                 self._let_go(visitor)
             case StopNow():
+                self._stopped_s = self._now()
                 for each in self._visitors.values():
                     each.grip.release()
                 self._spawn(self._answer, visitor, message.number, self._robot.stop)
@@ -137,6 +147,8 @@ class Bridge:
         visitor.look()
 
     def _press(self, visitor: Visitor, press: Press) -> None:
+        if self._ending:
+            return  # the press before is on until its end was begun; the next message of this one comes in 50 ms
         if not self._has_pad(visitor):
             visitor.tell({"kind": "let_go", "text": _NOT_YOURS}, about="let_go")
             return
@@ -150,23 +162,28 @@ class Bridge:
             self._robot.press(press.left_m_s, press.right_m_s)
 
     def _order(self, visitor: Visitor, order: Order) -> None:
-        if order.name == "take":
-            before = self._seat.holder
-            self._seat.take(visitor.number, self._now())
-            self._seat_changed(before)
-            if self._newest is not None and self._newest.teacher == self._device:
-                text = "this page has the pad"
-                visitor.tell({**refusal_view(order.number, "", text), "accepted": True})
-                return
-        elif not self._has_pad(visitor):
+        if order.name != "take" and not self._has_pad(visitor):
             visitor.tell(refusal_view(order.number, "watching", _NOT_YOURS))
             return
         picture = visitor.pictures.get(order.picture)
         if picture is None or self._newest is None or picture.boot != self._newest.boot:
-            text = "the page showed no picture of the robot as it runs now; look, and press again"
-            visitor.tell(refusal_view(order.number, "stale", text))
-            return
-        self._start(visitor, order.number, partial(carry_out, order, self._robot, picture.tick))
+            visitor.tell(refusal_view(order.number, "stale", _NO_PICTURE))
+        elif self._now() - picture.sent_s > oldest_picture_s(order):
+            # The robot is told of our newest picture, not of the page's: only here the order's age is known.
+            visitor.tell(refusal_view(order.number, "stale", _OLD_PICTURE))
+        elif lets_drive(order) and picture.sent_s < self._stopped_s:
+            visitor.tell(refusal_view(order.number, "stopped", _STOPPED_MEANWHILE))
+        elif order.name == "take" and self._take_pad(visitor):
+            visitor.tell({**refusal_view(order.number, "", "this page has the pad"), "accepted": True})
+        else:
+            self._start(visitor, order.number, partial(carry_out, order, self._robot, picture.tick))
+
+    def _take_pad(self, visitor: Visitor) -> bool:
+        """Give a page the pad; whether this device is the robot's teacher already."""
+        before = self._seat.holder
+        self._seat.take(visitor.number, self._now())
+        self._seat_changed(before)
+        return self._newest is not None and self._newest.teacher == self._device
 
     def _start(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
         if visitor.orders >= _MOST_ORDERS:
@@ -177,22 +194,23 @@ class Bridge:
     async def _answer(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
         visitor.orders += 1
         try:
-            answer = await command()
+            view = answer_view(number, await command())
         except NoAnswerError as error:
-            visitor.tell(refusal_view(number, "unknown", str(error)))
-        else:
-            visitor.tell(answer_view(number, answer))
+            view = refusal_view(number, "unknown", str(error))
         finally:
             visitor.orders -= 1
         self._carried_out += 1
+        # A list of lessons that is fetched from now on, `after` this one, has in it what the order has changed.
+        visitor.tell({**view, "done": self._carried_out})
         self._want_lessons()
 
     # The teacher's hand and eyes
 
     def _seat_changed(self, before: int | None) -> None:
         if self._seat.holder != before:
-            self._attention.lose()
-            self._look()
+            if self._seat.holder is None:
+                self._attention.lose()  # else who took the pad looks; the first heartbeat is under way
+                self._look()
             if before in self._visitors:
                 self._let_go(self._visitors[before])
         for visitor in self._visitors.values():
@@ -204,10 +222,13 @@ class Bridge:
     def _let_go(self, visitor: Visitor) -> None:
         if visitor.grip.held:
             visitor.grip.release()
+            self._ending += 1
             self._spawn(self._end_press)
 
     async def _end_press(self) -> None:
+        self._ending -= 1
         try:
+            # Ends the press before it waits for anything.
             await self._robot.let_go()
         except NoAnswerError:
             # It stops by itself when it does not hear us; that it is silent is said with every picture that is missing.
@@ -232,7 +253,30 @@ class Bridge:
             self._tell_all({"kind": "silent", "text": self._why_silent()}, about="silent")
 
     def _look(self) -> None:
-        self._robot.watching = self._attention.there(self._now())
+        there = self._attention.there(self._now())
+        self._robot.watching = there
+        if there:
+            self._unseen_stop_due = True
+        elif self._unseen_stop_due and self._drives_for_its_teacher():
+            # The robot's own patience begins only with the last word it has heard: together they would be too long.
+            self._unseen_stop_due = False
+            self._spawn(self._stop_unseen)
+
+    def _drives_for_its_teacher(self) -> bool:
+        state = self._newest
+        return (
+            state is not None
+            and state.teacher == self._device
+            and state.phase < Phase.AUTONOMOUS
+            and state.action is not None
+            and not state.by_hand  # a press ends by its own stop
+        )
+
+    async def _stop_unseen(self) -> None:
+        self._tell_all({"kind": "let_go", "text": _NOBODY_LOOKED}, about="let_go")
+        # One that does not answer hears nothing of a teacher either, and stops by itself.
+        with contextlib.suppress(NoAnswerError):
+            await self._robot.stop()
 
     def _why_silent(self) -> str:
         why = f" ({self._robot.trouble})" if self._robot.trouble else ""
@@ -248,7 +292,12 @@ class Bridge:
 
     async def _follow_pictures(self) -> None:
         async for state in self._robot.states():
+            if state.stopped_because and (
+                self._newest is None or state.stopped_because != self._newest.stopped_because
+            ):
+                self._stopped_s = self._now()
             self._newest = state
+            self._look()
             self._hello.want(state.boot)
             if state.place is not None:
                 self._world.want((state.boot, state.place.world_version))
@@ -276,4 +325,5 @@ class Bridge:
         return world_view(world)
 
     async def _fetch_lessons(self) -> dict[str, Any]:
-        return lessons_view(await self._robot.lessons(_LESSONS))
+        after = self._carried_out
+        return {**lessons_view(await self._robot.lessons(_LESSONS)), "after": after}

@@ -2,7 +2,21 @@
 
 from kurt2rt.page.messages import Order
 from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer
+
+_MOVING_S = 1.0
+_OTHERS_S = 3.0
+
+
+def oldest_picture_s(order: Order) -> float:
+    """How long ago the page's picture may have been sent, in s: the robot's own borders, for the page's own link."""
+    return _MOVING_S if lets_drive(order) or order.name in ("take", "place") else _OTHERS_S
+
+
+def lets_drive(order: Order) -> bool:
+    """Whether a robot that stands may drive by it: never one that was stopped after the picture."""
+    return order.name == "resume" or (order.name == "phase" and order.arguments["phase"] == Phase.AUTONOMOUS)
 
 
 async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:

@@ -65,13 +65,14 @@ def answer_view(number: int, answer: Answer) -> dict[str, Any]:
         "accepted": answer.accepted,
         "why": answer.why,
         "text": answer.text,
+        "tick": answer.tick,
         "extra": plain(answer.extra),
     }
 
 
 def refusal_view(number: int, why: str, text: str) -> dict[str, Any]:
     """An order that never reached the robot, or of which it is not known whether it did."""
-    return {"kind": "answer", "number": number, "accepted": False, "why": why, "text": text, "extra": {}}
+    return {"kind": "answer", "number": number, "accepted": False, "why": why, "text": text, "tick": -1, "extra": {}}
 
 
 def hello_view(hello: Hello) -> dict[str, Any]:

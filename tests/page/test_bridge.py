@@ -15,6 +15,9 @@ from kurt2rt.rla.rla import Phase
 from tests.page.clock import Clock
 from tests.page.fake_robot import A_PLACE, FakeRobot
 
+NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over")
+STALE = "given on an old picture; look at the robot, then say it again"
+
 
 class Page:
     """A page without a browser."""
@@ -246,6 +249,86 @@ async def test_a_press_that_the_robot_ended_does_not_begin_again_by_itself() -> 
         assert len(hall.told("press")) == 2
 
 
+async def test_a_quick_release_ends_the_old_press_and_not_the_next_one() -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(teacher="phone")
+        page.press(hold=1)
+        page.say(Release())
+        page.press(hold=2)  # came with the release
+        await anyio.wait_all_tasks_blocked()
+        page.press(hold=2)  # 50 ms later
+        assert [each[0] for each in hall.told("press", "let_go")] == ["press", "let_go", "press"]
+        assert hall.robot.pressing
+        page.press(hold=2)
+        assert len(hall.told("press")) == 3
+
+
+DRIVING = {"teacher": "phone", "action": "forward", "phase": 1}
+
+
+async def test_a_robot_that_drives_unseen_is_stopped_320_ms_after_the_last_heartbeat() -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(**DRIVING)
+        await hall.wait(0.29)
+        assert hall.told("stop") == []
+        await hall.wait(0.03)
+        assert hall.told("stop") == [("stop",)]
+        assert "nobody saw the robot" in page.last("let_go")["text"]
+        await hall.wait(1.0)
+        assert len(hall.told("stop")) == 1
+
+
+@pytest.mark.parametrize(
+    "how",
+    [lambda page: page.say(Hidden()), lambda page: page.hall.bridge.leave(page.visitor)],
+    ids=["hidden", "closed"],
+)
+async def test_hiding_or_closing_the_page_stops_a_robot_that_drives(how: Callable[[Page], None]) -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(**DRIVING)
+        how(page)
+        await anyio.wait_all_tasks_blocked()
+        assert hall.told("stop") == [("stop",)]
+
+
+async def test_a_robot_that_begins_to_drive_just_after_is_stopped_too() -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(**{**DRIVING, "action": None})
+        page.say(Hidden())
+        await anyio.wait_all_tasks_blocked()
+        assert hall.told("stop") == []
+        hall.robot.show(action="forward")
+        await anyio.wait_all_tasks_blocked()
+        assert hall.told("stop") == [("stop",)]
+
+
+@pytest.mark.parametrize("but", [{"phase": 5}, {"teacher": "anna"}, {"action": None}])
+async def test_nobody_needs_to_look_at_a_robot_that_stands_or_drives_for_another(but: dict[str, object]) -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(**{**DRIVING, **but})
+        await hall.wait(1.0)
+        assert hall.told("stop") == []
+
+
+async def test_the_pad_changes_pages_while_the_robot_drives() -> None:
+    async with opened() as hall:
+        first, second = Page(hall), Page(hall)
+        await first.see(**DRIVING)
+        await second.see()
+        await second.order("take")
+        second.beat()
+        await hall.wait(0.1)
+        assert hall.told("stop") == []
+        assert hall.robot.watching
+        await hall.wait(0.3)
+        assert hall.told("stop") == [("stop",)]
+
+
 @pytest.mark.parametrize("how", [lambda page: page.say(Release()), lambda page: page.hall.bridge.leave(page.visitor)])
 async def test_letting_go_and_leaving_end_the_press(how: Callable[[Page], None]) -> None:
     async with opened() as hall:
@@ -293,9 +376,79 @@ async def test_an_order_on_no_picture_or_on_one_of_an_earlier_robot_is_not_sent(
         assert hall.told("answer") == []
 
 
+MOVING: list[tuple[str, dict[str, object]]] = [
+    ("resume", {}),
+    ("take", {}),
+    ("phase", {"phase": Phase.AUTONOMOUS}),
+    ("place", {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+]
+OTHERS: list[tuple[str, dict[str, object]]] = [
+    ("correct", {"action": "forward"}),
+    ("phase", {"phase": Phase.CRITIC}),
+    ("hand_over", {"to": None}),
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "longest_s"), [(*each, 1.0) for each in MOVING] + [(*each, 3.0) for each in OTHERS]
+)
+async def test_an_order_that_was_long_on_its_way_is_refused(
+    name: str, arguments: dict[str, object], longest_s: float
+) -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see()
+        hall.clock.go_on(longest_s - 0.01)
+        assert (await page.order(name, **arguments))["accepted"]
+        told = len(hall.told(*NAMES))
+        hall.clock.go_on(0.02)
+        answer = await page.order(name, **arguments)
+        assert (answer["why"], answer["text"]) == ("stale", STALE)
+        assert len(hall.told(*NAMES)) == told
+
+
+async def test_an_old_take_does_not_take_the_pad_either() -> None:
+    async with opened() as hall:
+        first, second = Page(hall), Page(hall)
+        await first.see(teacher="phone")
+        await second.see()
+        hall.clock.go_on(1.1)
+        assert (await second.order("take"))["why"] == "stale"
+        assert second.last("page")["seat"] == "elsewhere"
+
+
+async def test_a_go_on_a_picture_from_before_a_stop_is_refused() -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(stopped_because="phone said stop")
+        shown = page.picture
+        hall.clock.go_on(0.1)
+        await page.see(stopped_because="anna said stop")
+        page.picture = shown
+        assert (await page.order("resume"))["why"] == "stopped"
+        hall.clock.go_on(0.1)
+        await page.see()
+        hall.clock.go_on(0.1)
+        page.say(StopNow(7))
+        await page.order("resume")
+        assert hall.told("resume") == []
+        await page.see()
+        assert (await page.order("resume"))["accepted"]
+
+
+async def test_a_list_of_lessons_says_which_orders_it_knows_of() -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see()
+        answer = await page.order("answer", action="forward")
+        with anyio.fail_after(5):
+            while page.last("lessons")["after"] < answer["done"]:
+                await anyio.wait_all_tasks_blocked()
+                await anyio.sleep(0.01)
+
+
 ORDERS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("answer", {"action": "forward"}, ("answer", "forward", 102)),
-    ("undo", {"lesson": None}, ("undo", None)),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
     ("begin_session", {"name": "morning"}, ("begin_session", "morning")),
