@@ -1,8 +1,6 @@
 """`kurt2rt pair`."""
 
 import io
-import ipaddress
-import socket
 from pathlib import Path
 from typing import Annotated
 
@@ -15,10 +13,8 @@ from rich.text import Text
 
 from kurt2rt.channel import credentials
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, Pairing, paired
+from kurt2rt.page.hosts import own_address
 from kurt2rt.service_settings import load_service
-
-_SOMEWHERE = ("192.0.2.1", 9)
-"""Nobody's address, which is routed like everybody's."""
 
 _TIME = "%Y-%m-%d %H:%M"
 
@@ -96,17 +92,6 @@ def page_address(pairing: Pairing, host: str, port: int) -> str:
     """What a device opens to be let in to its page."""
     shown = f"[{host}]" if ":" in host else host
     return f"http://{shown}:{port}/pair?token={pairing.device.token}"
-
-
-def own_address() -> str:
-    """This machine's address on the network where others are; 127.0.0.1 without a network."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            probe.connect(_SOMEWHERE)  # chooses the way and sends nothing
-        except OSError:
-            return "127.0.0.1"
-        address: str = probe.getsockname()[0]
-    return "127.0.0.1" if ipaddress.ip_address(address).is_unspecified else address
 
 
 def _code(address: str) -> str:

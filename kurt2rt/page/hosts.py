@@ -57,4 +57,4 @@ def own_address() -> str:
         except OSError:
             return "127.0.0.1"
         address: str = probe.getsockname()[0]
-        return address
+    return "127.0.0.1" if ipaddress.ip_address(address).is_unspecified else address
