@@ -7,15 +7,19 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
             await robot.answer("forward", of=state.tick)
 """
 
+import math
 import secrets
 import time
-from collections.abc import AsyncIterator, Callable
+from collections import deque
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
 import anyio
+import anyio.abc
+import anyio.lowlevel
 import anyio.to_thread
 
 from kurt2rt.channel.credentials import PORT, Device, read_device
@@ -23,6 +27,7 @@ from kurt2rt.channel.requests import (
     COMMAND_ID_BYTES,
     AnswerRequest,
     BehaviourRequest,
+    CommandRequest,
     CorrectRequest,
     DeleteRequest,
     ExportRequest,
@@ -51,7 +56,7 @@ from kurt2rt.teaching.hand import BEAT_S, Hand
 from kurt2rt.teaching.hello import Hello, hello_of
 from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
 from kurt2rt.teaching.link import Link
-from kurt2rt.teaching.oscore_requests import OscoreRequests, Response, open_requests
+from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response, open_requests
 from kurt2rt.teaching.pictures import Pictures
 from kurt2rt.teaching.wheel import Wheel
 from kurt2rt.teaching.world import World, world_of
@@ -61,6 +66,8 @@ ANSWER_WITHIN_S = 3.5
 SILENT_AFTER_S = 1.0
 """Without a picture for so long the robot is asked for them anew."""
 _LOOK_EVERY_S = 0.1
+_MOST_COPIES = 35
+"""Of one command that still wait for an answer: one that comes later than ANSWER_WITHIN_S is none."""
 _STOP_WITHIN_S = 0.5
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 _STATE = "/state"
@@ -73,8 +80,9 @@ class TeacherClient:
     teacher is there.
 
     Commands are sent again every 0.1 s, count once, and come back with the robot's `Answer`; a refusal is one, too.
-    They raise NoAnswerError when nobody answered for 3.5 s: then it is not known whether they counted. Speeds are in
-    metres per second, ways in metres, angles in radians. One program at a time can use a pairing.
+    They raise NoAnswerError when nobody answered for 3.5 s: then it is not known whether they counted. A stop overtakes
+    whatever else is under way. Speeds are in metres per second, ways in metres, angles in radians. One program at a
+    time can use a pairing.
     """
 
     def __init__(
@@ -98,7 +106,10 @@ class TeacherClient:
         self._patience_s = patience_s
         self._now = now
         self._pictures = Pictures(now)
-        self._parts: tuple[OscoreRequests, Hand] | None = None
+        self._parts: tuple[OscoreRequests, Hand, anyio.abc.TaskGroup] | None = None
+        self._moving: set[anyio.CancelScope] = set()
+        self._stopping: anyio.CancelScope | None = None
+        self._wishes = 0
         self._stack = AsyncExitStack()
         self._period_s: float | None = None
 
@@ -147,7 +158,9 @@ class TeacherClient:
 
     async def hello(self) -> Hello:
         """What robot this is."""
-        return await self._told(HelloRequest(), lambda response: hello_of(_facts(response)))
+        hello = await self._told(HelloRequest(), lambda response: hello_of(_facts(response)))
+        self._pictures.hear(hello.boot, hello.tick)
+        return hello
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         """The newest lessons, up to 20, newest first."""
@@ -188,8 +201,10 @@ class TeacherClient:
     # Organising
 
     async def set_phase(self, phase: Phase) -> Answer:
-        """Another training phase."""
-        return await self._command(PhaseRequest, phase=phase)
+        """Another training phase. In phase 5 the robot drives without its teacher, so a stop ends that command."""
+        if phase is not Phase.AUTONOMOUS:
+            return await self._command(PhaseRequest, phase=phase)
+        return await self._move("phase 5", lambda: self._command(PhaseRequest, moves=True, phase=phase))
 
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins: the teaching clock runs."""
@@ -201,7 +216,7 @@ class TeacherClient:
 
     async def take(self) -> Answer:
         """Be the teacher from now on; the robot knows that he is there when this returns."""
-        answer = await self._command(TakeRequest)
+        answer = await self._move("take", lambda: self._command(TakeRequest, moves=True))
         if answer.accepted:
             with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
                 async for state in self.states():
@@ -225,19 +240,52 @@ class TeacherClient:
     # Moving
 
     async def stop(self) -> Answer:
-        """Stand; always allowed. A press is over."""
+        """Stand; always allowed. A press is over, and what was to move the robot and is not answered yet is sent no
+        more: it comes back refused, with the `why` "stopped".
+
+        Raises NoAnswerError as every command does, but goes on being sent then: see `stop_pending`.
+        """
         self._hand.end()
-        return await self._ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES)))
+        for command in tuple(self._moving):
+            command.cancel()
+        request = StopRequest(secrets.token_bytes(COMMAND_ID_BYTES))
+        wishes = self._wishes
+        try:
+            answer = await self._ask(request)
+        except NoAnswerError as error:
+            if wishes != self._wishes:
+                raise
+            self._go_on_stopping(request)
+            raise NoAnswerError(
+                f"the stop is not answered: no answer for {self._patience_s:g} s; it is sent on until it is. "
+                f"{self.trouble}".strip()
+            ) from error
+        self._end_stopping()
+        return answer
+
+    @property
+    def stop_pending(self) -> bool:
+        """Whether a stop that was not answered in time is still being sent: until it is, or until the teacher wishes
+        something later, which is `resume`, `run` or the begin of a press.
+        """
+        return self._stopping is not None
 
     async def resume(self) -> Answer:
         """Drive again after a stop."""
-        return await self._command(ResumeRequest)
+        self._wish_anew()
+        return await self._move("go", lambda: self._command(ResumeRequest, moves=True))
 
     async def run(self, action: str, *, seconds: float) -> Answer:
         """Run one action of the repertoire for a time; the robot stands afterwards."""
-        if self._period_s is None:
-            self._period_s = (await self.hello()).period_s
-        return await self._command(BehaviourRequest, action=action, ticks=round(seconds / self._period_s))
+        self._wish_anew()
+
+        async def begin() -> Answer:
+            if self._period_s is None:
+                self._period_s = (await self.hello()).period_s
+            ticks = round(seconds / self._period_s)
+            return await self._command(BehaviourRequest, moves=True, action=action, ticks=ticks)
+
+        return await self._move(action, begin)
 
     @property
     def watching(self) -> bool:
@@ -267,19 +315,23 @@ class TeacherClient:
         return self._hand.press(left_m_s, right_m_s)
 
     async def let_go(self) -> Answer | None:
-        """End the press with a stop; None when none is on."""
-        return await self.stop() if self._hand.pressing else None
+        """End the press with a stop that ends no later one; None when none is on.
+
+        The press is over before this waits for anything, and when nobody answers: the robot lets go by itself.
+        """
+        return await self._release(self._hand.hold)
 
     @asynccontextmanager
     async def driving(self) -> AsyncIterator[Wheel]:
         """Drive by hand inside the block; the press begins with the first speeds and ends with a stop."""
+        wheel = Wheel(self._hand)
         try:
-            yield Wheel(self._hand)
+            yield wheel
         except BaseException:
             with anyio.CancelScope(shield=True):
-                await self._let_go_anyhow()
+                await self._release_anyhow(wheel.hold)
             raise
-        await self.let_go()
+        await self._release(wheel.hold)
 
     # The simulated world
 
@@ -301,7 +353,7 @@ class TeacherClient:
     def _hand(self) -> Hand:
         return self._opened_parts()[1]
 
-    def _opened_parts(self) -> tuple[OscoreRequests, Hand]:
+    def _opened_parts(self) -> tuple[OscoreRequests, Hand, anyio.abc.TaskGroup]:
         if self._parts is None:
             raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
         return self._parts
@@ -311,17 +363,17 @@ class TeacherClient:
         device = await anyio.to_thread.run_sync(_read_device, self._folder)
         self.name = device.name
         requests = await open_requests(self._folder, self._host or device.host, self._port or device.port)
-        hand = Hand(self.name, self._pictures, requests, now=self._now)
-        self._parts = requests, hand
+        hand = Hand(self.name, self._pictures, requests, now=self._now, on_begin=self._wish_anew)
         try:
             async with anyio.create_task_group() as tasks:
+                self._parts = requests, hand, tasks
                 tasks.start_soon(self._observe, requests)
                 tasks.start_soon(_beat, hand)
                 try:
                     yield
                 finally:
                     with anyio.CancelScope(shield=True):
-                        await self._let_go_anyhow()
+                        await self._release_anyhow(hand.hold)
                     tasks.cancel_scope.cancel()
         finally:
             hand.forget()
@@ -364,25 +416,62 @@ class TeacherClient:
         else:
             self._pictures.show(picture)
 
-    async def _command(self, kind: Callable[..., Request], **fields: Any) -> Answer:
+    async def _move(self, what: str, give: Callable[[], Awaitable[Answer]]) -> Answer:
+        """Say what may set the robot in motion; a stop that is said before the answer ends it."""
+        with anyio.CancelScope() as scope:
+            self._moving.add(scope)
+            try:
+                return await give()
+            finally:
+                self._moving.discard(scope)
+        return Answer(False, "stopped", f"{what} was stopped meanwhile", -1)
+
+    def _wish_anew(self) -> None:
+        self._wishes += 1
+        self._end_stopping()
+
+    def _go_on_stopping(self, request: StopRequest) -> None:
+        if self._stopping is None:
+            self._stopping = anyio.CancelScope()
+            self._opened_parts()[2].start_soon(self._stop_until_answered, request, self._stopping)
+
+    async def _stop_until_answered(self, request: StopRequest, scope: anyio.CancelScope) -> None:
+        with scope, suppress(NoAnswerError):  # one that is not understood is an answer, too
+            await self._ask(request, math.inf)
+        if self._stopping is scope:
+            self._stopping = None
+
+    def _end_stopping(self) -> None:
+        stopping, self._stopping = self._stopping, None
+        if stopping is not None:
+            stopping.cancel()
+
+    async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
         with anyio.move_on_after(self._patience_s):
             await self._pictures.first()
         state = self._pictures.newest
         if state is None:
             raise NoAnswerError(f"there is no picture of the robot, so nothing was sent to it. {self.trouble}".strip())
-        return await self._ask(kind(boot=state.boot, command_id=command_id, seen=state.tick, **fields))
+        seen = self._pictures.looked_tick if moves else self._pictures.heard_tick
+        return await self._ask(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
 
-    async def _ask(self, request: Request) -> Answer:
+    async def _ask(self, request: Request, patience_s: float | None = None) -> Answer:
         try:
             payload = encode_request(request)
         except WireError as error:
             return Answer(False, "malformed", str(error), -1)
-        response = await self._answered(request.path, payload)
+        # A stop names no start of the robot: the one that was seen when it was said, or a later one, took it.
+        newest = self._pictures.newest
+        boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot
+        response = await self._answered(request.path, payload, patience_s)
         try:
-            return answer_of(response.code, _body(response))
+            answer = answer_of(response.code, _body(response))
         except WireError as error:
             raise NoAnswerError(f"the robot's answer to {request.path} is not understood: {error}") from error
+        if answer.why != "boot":
+            self._pictures.hear(boot, answer.tick, stopped=answer.accepted and isinstance(request, StopRequest))
+        return answer
 
     async def _told(self, request: Request, read: Callable[[Response], _Told]) -> _Told:
         response = await self._answered(request.path, encode_request(request))
@@ -391,8 +480,9 @@ class TeacherClient:
         except WireError as error:
             raise NoAnswerError(f"the robot's answer to {request.path} is not understood: {error}") from error
 
-    async def _answered(self, path: str, payload: bytes) -> Response:
+    async def _answered(self, path: str, payload: bytes, patience_s: float | None = None) -> Response:
         requests = self._requests
+        patience_s = self._patience_s if patience_s is None else patience_s
         answered = anyio.Event()
         responses: list[Response] = []
 
@@ -400,10 +490,13 @@ class TeacherClient:
             responses.append(response)
             answered.set()
 
-        copies = []
+        copies: deque[Exchange] = deque()
         try:
-            with anyio.move_on_after(self._patience_s):
+            with anyio.move_on_after(patience_s):
                 while not responses:
+                    await anyio.lowlevel.checkpoint_if_cancelled()  # nothing is sent behind a stop
+                    if len(copies) == _MOST_COPIES:
+                        copies.popleft().end()
                     copies.append(requests.post(path, payload, on_response))
                     with anyio.move_on_after(RESEND_S):
                         await answered.wait()
@@ -412,15 +505,21 @@ class TeacherClient:
                 copy.end()
         if not responses:
             raise NoAnswerError(
-                f"no answer for {self._patience_s:g} s: it is not known whether it counted; look at the lessons. "
+                f"no answer for {patience_s:g} s: it is not known whether it counted; look at the lessons. "
                 f"{requests.trouble}".strip()
             )
         return responses[0]
 
-    async def _let_go_anyhow(self) -> None:
+    async def _release(self, hold: int | None) -> Answer | None:
+        if hold is None or hold != self._hand.hold:
+            return None
+        self._hand.end()
+        return await self._ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), hold))
+
+    async def _release_anyhow(self, hold: int | None) -> None:
         # The robot lets go by itself when it hears nothing, so a stop that nobody answers is no error here.
         with anyio.move_on_after(_STOP_WITHIN_S), suppress(NoAnswerError):
-            await self.let_go()
+            await self._release(hold)
 
 
 async def _beat(hand: Hand) -> None:

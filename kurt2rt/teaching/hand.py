@@ -52,8 +52,9 @@ class Hand:
         requests: OscoreRequests,
         *,
         now: Callable[[], float],
+        on_begin: Callable[[], None],
     ) -> None:
-        """`name` is the teacher's; `now` is a monotonic clock in seconds."""
+        """`name` is the teacher's; `now` is a monotonic clock in seconds; `on_begin` is called as a press begins."""
         self.watching = True
         """Whether the teacher looks at the robot."""
         self.refused = ""
@@ -63,8 +64,8 @@ class Hand:
         self._pictures = pictures
         self._requests = requests
         self._now = now
+        self._on_begin = on_begin
         self._press: _Press | None = None
-        self._heard: tuple[bytes, int] = (b"", -1)
         self._under_way: deque[_Sent] = deque()
 
     @property
@@ -93,6 +94,7 @@ class Hand:
         encode_request(_drive(press, state.tick, left_m_s, right_m_s))
         press.left_m_s, press.right_m_s = left_m_s, right_m_s
         if begins:
+            self._on_begin()
             self.refused = ""
             self._press = press
             self.beat()
@@ -116,7 +118,7 @@ class Hand:
         elif state.boot != press.boot:
             self.end("the robot program was started anew: the press is over")
         else:
-            self._send_drive(state, press)
+            self._send_drive(press)
 
     def forget(self) -> None:
         """End the press, and wait for no answer any more."""
@@ -128,17 +130,10 @@ class Hand:
         return self._pictures.newest if self._pictures.age_s <= BLIND_AFTER_S else None
 
     def _send_watch(self, state: State) -> None:
-        request = WatchRequest(boot=state.boot, seen=self._seen(state))
-        self._send(request, None)
+        self._send(WatchRequest(boot=state.boot, seen=self._pictures.heard_tick), None)
 
-    def _send_drive(self, state: State, press: _Press) -> None:
-        request = _drive(press, self._seen(state), press.left_m_s, press.right_m_s)
-        self._send(request, press)
-
-    def _seen(self, state: State) -> int:
-        """The newest tick that was heard of: answers come more often than pictures, and prove the same."""
-        boot, tick = self._heard
-        return max(state.tick, tick) if boot == state.boot else state.tick
+    def _send_drive(self, press: _Press) -> None:
+        self._send(_drive(press, self._pictures.heard_tick, press.left_m_s, press.right_m_s), press)
 
     def _send(self, request: StreamRequest, press: _Press | None) -> None:
         sent = _Sent(self._requests.next_number, self._now(), request.boot, press)
@@ -154,7 +149,7 @@ class Hand:
             self.end(f"the robot is not understood: {error}")
             return
         if answer.accepted:
-            self._hear(sent.boot, answer.tick)
+            self._pictures.hear(sent.boot, answer.tick)
         press = sent.press
         if press is None or press is not self._press:
             return
@@ -163,10 +158,6 @@ class Hand:
         # One that was late on its way is refused, too; the press goes on while newer ones are taken.
         elif sent.number > press.taken and answer.why != "old":
             self.end(answer.text or answer.why)
-
-    def _hear(self, boot: bytes, tick: int) -> None:
-        known_boot, known_tick = self._heard
-        self._heard = boot, max(tick, known_tick) if boot == known_boot else tick
 
     def _forget_old_ones(self) -> None:
         before_s = self._now() - _FORGOTTEN_AFTER_S

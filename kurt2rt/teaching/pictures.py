@@ -1,4 +1,4 @@
-"""The pictures of the robot as they come to a teacher's device."""
+"""The pictures of the robot as they come to a teacher's device, and the ticks that its answers tell."""
 
 import math
 from collections import deque
@@ -23,6 +23,8 @@ class Pictures:
         """How often the robot program was found started anew."""
         self._now = now
         self._came_s: deque[float] = deque(maxlen=100)
+        self._heard_tick = -1
+        self._stopped_tick = -1
         self._closed = False
         self._news = anyio.Event()
 
@@ -37,11 +39,33 @@ class Pictures:
         since_s = self._now() - _RATE_OVER_S
         return sum(came_s > since_s for came_s in self._came_s) / _RATE_OVER_S
 
+    @property
+    def heard_tick(self) -> int:
+        """Newest tick of the robot's present start that was heard of; answers come more often than pictures."""
+        return max(self._heard_tick, self.looked_tick)
+
+    @property
+    def looked_tick(self) -> int:
+        """Newest tick that the teacher knows the robot of: of a picture, or of the stop that he said himself.
+
+        Other answers do not count here: they do not tell that somebody else has stopped the robot meanwhile.
+        """
+        return max(self._stopped_tick, -1 if self.newest is None else self.newest.tick)
+
+    def hear(self, boot: bytes, tick: int, *, stopped: bool = False) -> None:
+        """The robot, in the start that `boot` names, told its tick in an answer; `stopped`: to a stop."""
+        if self.newest is None or boot != self.newest.boot:
+            return
+        self._heard_tick = max(self._heard_tick, tick)
+        if stopped:
+            self._stopped_tick = max(self._stopped_tick, tick)
+
     def show(self, picture: State) -> None:
         """One more came; an older one than the newest of the same start of the robot is left out."""
         if self.newest is not None:
             if picture.boot != self.newest.boot:
                 self.restarts += 1
+                self._heard_tick = self._stopped_tick = -1
             elif picture.tick < self.newest.tick:
                 return
         self.newest = picture

@@ -4,11 +4,16 @@ from kurt2rt.teaching.hand import Hand
 
 
 class Wheel:
-    """Set speeds as often as you like; they go out 33 times a second. Once the press has ended it stays ended."""
+    """Set speeds as often as you like; they go out 40 times a second. Once the press has ended it stays ended."""
 
     def __init__(self, hand: Hand) -> None:
         self._hand = hand
         self._hold: int | None = None
+
+    @property
+    def hold(self) -> int | None:
+        """Number of its press; None before it begins."""
+        return self._hold
 
     @property
     def ended(self) -> str:

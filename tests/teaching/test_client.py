@@ -5,7 +5,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -466,6 +466,203 @@ async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandI
         assert len(robot.all_of(WatchRequest)) == told
 
 
+# Stopping
+
+
+async def never_answers(_: Request) -> Reply:
+    await anyio.sleep_forever()
+    raise AssertionError
+
+
+MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitable[Answer]]]] = {
+    "go": (ResumeRequest, lambda client: client.resume()),
+    "forward": (BehaviourRequest, lambda client: client.run("forward", seconds=1.0)),
+    "phase 5": (PhaseRequest, lambda client: client.set_phase(Phase.AUTONOMOUS)),
+    "take": (TakeRequest, lambda client: client.take()),
+}
+
+
+@pytest.mark.parametrize("what", MOVING)
+async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
+    client: TeacherClient, robot: StandInRobot, what: str
+) -> None:
+    kind, say = MOVING[what]
+
+    async def hears_only_stops(request: Request) -> Reply:
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, HELLO)
+        return await (never_answers if isinstance(request, kind) else agrees)(request)
+
+    robot.mind = hears_only_stops
+    answers: list[Answer] = []
+
+    async def move() -> None:
+        answers.append(await say(client))
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(move)
+        await robot.hears(kind, 2)
+        stop = await client.stop()
+    assert stop.accepted
+    assert answers == [Answer(False, "stopped", f"{what} was stopped meanwhile", -1)]
+    # Longer than a command waits before it is sent again: four more commands go and come.
+    sent = len(robot.all_of(kind))
+    robot.mind = agrees
+    for _ in range(4):
+        newest = robot.show()
+        await seen(client, lambda: client.state is not None and client.state.tick > newest.tick)  # noqa: B023
+    assert len(robot.all_of(kind)) == sent
+    assert isinstance(robot.orders()[-1], StopRequest)
+
+
+async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, robot: StandInRobot) -> None:
+    stopped = anyio.Event()
+
+    async def answers_lessons_after_the_stop(request: Request) -> Reply:
+        if isinstance(request, AnswerRequest):
+            await stopped.wait()
+        return await agrees(request)
+
+    robot.mind = answers_lessons_after_the_stop
+    answers: list[Answer] = []
+
+    async def teach() -> None:
+        answers.append(await client.answer("forward"))
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(teach)
+        await robot.hears(AnswerRequest)
+        await client.stop()
+        stopped.set()
+    assert answers[0].accepted
+
+
+async def test_go_right_after_a_stop_says_that_the_teacher_knows_of_that_stop(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.showing = False
+    picture = robot.show()
+    await seen(client, lambda: client.state == picture)
+    stopped_tick = picture.tick + 3
+
+    async def stops_later(request: Request) -> Reply:
+        return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20, "done")
+
+    robot.mind = stops_later
+    await client.stop()
+    await client.resume()
+    await client.answer("forward")
+    # Answers to other things are no news of the robot to who wants to move it: somebody may have stopped it meanwhile.
+    await client.resume()
+    resumes = robot.all_of(ResumeRequest)
+    assert [each.seen for each in resumes] == [stopped_tick, stopped_tick]
+    assert robot.all_of(AnswerRequest)[0].seen == stopped_tick + 20
+
+
+async def test_ticks_that_an_earlier_start_of_the_robot_told_count_for_nothing(pairing: Pairing) -> None:
+    teachers = pairing.teacher.parent
+    clock = Clock()
+
+    async def far_on(_: Request) -> Reply:
+        return done(1_000_000, "done")
+
+    async with AsyncExitStack() as first_start:
+        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
+        async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+            await first_state(client)
+            robot.mind = far_on
+            await client.stop()
+            await first_start.aclose()
+            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+                clock.ahead_s += 1.5
+                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                await client.resume()
+                await client.answer("forward")
+                (resume,), (answer,) = robot.all_of(ResumeRequest), robot.all_of(AnswerRequest)
+                assert max(resume.seen, answer.seen) < 1_000_000
+
+
+async def test_a_stop_that_nobody_answers_is_sent_on_until_it_is(pairing: Pairing, robot: StandInRobot) -> None:
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.15) as client,
+    ):
+        await first_state(client)
+        tasks_before = len(asyncio.all_tasks())
+        link.cut()
+        for _ in range(3):
+            with pytest.raises(NoAnswerError, match=r"the stop is not answered: .* it is sent on until it is"):
+                await client.stop()
+            assert client.stop_pending
+        assert len(asyncio.all_tasks()) == tasks_before + 1
+        assert robot.all_of(StopRequest) == []
+        link.mend()
+        await eventually(lambda: not client.stop_pending)
+        (stop, *copies) = robot.all_of(StopRequest)
+        assert set(copies) <= {stop}
+        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
+
+
+async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
+    pairing: Pairing, robot: StandInRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kurt2rt.teaching.client.RESEND_S", 0.001)
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.05) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        lost = link.up.lost
+        await link.until(lambda: link.up.lost > lost + 200)
+        assert client.stop_pending
+        assert client._requests.open_exchanges <= 35 + 2  # and two of the observation
+
+
+@pytest.mark.parametrize("wish", ["resume", "run", "press"])
+async def test_a_later_wish_ends_a_stop_that_nobody_answered(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
+    async def does_not_hear_stops(request: Request) -> Reply:
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, HELLO)
+        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
+
+    robot.mind = does_not_hear_stops
+    async with TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.15) as client:
+        await first_state(client)
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        assert client.stop_pending
+        if wish == "resume":
+            assert (await client.resume()).accepted
+        elif wish == "run":
+            assert (await client.run("forward", seconds=1.0)).accepted
+        else:
+            assert client.press(0.1, 0.1)
+            await robot.hears(DriveRequest)
+        assert not client.stop_pending
+        stops = len(robot.all_of(StopRequest))
+        told = robot.state.tick
+        await seen(client, lambda: client.state is not None and client.state.tick > told + 20)
+        assert len(robot.all_of(StopRequest)) == stops
+
+
+async def test_a_press_that_cannot_begin_ends_no_stop(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.1, now=clock) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        clock.ahead_s += 0.6
+        assert not client.press(0.1, 0.1)
+        assert client.stop_pending
+
+
 # Driving
 
 
@@ -483,8 +680,49 @@ async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherC
     assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
     assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
     assert len({each.hold for each in heard}) == 1
-    assert isinstance(robot.heard[-1], StopRequest)
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == heard[0].hold
     assert await client.let_go() is None
+
+
+async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    async def does_not_answer_stops(request: Request) -> Reply:
+        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
+
+    robot.mind = does_not_answer_stops
+    client.press(0.2, 0.2)
+    first = client._hand.hold
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(client.let_go)
+        await robot.hears(StopRequest)
+        assert not client.pressing
+        assert client.press(0.1, 0.1)
+        await robot.hears(StopRequest, 3)
+        assert client.pressing
+        tasks.cancel_scope.cancel()
+    second = client._hand.hold
+    assert first is not None
+    assert second is not None
+    assert second > first
+    assert {each.hold for each in robot.all_of(StopRequest)} == {first}
+    robot.mind = agrees
+    await client.stop()
+    assert robot.all_of(StopRequest)[-1].hold is None
+
+
+async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_press_alone(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await client.stop()
+        assert client.press(0.1, 0.1)
+    assert client.pressing
+    assert [each.hold for each in robot.all_of(StopRequest)] == [None]
+    await client.let_go()
 
 
 async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_device_and_new_keys(
@@ -516,7 +754,9 @@ async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: St
         assert wheel.set(0.2, 0.2)
         await robot.hears(DriveRequest, 2)
         assert wheel.set(0.1, 0.2)
-    assert isinstance(robot.heard[-1], StopRequest)
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == wheel.hold == robot.all_of(DriveRequest)[-1].hold
     assert not wheel.set(0.2, 0.2)
     assert wheel.ended == "let go"
 
@@ -554,7 +794,9 @@ async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: P
 
     with pytest.raises(ZeroDivisionError):
         await drive()
-    assert isinstance(robot.heard[-1], StopRequest)
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == robot.all_of(DriveRequest)[-1].hold
 
 
 @pytest.mark.parametrize("why", ["stopped", "held", "stale"])

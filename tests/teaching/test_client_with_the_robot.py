@@ -112,6 +112,21 @@ async def test_the_hand_drives_while_it_presses_and_the_robot_stands_when_it_let
             assert robot.link.rtt_ms is not None
 
 
+async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            TeacherClient(device.folder, port=port) as robot,
+        ):
+            assert (await robot.take()).accepted
+            for _ in range(10):
+                stop = await robot.stop()
+                go = await robot.resume()
+                assert (stop.accepted, go.accepted, go.text) == (True, True, "the robot may drive")
+            await state_where(robot, stopped_because="")
+
+
 async def test_the_world_is_seen_and_changed(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:
