@@ -92,8 +92,15 @@ class Phone:
 
     def key(self, kind: str, code: str) -> None:
         """Press or lift a key of a laptop: keyDown or keyUp, and its code."""
-        key = {"Space": " ", "KeyW": "w"}.get(code, code)
-        self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": key})
+        key = {"Space": " ", "KeyW": "w", "KeyU": "u"}.get(code, code)
+        event: dict[str, object] = {"type": kind, "code": code, "key": key}
+        if code == "Enter" and kind == "keyDown":
+            event |= {"text": "\r", "windowsVirtualKeyCode": 13}  # else no button feels it
+        self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", event)
+
+    def before_scripts(self, script: str) -> None:
+        """Run a script in each page that is opened from now on, before its own."""
+        self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
 
     def show(self, name: str) -> None:
         """Keep a picture of the screen where the environment asks for it."""

@@ -89,6 +89,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
 
     # Ten lessons by touching actions: answers while it asks, corrections while it drives.
     for action in itertools.cycle(ACTIONS):
+        phone.wait(lambda: phone.find("#actions").get_attribute("aria-busy") != "true", "it may be taught again")
         before = lessons_shown(phone)
         phone.touch(f"[data-action={action}]")
         if "says" in said(phone):
@@ -181,6 +182,134 @@ def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classro
     phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
     phone.key("keyDown", "Space")
     phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+
+
+def stand(phone: Phone, room: Classroom) -> None:
+    """Stop the robot, and let it drive again: whatever a key does after it is seen."""
+    phone.touch("#stop")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+
+
+def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.turn(LAPTOP, touch=False)
+    stand(phone, room)
+    phone.run("document.querySelector('#show-keys').focus()")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: phone.find("#keys").is_displayed(), "the list of keys opens")
+    phone.key("keyDown", "Enter")  # its button has the focus
+    phone.wait(lambda: not phone.find("#keys").is_displayed(), "the list of keys closes")
+    assert room.state().stopped_because == "local said stop"
+    phone.run("document.activeElement.blur()")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.run("document.querySelector('#stop').focus()")
+    phone.key("keyDown", "Enter")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+
+
+@pytest.mark.parametrize("size", [PORTRAIT, SMALL, LANDSCAPE, LAPTOP], ids=["portrait", "small", "landscape", "laptop"])
+def test_the_list_of_keys_leaves_stop_and_go_free(a_phone: Phone, room: Classroom, size: tuple[int, int]) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.turn(size, touch=size != LAPTOP)
+    phone.key("keyDown", "?")
+    phone.wait(lambda: phone.find("#keys").is_displayed(), "the list of keys opens")
+    phone.show(f"10-{size[0]}x{size[1]}-keys")
+    stand(phone, room)
+    phone.touch("#go")
+    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.key("keyDown", "Space")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    assert phone.find("#keys").is_displayed()
+    phone.key("keyDown", "?")
+    phone.wait(lambda: not phone.find("#keys").is_displayed(), "the list of keys closes")
+
+
+@pytest.mark.parametrize(
+    "swallowed",
+    [
+        "dispatchEvent(new KeyboardEvent('keydown', {key: 'Meta', code: 'MetaLeft', metaKey: true}))",
+        "document.querySelector('#stage').dispatchEvent(new MouseEvent('contextmenu', {bubbles: true}))",
+    ],
+    ids=["command", "menu"],
+)
+def test_a_key_whose_end_the_browser_keeps_to_itself_lets_go(a_phone: Phone, room: Classroom, swallowed: str) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.turn(LAPTOP, touch=False)
+    phone.key("keyDown", "KeyW")
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    phone.run(swallowed)
+    phone.wait(lambda: not room.state().by_hand, "the robot stands")
+    phone.key("keyUp", "KeyW")
+
+
+def test_the_arrow_keys_steer_after_the_tab_was_clicked_and_u_undoes_only_what_is_seen(
+    a_phone: Phone, room: Classroom
+) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.touch("#tab-drive")
+    phone.key("keyDown", "ArrowLeft")
+    phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
+    assert phone.find("#drive").is_displayed()
+    phone.key("keyUp", "ArrowLeft")
+    phone.key("keyDown", "KeyU")
+    phone.touch("#tab-teach")
+    assert phone.text("#undo-last .word") == "undo"
+    phone.key("keyDown", "KeyU")
+    assert phone.text("#undo-last .word") == "sure?"
+
+
+def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    while room.state().lessons:
+        before = room.state().lessons
+        phone.touch("#undo-last")
+        phone.touch("#undo-last")
+        phone.wait(lambda: room.state().lessons == before - 1, "one lesson less")  # noqa: B023 - called at once
+        phone.wait(lambda: lessons_shown(phone) == before - 1, "the page knows")  # noqa: B023
+    stand(phone, room)
+    phone.touch("#go")
+    phone.wait(lambda: "nothing yet" in phone.text("#sentence"), "the robot asks")
+    phone.run("for (const a of ['forward', 'curve_right']) document.querySelector(`[data-action=${a}]`).click()")
+    assert "was not sent" in phone.text("#said")
+    phone.wait(lambda: lessons_shown(phone) == 1, "one lesson")
+    phone.wait(lambda: phone.find("#actions").get_attribute("aria-busy") == "false", "it may be taught again")
+    assert room.state().rlas == 1
+
+
+SHUTTER = """
+window.sockets = [];
+window.shut = false;
+const Open = WebSocket;
+WebSocket = class extends Open {
+  constructor(place) {
+    super(shut ? new URL("/nothing", place) : place);
+    sockets.push(this);
+  }
+};
+"""
+
+
+def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    phone.before_scripts(SHUTTER)
+    begin(phone, room)
+    phone.run("sockets.at(-1).close(); shut = true")
+    phone.wait(lambda: no_picture(phone), "the page sees nothing")
+    room.portal.call(room.client.resume)
+    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.touch("#stop")
+    phone.wait(lambda: "no link" in phone.text("#said"), "the page says that STOP waits")
+    assert phone.text("#stop") == "STOP …"
+    phone.run("shut = false")
+    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: phone.text("#stop") == "STOP", "STOP was answered")
 
 
 def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, room: Classroom) -> None:

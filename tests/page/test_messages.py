@@ -38,8 +38,8 @@ from kurt2rt.rla.rla import Phase
             Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
         ),
         (
-            {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": None}, "picture": 4},
-            Order(1, "undo", {"lesson": None}, 4),
+            {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": "phone-0a"}, "picture": 4},
+            Order(1, "undo", {"lesson": "phone-0a"}, 4),
         ),
     ],
 )
@@ -80,6 +80,7 @@ def order(name: str, **arguments: object) -> str:
         order("answer", action="x" * 65),
         order("answer", action="for\nward"),
         order("answer", action="forward", of=1),
+        order("undo", lesson=None),
         order("reward", value=0),
         order("reward", value=2),
         order("phase", phase=6),

@@ -14,6 +14,9 @@ const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonom
 const TABS = ["teach", "drive", "lessons", "more"];
 const FASTEST_BY_HAND_M_S = 0.6;
 const SAID_MS = 8000;
+const PICTURE_MS = 1000;
+const LIST_MS = 5000;
+const USUAL = ["slew limit", "speed limit"]; // each change of speed meets them
 const AUTONOMOUS = 5;
 
 const link = new Link();
@@ -29,10 +32,19 @@ let phaseNames = PHASES;
 
 // ---- Orders
 
+const TEACHES = ["answer", "correct", "reward", "undo"];
+let teaching = 0; // orders of these that are not answered yet
+let taught = 0; // number of the newest that was
+
 // Says what became of an order: pending, then saved or refused.
 async function tell(name, args = {}, doing = words(name)) {
   say("pending", `${doing} …`);
-  return heed(await link.order(name, args));
+  if (!TEACHES.includes(name)) return heed(await link.order(name, args));
+  teaching += 1;
+  const answer = await link.order(name, args);
+  teaching -= 1;
+  taught = Math.max(taught, answer.done ?? 0);
+  return heed(answer);
 }
 
 function heed(answer) {
@@ -56,10 +68,65 @@ async function teach(action) {
   // Beyond R there is no RLA to correct, whether it asks just now or stands for another reason.
   const { nearest, distance, radius } = link.state;
   const asks = nearest === null || distance === null || distance > radius;
+  if (asking) {
+    // The question on the screen is answered already: a second answer would be a second RLA beside the first.
+    say("busy", `${words(action)} was not sent: wait for the picture after the last answer`);
+    return;
+  }
+  if (asks) busy(true);
   pad.mark(action, "pending");
   const answer = await tell(asks ? "answer" : "correct", { action }, `${asks ? "answer" : "correct"}: ${words(action)}`);
   pad.mark(action, answer.accepted ? "saved" : "refused");
   setTimeout(() => pad.mark(action, null), 900);
+  if (!asks) return;
+  if (answer.accepted || answer.why === "unknown") await pictureAfter(answer.tick ?? -1);
+  busy(false);
+}
+
+let asking = false;
+
+function busy(is) {
+  asking = is;
+  $("actions").setAttribute("aria-busy", String(is));
+}
+
+// A picture that came from now on and is newer than a tick; or for a second none did.
+function pictureAfter(tick) {
+  return new Promise((resolve) => {
+    const end = () => {
+      clearTimeout(timer);
+      link.removeEventListener("state", see);
+      resolve();
+    };
+    const see = ({ detail }) => detail.tick > tick && end();
+    const timer = setTimeout(end, PICTURE_MS);
+    link.addEventListener("state", see);
+  });
+}
+
+// The newest lesson that stands, once the list has all that was taught from here; undefined without one.
+async function newestLesson() {
+  const until = performance.now() + LIST_MS;
+  while (teaching || lessons.after < taught) {
+    if (performance.now() > until) return undefined;
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+  return lessons.newest;
+}
+
+let meant = null;
+
+// The lesson is named at the first tap; whatever is taught until the second one stays.
+async function askUndo() {
+  meant = newestLesson();
+  const lesson = await meant;
+  if (lesson) say("asks", `undo ${lesson.text}? touch again`);
+}
+
+async function undoLast() {
+  const lesson = await meant;
+  if (lesson) tell("undo", { lesson: lesson.command_id });
+  else say("refused", "no lesson that stands is in the list; nothing was sent");
 }
 
 const reward = (value) => tell("reward", { value }, value > 0 ? "right" : "wrong");
@@ -95,17 +162,26 @@ link.addEventListener("hello", ({ detail }) => {
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
-link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons));
+link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
 link.addEventListener("let_go", ({ detail }) => {
   drive.release();
   say("refused", detail.text || "the press was ended; press anew");
 });
 link.addEventListener("silent", ({ detail }) => setText($("no-picture-why"), detail.text));
-link.addEventListener("open", () => setText($("no-picture-why"), "waiting for the robot's picture …"));
+link.addEventListener("open", () => {
+  taught = 0; // the server may be another one, which counts from the beginning
+  setText($("no-picture-why"), "waiting for the robot's picture …");
+});
+// A STOP that nobody has answered yet is shown for as long.
+link.addEventListener("stopwish", ({ detail: wished }) => {
+  $("stop").classList.toggle("wished", wished);
+  setText($("stop"), wished ? "STOP …" : "STOP");
+});
 link.addEventListener("closed", () => {
   setText($("no-picture-why"), "no link to this page's server; trying again …");
   page = { ...page, seat: "elsewhere" };
 });
+link.addEventListener("stopped", ({ detail }) => heed(detail));
 link.addEventListener("freshness", freshness);
 
 link.addEventListener("state", ({ detail: state }) => {
@@ -163,7 +239,8 @@ function freshness() {
 }
 
 function warn(state) {
-  setText($("guard"), state.guard.length ? `guard: ${state.guard.join(", ")}` : "");
+  const guard = state.guard.filter((reason) => !USUAL.includes(reason));
+  setText($("guard"), guard.length ? `guard: ${guard.join(", ")}` : "");
   const lines = state.trouble ? [state.trouble] : [];
   if (state.unsaved) lines.push(`${state.unsaved} not saved yet`);
   const box = $("warnings");
@@ -198,7 +275,8 @@ function claim() {
   const another = state.teacher && state.teacher !== page.device;
   const text =
     another ? `${state.teacher} is the teacher. This page watches; it can stop the robot.`
-    : page.seat !== "here" ? "Another page has the pad. This one watches; it can stop the robot."
+    : page.seat === "elsewhere" ? "Another page has the pad. This one watches; it can stop the robot."
+    : page.seat === "free" ? "No page has the pad. This one watches; it can stop the robot."
     : "Nobody teaches the robot.";
   setText($("claim-text"), text);
   setText($("claim-button"), another ? `Take over from ${state.teacher}` : page.seat === "here" ? "Take the robot" : "Take the pad here");
@@ -290,7 +368,7 @@ $("stop").addEventListener("click", (event) => {
 $("go").addEventListener("click", go);
 $("praise").addEventListener("click", () => reward(1));
 $("blame").addEventListener("click", () => reward(-1));
-twice($("undo-last"), "sure?", () => tell("undo", { lesson: null }));
+twice($("undo-last"), "sure?", undoLast, askUndo);
 
 stick($("stick"), $("knob"), drive);
 drive.addEventListener("change", ({ detail }) => {
@@ -318,8 +396,12 @@ function showTab(name) {
   }
 }
 TABS.forEach((name, i) => {
-  $(`tab-${name}`).addEventListener("click", () => showTab(name));
+  $(`tab-${name}`).addEventListener("click", (event) => {
+    showTab(name);
+    if (event.detail > 0) event.currentTarget.blur(); // clicked: the arrow keys are for the wheels
+  });
   $(`tab-${name}`).addEventListener("keydown", (event) => {
+    if (name === "drive") return; // there they steer
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     event.stopPropagation();
@@ -337,7 +419,8 @@ function showView(name) {
 $("view").addEventListener("click", () => showView($("robot-view").hidden ? "robot" : "world"));
 new ResizeObserver(draw).observe($("stage"));
 
-const help = () => $("keys").showModal();
+// Not modal: STOP and GO stay free.
+const help = () => ($("keys").open ? $("keys").close() : $("keys").show());
 $("show-keys").addEventListener("click", help);
 $("close-keys").addEventListener("click", () => $("keys").close());
 
@@ -347,7 +430,7 @@ keyboard({
   go: () => !$("go").disabled && go(),
   act: (i) => inCharge() && pad.names[i] && teach(pad.names[i]),
   reward: (value) => inCharge() && reward(value),
-  undo: () => inCharge() && $("undo-last").click(),
+  undo: () => inCharge() && $("undo-last").checkVisibility() && $("undo-last").click(),
   help,
   mayDrive: () => inCharge() && link.fresh,
 });

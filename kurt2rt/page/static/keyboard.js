@@ -5,6 +5,8 @@ const DIRECTIONS = {
   ArrowLeft: [-1, 0], KeyA: [-1, 0], ArrowRight: [1, 0], KeyD: [1, 0],
 };
 
+const hasFocus = () => document.activeElement !== null && document.activeElement !== document.body;
+
 export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive }) {
   const down = new Set();
 
@@ -17,7 +19,11 @@ export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive })
 
   addEventListener("keydown", (event) => {
     const typing = event.target.matches?.("input, textarea, select");
-    if (event.ctrlKey || event.metaKey || event.altKey || typing) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) {
+      forget(); // the browser may swallow the keyup of what is held together with these
+      return;
+    }
+    if (typing) return;
     if (event.code in DIRECTIONS) {
       event.preventDefault();
       if (event.repeat) return;
@@ -25,11 +31,18 @@ export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive })
       steer();
       return;
     }
-    if (event.repeat) return;
+    const enter = event.code === "Enter" || event.code === "NumpadEnter";
+    const asked = document.querySelector("dialog[open]");
+    // Enter belongs to what has the focus, a button most of all; to the robot only where nothing has it.
+    if (enter && (asked || hasFocus())) return;
+    if (event.code === "Escape" && asked) {
+      asked.close();
+      return;
+    }
     const digit = /^Digit([1-9])$|^Numpad([1-9])$/.exec(event.code);
     const does =
       event.code === "Space" ? stop
-      : event.code === "Enter" || event.code === "NumpadEnter" ? go
+      : enter ? go
       : event.key === "+" ? () => reward(1)
       : event.key === "-" || event.key === "−" ? () => reward(-1)
       : event.key === "?" ? help
@@ -37,12 +50,12 @@ export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive })
       : digit ? () => act(Number(digit[1] ?? digit[2]) - 1)
       : null;
     if (!does) return;
-    // Space and Enter would also press the button that has the focus.
     event.preventDefault();
-    if (event.target.matches?.("button")) event.target.blur();
-    does();
+    if (!event.repeat) does();
   });
   addEventListener("keyup", (event) => {
+    // Space has stopped the robot; it must not press the button that has the focus as well.
+    if (event.code === "Space" && event.target.matches?.("button")) event.preventDefault();
     if (down.delete(event.code)) steer();
   });
   const forget = () => {
@@ -50,6 +63,8 @@ export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive })
     drive.release();
   };
   addEventListener("blur", forget);
+  // A menu of the browser's own swallows the keyup.
+  document.addEventListener("contextmenu", forget);
   document.addEventListener("visibilitychange", forget);
   // A press that ended for another reason needs a new one, not a key that is still down.
   drive.addEventListener("change", (event) => {

@@ -4,8 +4,8 @@ import { when } from "./why.js";
 
 const SURE_MS = 3000;
 
-// Makes a button act only on its second tap within three seconds.
-export function twice(button, question, act) {
+// Makes a button act only on its second tap within three seconds; `asked` is called at the first one.
+export function twice(button, question, act, asked = () => {}) {
   const label = button.querySelector(".word") ?? button;
   const first = label.textContent;
   let timer = null;
@@ -20,6 +20,7 @@ export function twice(button, question, act) {
       label.textContent = question;
       button.classList.add("sure");
       timer = setTimeout(forget, SURE_MS);
+      asked();
     } else {
       forget();
       act();
@@ -30,12 +31,21 @@ export function twice(button, question, act) {
 export class Lessons {
   #list = document.getElementById("lesson-list");
   #undo;
+  #lessons = [];
+  after = 0; // number of the newest order whose lesson is in the list
 
   constructor(undo) {
     this.#undo = undo;
   }
 
-  show(lessons) {
+  // The newest one that stands; undefined without one.
+  get newest() {
+    return this.#lessons.find((lesson) => !lesson.undone);
+  }
+
+  show(lessons, after) {
+    this.#lessons = lessons;
+    this.after = after;
     if (!lessons.length) {
       const none = document.createElement("li");
       none.textContent = "No lessons yet.";

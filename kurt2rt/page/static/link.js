@@ -4,7 +4,9 @@ const BEAT_MS = 100;
 const NO_PICTURE_MS = 500;
 const NO_WORD_MS = 2000;
 const RECONNECT_MS = 500;
-const STOP_KEEPS_MS = 5000;
+const CONNECT_MS = 3000;
+const STOP_AGAIN_MS = 500;
+const AUTONOMOUS = 5;
 
 export class Link extends EventTarget {
   #socket = null;
@@ -13,7 +15,9 @@ export class Link extends EventTarget {
   #wasFresh = false;
   #number = 0;
   #waiting = new Map();
-  #stopWantedMs = -Infinity;
+  #stopWished = false;
+  #stopAsked = false;
+  #stopAskedMs = -Infinity;
   #left = false;
   picture = null; // number of the picture on the screen
   state = null;
@@ -31,17 +35,22 @@ export class Link extends EventTarget {
     addEventListener("pagehide", () => {
       this.#left = true;
       this.#send({ kind: "hidden" });
-      this.#socket.close();
+      this.#drop();
     });
     addEventListener("pageshow", (event) => {
       if (!event.persisted) return;
       this.#left = false;
-      this.#connect();
+      if (!this.#alive) this.#connect();
     });
   }
 
   get open() {
     return this.#socket?.readyState === WebSocket.OPEN;
+  }
+
+  // Open, or on its way to be.
+  get #alive() {
+    return this.open || this.#socket?.readyState === WebSocket.CONNECTING;
   }
 
   get pictureAgeMs() {
@@ -56,6 +65,7 @@ export class Link extends EventTarget {
   // An order to the robot; resolves with its answer, or with a refusal when there is none.
   order(name, args = {}) {
     if (!this.fresh) return Promise.resolve({ accepted: false, why: "no picture", text: "no picture: nothing was sent" });
+    if (name === "resume") this.#wishStop(false);
     return this.#ask({ kind: "order", name, arguments: args, picture: this.picture });
   }
 
@@ -69,15 +79,38 @@ export class Link extends EventTarget {
     this.#send({ kind: "release" });
   }
 
-  // Stop goes out with or without a picture, and again when the link comes back in time.
-  stop() {
-    this.#stopWantedMs = performance.now();
-    if (!this.open) {
-      return Promise.resolve({ accepted: false, why: "no link", text: "no link: the robot stops by itself without one" });
+  // Stop goes out with or without a picture. It stays wished, also over a link that breaks, until the robot has
+  // answered it or GO is said.
+  async stop() {
+    this.#wishStop(true);
+    if (this.open) {
+      const answer = await this.#askStop();
+      return this.#stopWished ? { ...answer, text: "STOP is not answered yet; it is sent again until it is" } : answer;
     }
-    return this.#ask({ kind: "stop" }).then((answer) => {
-      if (answer.accepted) this.#stopWantedMs = -Infinity;
-      return answer;
+    const meanwhile = this.state?.phase === AUTONOMOUS ? "in phase 5 the robot drives on until then" : "without its teacher the robot stops by itself";
+    return { accepted: false, why: "no link", text: `no link: STOP goes out as soon as it is back; ${meanwhile}` };
+  }
+
+  async #askStop() {
+    this.#stopAsked = true;
+    this.#stopAskedMs = performance.now();
+    const answer = await this.#ask({ kind: "stop" });
+    this.#stopAsked = false;
+    if (answer.accepted && this.#stopWished) this.#wishStop(false);
+    return answer;
+  }
+
+  #wishStop(wished) {
+    if (this.#stopWished === wished) return;
+    this.#stopWished = wished;
+    this.dispatchEvent(new CustomEvent("stopwish", { detail: wished }));
+  }
+
+  #stopAgain() {
+    if (!this.#stopWished || this.#stopAsked || !this.open) return;
+    if (performance.now() - this.#stopAskedMs < STOP_AGAIN_MS) return;
+    this.#askStop().then((answer) => {
+      if (answer.accepted) this.dispatchEvent(new CustomEvent("stopped", { detail: answer }));
     });
   }
 
@@ -96,7 +129,8 @@ export class Link extends EventTarget {
     if (document.visibilityState === "visible") {
       this.#send({ kind: "beat", picture: this.picture, at_ms: Math.round(now * 10) / 10 });
     }
-    if (this.open && now - this.#heardMs > NO_WORD_MS) this.#socket.close();
+    if (this.open && now - this.#heardMs > NO_WORD_MS) this.#drop();
+    this.#stopAgain();
     if (this.fresh !== this.#wasFresh) {
       this.#wasFresh = this.fresh;
       this.dispatchEvent(new Event("freshness"));
@@ -104,32 +138,49 @@ export class Link extends EventTarget {
   }
 
   #connect() {
-    const socket = new WebSocket(`ws://${location.host}/robot`);
+    const place = new URL("/robot", location.href);
+    place.protocol = location.protocol.endsWith("s:") ? "wss:" : "ws:";
+    const socket = new WebSocket(place);
     this.#socket = socket;
     this.#heardMs = performance.now();
+    // A network that swallows everything answers an attempt only after minutes.
+    setTimeout(() => this.#socket === socket && socket.readyState === WebSocket.CONNECTING && this.#drop(), CONNECT_MS);
+    // What comes of a socket that was given up is nothing to us.
     socket.onopen = () => {
+      if (this.#socket !== socket) return;
       this.#heardMs = performance.now();
       this.picture = null;
       this.#beat();
-      if (performance.now() - this.#stopWantedMs < STOP_KEEPS_MS) this.stop();
       this.dispatchEvent(new Event("open"));
     };
-    socket.onmessage = (event) => this.#hear(JSON.parse(event.data));
-    socket.onclose = () => {
-      for (const resolve of this.#waiting.values()) {
-        resolve({ accepted: false, why: "unknown", text: "the link broke: not known whether it counted; look at the lessons" });
-      }
-      this.#waiting.clear();
-      this.dispatchEvent(new Event("closed"));
-      if (!this.#left) setTimeout(() => this.#again(), RECONNECT_MS);
+    socket.onmessage = (event) => {
+      if (this.#socket === socket) this.#hear(JSON.parse(event.data));
     };
+    socket.onclose = () => {
+      if (this.#socket === socket) this.#drop();
+    };
+  }
+
+  // The link is lost, or given up: a socket takes its time to close, and nobody waits for that.
+  #drop() {
+    const socket = this.#socket;
+    this.#socket = null;
+    socket?.close();
+    for (const resolve of this.#waiting.values()) {
+      resolve({ accepted: false, why: "unknown", text: "the link broke: not known whether it counted; look at the lessons" });
+    }
+    this.#waiting.clear();
+    this.#stopAsked = false;
+    this.#stopAskedMs = -Infinity;
+    this.dispatchEvent(new Event("closed"));
+    if (!this.#left) setTimeout(() => this.#again(), RECONNECT_MS);
   }
 
   // A pairing that was renewed or revoked closes the door; the server's page then says what to do.
   async #again() {
-    if (this.#left || this.open) return;
+    if (this.#left || this.#alive) return;
     try {
-      const response = await fetch("/", { method: "HEAD", cache: "no-store" });
+      const response = await fetch("/", { method: "HEAD", cache: "no-store", signal: AbortSignal.timeout(CONNECT_MS) });
       if (response.status === 403) {
         location.reload();
         return;
@@ -137,7 +188,7 @@ export class Link extends EventTarget {
     } catch {
       // The server is not there: the WebSocket tries again below.
     }
-    this.#connect();
+    if (!this.#left && !this.#alive) this.#connect();
   }
 
   #hear(message) {

@@ -26,7 +26,7 @@ export function sentence(state) {
     case "held":
       return `RLA ${state.rla} keeps ${words(state.action)} for its least time; RLA ${state.nearest} is nearest now`;
     case "teacher":
-      return state.action && !["by_hand", "by hand"].includes(state.action)
+      return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} lets it run ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "unknown":
