@@ -5,14 +5,16 @@ import hmac
 from collections.abc import Collection, Mapping
 
 from kurt2rt.page.hosts import is_ours
+from kurt2rt.page.public_address import PublicAddress
 
 
 class Access:
     """The rules of the door. The cookie is derived from the token, so a renewed or revoked pairing ends it."""
 
-    def __init__(self, device: str, token: str, names: Collection[str]) -> None:
-        """`names`: what this machine may be called in an address."""
+    def __init__(self, device: str, token: str, names: Collection[str], public: PublicAddress | None = None) -> None:
+        """`names`: what this machine may be called in an address; `public`: where a TLS proxy serves the page."""
         self.device = device
+        self.public = public
         self._token = token.encode()
         self._names = frozenset(name.lower() for name in names)
         # Cookies know no ports: two devices' pages on one machine need two names.
@@ -30,9 +32,16 @@ class Access:
 
     def is_for_us(self, headers: Mapping[str, str], local_address: str) -> bool:
         """Whether the request names this machine as its host; anything else may be DNS rebinding."""
-        return is_ours(headers.get("host", ""), local_address, self._names)
+        return self.is_public(headers) or is_ours(headers.get("host", ""), local_address, self._names)
+
+    def is_public(self, headers: Mapping[str, str]) -> bool:
+        """Whether the request came for the TLS proxy's address, which hands on the Host that it was asked for."""
+        return self.public is not None and headers.get("host", "").lower() == self.public.place
 
     def comes_from_us(self, headers: Mapping[str, str]) -> bool:
         """Whether a WebSocket was opened by a page of this very server."""
         host = headers.get("host", "")
-        return headers.get("origin", "").lower() == f"http://{host.lower()}"
+        origin = headers.get("origin", "").lower()
+        if self.public is not None and origin == self.public.origin:
+            return True
+        return origin == f"http://{host.lower()}"

@@ -10,6 +10,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from kurt2rt.page.access import Access
 from kurt2rt.page.attempts import Attempts
+from kurt2rt.page.guarded_http import shown_cookie
+from kurt2rt.page.public_address import PublicAddress
 
 _LONGEST_COOKIE_S = 90 * 24 * 3600
 
@@ -44,7 +46,7 @@ class Door:
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        send = _with_security_headers(send, headers.get("host", ""))
+        send = _with_security_headers(send, headers.get("host", ""), self._access.public)
         local_address = (scope.get("server") or ("", None))[0]
         if not self._access.is_for_us(headers, local_address):
             refusal: Response = PlainTextResponse("this address does not belong to this machine (see --host-name)", 421)
@@ -55,6 +57,7 @@ class Door:
         elif scope["type"] == "websocket" and not self._access.comes_from_us(headers):
             refusal = PlainTextResponse("opened by a page from elsewhere", 403)
         else:
+            shown_cookie(scope)
             await self._app(scope, receive, send)
             return
         if scope["type"] == "websocket":
@@ -76,6 +79,7 @@ class Door:
             max_age=_LONGEST_COOKIE_S,
             httponly=True,
             samesite="strict",
+            secure=self._access.is_public(request.headers),
         )
         return response
 
@@ -85,8 +89,9 @@ class Door:
         return HTMLResponse(_SCAN_AGAIN.format(command=command), status)
 
 
-def _with_security_headers(send: Send, host: str) -> Send:
-    policy = f"default-src 'self'; connect-src 'self' ws://{host}; frame-ancestors 'none'; base-uri 'none'"
+def _with_security_headers(send: Send, host: str, public: PublicAddress | None) -> Send:
+    sockets = f"ws://{host}" if public is None else f"ws://{host} wss://{public.place}"
+    policy = f"default-src 'self'; connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'"
 
     async def send_on(message: Message) -> None:
         if message["type"] == "http.response.start":

@@ -12,11 +12,15 @@ from starlette.types import ASGIApp
 from kurt2rt.page.access import Access
 from kurt2rt.page.app import build_app
 from kurt2rt.page.bridge import Bridge
+from kurt2rt.page.crowd import Crowd
 from kurt2rt.page.error import PageError
+from kurt2rt.page.guarded_http import REQUEST_WITHIN_S, guarded_http
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.teaching.answer import NoAnswerError
 
 _ENDING_S = 1.0
+_MOST_CONNECTIONS = 96
+"""Strangers take only a third of them."""
 
 
 def listen(port: int, *, everywhere: bool) -> socket.socket:
@@ -35,14 +39,19 @@ async def run_page(
     robot_place: str,
     listener: socket.socket,
     told_to_end: Callable[[], Awaitable[None]],
+    *,
+    request_within_s: float = REQUEST_WITHIN_S,
 ) -> None:
-    """Serve the page of a device until `told_to_end` returns. A robot that is driven by hand then stands first."""
+    """Serve the page of a device until `told_to_end` returns. A robot that is driven by hand then stands first.
+
+    A connection that brings no request within `request_within_s` is closed.
+    """
     robot.watching = False
     bridge = Bridge(robot, access.device, robot_place)
     async with anyio.create_task_group() as tasks:
         await tasks.start(bridge.run)
         async with anyio.create_task_group() as serving:
-            server: uvicorn.Server = await serving.start(_serve, build_app(bridge, access), listener)
+            server: uvicorn.Server = await serving.start(_serve, build_app(bridge, access), listener, request_within_s)
             await told_to_end()
             # The robot lets go by itself when it hears nothing, so one that does not answer is not waited for.
             with anyio.move_on_after(_ENDING_S), contextlib.suppress(NoAnswerError):
@@ -58,10 +67,16 @@ class _Server(uvicorn.Server):
         yield
 
 
-async def _serve(app: ASGIApp, listener: socket.socket, *, task_status: anyio.abc.TaskStatus[uvicorn.Server]) -> None:
+async def _serve(
+    app: ASGIApp,
+    listener: socket.socket,
+    request_within_s: float,
+    *,
+    task_status: anyio.abc.TaskStatus[uvicorn.Server],
+) -> None:
     config = uvicorn.Config(
         app,
-        http="h11",
+        http=guarded_http(Crowd(), request_within_s),
         ws="websockets-sansio",
         ws_max_size=4096,
         ws_per_message_deflate=False,
@@ -72,7 +87,7 @@ async def _serve(app: ASGIApp, listener: socket.socket, *, task_status: anyio.ab
         access_log=False,
         proxy_headers=False,
         server_header=False,
-        limit_concurrency=64,
+        limit_concurrency=_MOST_CONNECTIONS,
         timeout_graceful_shutdown=1,
     )
     server = _Server(config)

@@ -1,10 +1,12 @@
 """The page's server as a browser, a stranger and another site meet it."""
 
+import contextlib
 import http.client
 import json
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import anyio
@@ -16,6 +18,7 @@ from websockets.exceptions import InvalidStatus
 from kurt2rt.page.access import Access
 from kurt2rt.page.app import STATIC
 from kurt2rt.page.error import PageError
+from kurt2rt.page.public_address import PublicAddress
 from kurt2rt.page.server import listen, run_page
 from tests.page.fake_robot import FakeRobot
 
@@ -55,21 +58,21 @@ class Served:
     def websocket(self, *, origin: str | None = "same", cookie: bool = True, host: str | None = None) -> connect:
         at = f"127.0.0.1:{self.port}"
         headers = dict(self.cookie) if cookie else {}
-        if host is not None:
-            headers["Host"] = host
         if origin is not None:
             headers["Origin"] = f"http://{at}" if origin == "same" else origin
-        return connect(f"ws://{at}/robot", additional_headers=headers, proxy=None)
+        asked = f"ws://{host or at}/robot"  # names the Host; the connection goes to this server all the same
+        return connect(asked, additional_headers=headers, proxy=None, host="127.0.0.1", port=self.port)
 
 
 @asynccontextmanager
-async def served() -> AsyncIterator[Served]:
+async def served(*, public: PublicAddress | None = None, request_within_s: float = 5.0) -> AsyncIterator[Served]:
     robot = FakeRobot()
-    access = Access("local", TOKEN, ["desk"])
+    access = Access("local", TOKEN, ["desk"], public)
     end = anyio.Event()
     with listen(0, everywhere=False) as listener:
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(run_page, robot, access, "127.0.0.1:5683", listener, end.wait)
+            serve = partial(run_page, request_within_s=request_within_s)
+            tasks.start_soon(serve, robot, access, "127.0.0.1:5683", listener, end.wait)
             yield Served(robot, access, listener.getsockname()[1], end)
             end.set()
 
@@ -199,6 +202,62 @@ async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
         page.end.set()
         await socket.wait_closed()
         assert page.robot.told[-1] == ("let_go",)
+
+
+async def test_connections_that_say_nothing_do_not_keep_the_teacher_out() -> None:
+    async with served() as page, AsyncExitStack() as idle:
+        for _ in range(120):
+            await idle.enter_async_context(await anyio.connect_tcp("127.0.0.1", page.port))
+        assert (await page.get("/", page.cookie)).status == 200
+        assert (await page.get(f"/pair?token={TOKEN}")).status == 200
+        async with page.websocket() as socket:
+            await hear(socket, "page")
+
+
+@pytest.mark.parametrize(
+    "said", [b"", b"GET / HTTP/1.1\r\nHost: ", b"POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nhalf"]
+)
+async def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None:
+    async with served(request_within_s=0.1) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+        await connection.send(said)
+        with anyio.fail_after(4), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
+            while True:
+                await connection.receive()
+
+
+async def test_half_a_request_does_not_buy_more_time() -> None:
+    async with served(request_within_s=0.3) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+        with anyio.fail_after(4), contextlib.suppress(anyio.BrokenResourceError):
+            while True:
+                await connection.send(b"X")
+                await anyio.sleep(0.02)
+
+
+async def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
+    async with served(request_within_s=0.1) as page, page.websocket() as socket:
+        await hear(socket, "page")
+        await anyio.sleep(0.3)
+        await see(page, socket)
+
+
+async def test_behind_a_tls_proxy_the_page_is_served_under_its_public_address_alone() -> None:
+    async with served(public=PublicAddress("robot.example")) as page:
+        public = {"Host": "robot.example"}
+        got = await page.get(f"/pair?token={TOKEN}", public)
+        assert got.status == 200
+        assert "Secure" in got.headers["Set-Cookie"]
+        got = await page.get("/", {**page.cookie, **public})
+        assert got.status == 200
+        assert "wss://robot.example" in got.headers["Content-Security-Policy"]
+        assert (await page.get("/", {**page.cookie, "Host": "evil.example"})).status == 421
+        # Proxies hand on the Host, or put their own there; the Origin is the browser's.
+        for host in ("robot.example", None):
+            async with page.websocket(host=host, origin="https://robot.example") as socket:
+                await hear(socket, "page")
+        for origin in ("http://robot.example", "https://evil.example", "https://robot.example:444"):
+            with pytest.raises(InvalidStatus):
+                async with page.websocket(host=None, origin=origin):
+                    pass
 
 
 async def test_a_port_in_use_is_said() -> None:

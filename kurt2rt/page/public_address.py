@@ -1,0 +1,36 @@
+"""Where a TLS proxy serves the page."""
+
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from kurt2rt.page.error import PageError
+
+_HTTPS_PORT = 443
+
+
+@dataclass(frozen=True, slots=True)
+class PublicAddress:
+    """Address of a proxy that speaks TLS and hands on to this server, in a folder of no name."""
+
+    place: str
+    """Host, and port unless it is the usual one, as browsers write them into Host."""
+
+    @property
+    def origin(self) -> str:
+        """As browsers write it into Origin."""
+        return f"https://{self.place}"
+
+
+def public_address(text: str) -> PublicAddress:
+    """Read an address such as https://robot.example. Raises PageError."""
+    wrong = PageError(f"--public-address {text!r}: give https:// and a name, with a port if need be, and nothing more")
+    try:
+        parts = urlsplit(text.strip().lower())
+        host, port = parts.hostname, parts.port
+    except ValueError:
+        raise wrong from None
+    more = parts.path.strip("/") or parts.query or parts.fragment or parts.username or parts.password
+    if parts.scheme != "https" or not host or more or not parts.netloc.isascii() or any(c in host for c in " ;,'\""):
+        raise wrong
+    shown = f"[{host}]" if ":" in host else host
+    return PublicAddress(shown if port in (None, _HTTPS_PORT) else f"{shown}:{port}")
