@@ -22,10 +22,12 @@ from kurt2rt.channel.error import CredentialsError
 from kurt2rt.durable import sync_folder
 
 LOCAL = "local"
-"""Name of whoever teaches at the robot's own machine."""
+"""Name of whoever teaches at the robot's own machine, with the page or a program of his own."""
 AUTO = "auto"
 """Name of the scripted teacher."""
-OF_THIS_MACHINE = frozenset({LOCAL, AUTO})
+TERMINAL = "terminal"
+"""Name of whoever teaches from a terminal of the robot's own machine, so that the page can be open beside it."""
+OF_THIS_MACHINE = frozenset({LOCAL, AUTO, TERMINAL})
 """Made on demand, by programs that can read both folders; nobody paired them."""
 
 USED = "used"
@@ -129,7 +131,7 @@ def paired(teachers: Path) -> tuple[Paired, ...]:
 
 
 def local_pairing(teachers: Path, devices: Path, name: str = LOCAL, *, port: int = PORT) -> Pairing:
-    """The pairing of this machine's own teacher, LOCAL or AUTO; made when absent, or when its sides do not fit.
+    """The pairing of one of this machine's own teachers; made when absent, or when its sides do not fit.
 
     It is told to look for the robot at `port` of this machine. Raises CredentialsError.
     """

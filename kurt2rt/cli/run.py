@@ -14,7 +14,7 @@ from hal.health import Health
 from hal.robot_settings import load_robot
 from kurt2rt.app import SIMULATED, OpenedRobot, open_robot
 from kurt2rt.channel.channel import Channel
-from kurt2rt.channel.credentials import AUTO, LOCAL, local_pairing
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing
 from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.printer import Printer
 from kurt2rt.knowledge.writer import Acknowledgement
@@ -155,8 +155,8 @@ def _changed(service: ServiceSettings, knowledge: Path | None, world: str | None
 
 
 def _open(service: ServiceSettings, opened: OpenedRobot, listening: Callable[[Channel], None]) -> Openness:
-    """Open to teachers, the one at this machine's own keyboard among them."""
-    for name in (LOCAL, AUTO):
+    """Open to teachers, those of this machine among them."""
+    for name in sorted(OF_THIS_MACHINE):
         local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
 
     def bus_trouble() -> str:

@@ -10,7 +10,15 @@ import typer
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import AUTO, LOCAL, OF_THIS_MACHINE, Device, local_pairing, read_device
+from kurt2rt.channel.credentials import (
+    AUTO,
+    LOCAL,
+    OF_THIS_MACHINE,
+    TERMINAL,
+    Device,
+    local_pairing,
+    read_device,
+)
 from kurt2rt.cli.end_of_teaching import end_of_teaching
 from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.service_settings import ServiceSettings, load_service
@@ -30,11 +38,16 @@ class _Way(NamedTuple):
 def teach(
     terminal: Annotated[bool, typer.Option("--terminal", help="Teach by typing, here; no page is served.")] = False,
     auto: Annotated[
-        bool, typer.Option("--auto", help="Let the scripted teacher of the task teach; no page is served.")
+        bool, typer.Option("--auto", help="Let the scripted teacher teach, a simulated robot only; no page is served.")
     ] = False,
     name: Annotated[
-        str, typer.Option("--as", help="Paired device that this teaches as; local: this machine's own teacher.")
-    ] = LOCAL,
+        str | None,
+        typer.Option(
+            "--as",
+            help="Paired device that this teaches as. Default: this machine's own, which is local for the page, "
+            "terminal with --terminal and auto with --auto.",
+        ),
+    ] = None,
     robot: Annotated[
         str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
     ] = None,
@@ -55,10 +68,10 @@ def teach(
         bool, typer.Option("--while-stdin", help="End when the standard input ends, as kurt2rt run needs it.")
     ] = False,
 ) -> None:
-    """Serve the teacher's page: see the robot, teach it and drive it from a browser.
+    """Teach a robot that runs: from a browser, from a terminal, or by a script.
 
-    Start the robot first, in another terminal, then open the address that this
-    prints:
+    Serves the teacher's page: see the robot, teach it and drive it. Start the
+    robot in another terminal, then open the address that this prints:
 
         kurt2rt run
         kurt2rt teach
@@ -74,16 +87,22 @@ def teach(
 
         kurt2rt teach --terminal
 
-    The robot needs not be there yet, and may come and go. Ends on Ctrl-C; a robot
-    that is driven by hand stands first.
+    For page and terminal the robot needs not be there yet, and may come and go.
+    The scripted teacher needs a simulated robot that is there, and teaches it for
+    as long as the task says.
+
+        kurt2rt teach --auto
+
+    Ends on Ctrl-C. A robot that was driven by hand from the page stands then; one
+    that was taught by typing or by the script stands in any case.
     """
     if terminal and auto:
         raise typer.BadParameter("one teacher at a time: --terminal or --auto", param_hint="--auto")
     service = load_service(settings)
-    device = _device(service, AUTO if auto and name == LOCAL else name)
+    device = _device(service, name or (TERMINAL if terminal else AUTO if auto else LOCAL))
     way = _Way(device, robot or device.host, port or device.port)
     if terminal:
-        _teach(way, _by_typing, while_stdin=False)
+        _teach(way, lambda client, say: _by_typing(client, say, f"{way.host}:{way.port}"), while_stdin=False)
     elif auto:
         _teach(way, lambda client, say: _by_script(client, say, service, seed), while_stdin=while_stdin)
     else:
@@ -127,8 +146,8 @@ def _teach(way: _Way, teach_it: _Teach, *, while_stdin: bool) -> None:
     anyio.run(run)
 
 
-async def _by_typing(client: TeacherClient, say: Callable[[str], None]) -> None:
-    await TerminalTeacher(client, sys.stdin, say).teach()
+async def _by_typing(client: TeacherClient, say: Callable[[str], None], where: str) -> None:
+    await TerminalTeacher(client, sys.stdin, say, where).teach()
 
 
 async def _by_script(client: TeacherClient, say: Callable[[str], None], service: ServiceSettings, seed: int) -> None:

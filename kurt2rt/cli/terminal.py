@@ -1,28 +1,37 @@
 """`kurt2rt teach --terminal`: a person teaches by typing, one line, one command."""
 
 import asyncio
+import math
 import threading
 from collections.abc import AsyncIterator, Awaitable, Callable
-from typing import TextIO
+from typing import NamedTuple, TextIO
 
 import anyio
+from anyio.abc import TaskGroup
+from anyio.streams.memory import MemoryObjectSendStream
 
 from kurt2rt.channel.state import State
+from kurt2rt.channel.wire import WireError
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.question import FeatureDifference, Question
 
 _STEP_S = 0.5
 _LESSONS_SHOWN = 10
 _SAYS_AT_MOST_EVERY_S = 1.0
+_ASK_AGAIN_S = 0.5
+_LOOK_EVERY_S = 0.5
+_SILENT_AFTER_S = 1.5
+_MOST_DIGITS = 15
 
 Say = Callable[[str], None]
 
 _HELP = """\
 an action                answers the robot's question, or corrects what it does
-(just Enter), stop       the robot stands until you type go
+(just Enter), stop       the robot stands until you type go; at once, whatever waits for its answer
 go                       the robot drives where it knows the way
 step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
 +, -                     reward or punish what the robot does
@@ -35,32 +44,114 @@ take, release            be the teacher, or let another one be it
 help, quit"""
 
 
-class TerminalTeacher:
-    """Reads lines and says them to the robot; tells what the robot does when that changes."""
+class _Line(NamedTuple):
+    """What was typed, and when, as the robot has it."""
 
-    def __init__(self, robot: TeacherClient, lines: TextIO, say: Say) -> None:
+    text: str
+    state: State | None
+    """Newest picture then: what the teacher judged."""
+    stop: anyio.Event
+    """Set when the last stop that was typed before is over, answered or not."""
+
+
+class TerminalTeacher:
+    """Reads lines and says them to the robot, one after the other; a stop does not wait for those before it. Tells what
+    the robot does when that changes.
+    """
+
+    def __init__(self, robot: TeacherClient, lines: TextIO, say: Say, where: str) -> None:
+        """`where` the robot is looked for, to tell the teacher."""
         self._robot = robot
         self._lines = lines
         self._say = say
+        self._where = where
         self._actions: tuple[str, ...] = ()
+        self._tried = anyio.Event()
+        self._met = False
+        self._last_stop = anyio.Event()
+        self._last_stop.set()
 
     async def teach(self) -> None:
-        """Until the lines end or one of them is `quit`; then the robot stands. Raises NoAnswerError without a robot."""
-        robot = self._robot
-        hello = await robot.hello()
-        self._actions = tuple(hello.actions)
+        """Until the lines end or one of them is `quit`; then the robot stands. The robot may come and go meanwhile."""
+        async with anyio.create_task_group() as tasks:
+            typed, taken = anyio.create_memory_object_stream[_Line](math.inf)
+            with typed, taken:
+                tasks.start_soon(self._listen, typed, tasks)
+                tasks.start_soon(self._accompany, tasks)
+                tasks.start_soon(self._watch_the_link)
+                async for line in taken:
+                    await self._tried.wait()
+                    if line.text.split() in (["quit"], ["exit"]):
+                        break
+                    await self._take_line(line)
+                await self._tried.wait()
+                if self._met and await self._anyhow(self._tell(self._robot.stop())):
+                    await self._anyhow(self._tell(self._robot.hand_over()))
+                tasks.cancel_scope.cancel()
+
+    async def _listen(self, typed: MemoryObjectSendStream[_Line], tasks: TaskGroup) -> None:
+        with typed:
+            async for text in self._typed():
+                if text.split() in ([], ["stop"]):
+                    self._last_stop = anyio.Event()
+                    tasks.start_soon(self._stop, self._last_stop)
+                else:
+                    typed.send_nowait(_Line(text, self._robot.state, self._last_stop))
+
+    async def _stop(self, over: anyio.Event) -> None:
+        await self._anyhow(self._tell(self._robot.stop()))
+        over.set()
+
+    async def _take_line(self, line: _Line) -> None:
+        await line.stop.wait()  # go after a stop is said after it
+        if line.stop is not self._last_stop and _moves(line.text):
+            self._say(f"not done, you stopped the robot after you typed it: {line.text}")
+        elif line.state is not None and self._robot.state is not None and line.state.boot != self._robot.state.boot:
+            self._say(f"not done, the robot program was started anew after you typed it: {line.text}")
+        elif not self._met:
+            self._say(f"not done, there is no robot at {self._where} yet: {line.text}")
+        else:
+            await self._anyhow(self._obey(line))
+
+    async def _accompany(self, tasks: TaskGroup) -> None:
+        """Meet the robot when it comes, and again whenever it was started anew."""
+        hello = await self._meet()
+        self._actions = hello.actions
         self._say(f"{hello.robot}, task {hello.task}; help shows what can be typed; Enter alone stops the robot")
         self._say(f"actions: {', '.join(self._actions)}")
-        await self._tell(robot.take())
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(self._watch)
-            async for line in self._typed():
-                if line.split() in (["quit"], ["exit"]):
-                    break
-                await self._obey(line)
-            await self._tell(robot.stop())
-            await self._tell(robot.hand_over())
-            tasks.cancel_scope.cancel()
+        await self._anyhow(self._tell(self._robot.take()))
+        self._met = True
+        self._tried.set()
+        tasks.start_soon(self._watch)
+        boot = hello.boot
+        async for state in self._robot.states():
+            if state.boot != boot:
+                boot = state.boot
+                self._say("the robot program was started anew")
+                await self._anyhow(self._meet_again())
+
+    async def _meet(self) -> Hello:
+        told = ""
+        while True:
+            try:
+                return await self._robot.hello()
+            except NoAnswerError as error:
+                why = str(error) if isinstance(error.__cause__, WireError) else self._robot.trouble
+                sentence = f"no robot at {self._where} yet" + (f": {why}" if why else "")
+                if sentence != told:
+                    self._say(sentence)
+                told = sentence
+                self._tried.set()
+                await anyio.sleep(_ASK_AGAIN_S)
+
+    async def _meet_again(self) -> None:
+        self._actions = (await self._robot.hello()).actions
+        state = self._robot.state
+        teacher = None if state is None else state.teacher
+        if teacher is None:
+            await self._tell(self._robot.take())
+        elif teacher != self._robot.name:
+            self._say(f"{teacher} teaches now; type take to teach yourself")
 
     async def _typed(self) -> AsyncIterator[str]:
         typed: asyncio.Queue[str | None] = asyncio.Queue()
@@ -78,6 +169,15 @@ class TerminalTeacher:
         threading.Thread(target=read, name="terminal", daemon=True).start()
         while (line := await typed.get()) is not None:
             yield line.strip().lower()
+
+    async def _watch_the_link(self) -> None:
+        silent = False
+        while True:
+            await anyio.sleep(_LOOK_EVERY_S)
+            age_s = self._robot.state_age_s
+            if self._robot.state is not None and silent != (age_s > _SILENT_AFTER_S):
+                silent = not silent
+                self._say("no picture of the robot comes any more" if silent else "the robot is seen again")
 
     async def _watch(self) -> None:
         told = ""
@@ -97,11 +197,10 @@ class TerminalTeacher:
                 told = sentence
                 quiet_until = anyio.current_time() + _SAYS_AT_MOST_EVERY_S
 
-    async def _obey(self, line: str) -> None:
+    async def _obey(self, line: _Line) -> None:
         robot = self._robot
-        match line.split():
-            case [] | ["stop"]:
-                await self._tell(robot.stop())
+        judged = None if line.state is None else line.state.tick
+        match line.text.split():
             case ["go"] | ["resume"]:
                 await self._tell(robot.resume())
             case ["step", action]:
@@ -109,19 +208,19 @@ class TerminalTeacher:
             case ["step", action, seconds] if _is_number(seconds):
                 await self._tell(robot.run(action, seconds=float(seconds)))
             case ["+"]:
-                await self._tell(robot.reward(1))
+                await self._tell(robot.reward(1, of=judged))
             case ["-"]:
-                await self._tell(robot.reward(-1))
+                await self._tell(robot.reward(-1, of=judged))
             case ["undo", *lesson] if len(lesson) <= 1:
                 await self._tell(robot.undo(lesson[0] if lesson else None))
             case ["lessons"]:
                 for each in reversed(await robot.lessons(_LESSONS_SHOWN)):
                     self._say(f"{each.command_id}  {each.text}{', undone' if each.undone else ''}")
-            case ["replace", rla_id, action] if rla_id.isdecimal():
+            case ["replace", rla_id, action] if _is_count(rla_id):
                 await self._tell(robot.replace(int(rla_id), action))
-            case ["delete", rla_id] if rla_id.isdecimal():
+            case ["delete", rla_id] if _is_count(rla_id):
                 await self._tell(robot.delete(int(rla_id)))
-            case ["phase", number] if number in "12345":
+            case ["phase", ("1" | "2" | "3" | "4" | "5") as number]:
                 await self._tell(robot.set_phase(Phase(int(number))))
             case ["begin", *name]:
                 await self._tell(robot.begin_session(" ".join(name) or "session"))
@@ -136,26 +235,32 @@ class TerminalTeacher:
             case ["release"]:
                 await self._tell(robot.hand_over())
             case [action] if action in self._actions:
-                await self._teach(action)
+                await self._teach(action, line.state)
             case _:
                 self._say(_HELP)
                 self._say(f"actions: {', '.join(self._actions)}")
 
-    async def _teach(self, action: str) -> None:
-        state = self._robot.state
+    async def _teach(self, action: str, state: State | None) -> None:
         # The same word answers a question and corrects a robot that knows, or thinks that it knows.
-        if state is None or state.nearest is None or state.distance > state.radius:
+        if state is None:
             await self._tell(self._robot.answer(action))
+        elif state.nearest is None or state.distance > state.radius:
+            await self._tell(self._robot.answer(action, of=state.tick))
         else:
             await self._tell(self._robot.correct(action, of=state.tick))
 
     async def _tell(self, answer: Awaitable[Answer]) -> None:
+        got = await answer
+        self._say(got.text if got.accepted else f"refused: {got.text}")
+
+    async def _anyhow(self, saying: Awaitable[None]) -> bool:
+        """Say something to the robot, which may be gone; whether it answered."""
         try:
-            got = await answer
+            await saying
         except NoAnswerError as error:
             self._say(str(error))
-            return
-        self._say(got.text if got.accepted else f"refused: {got.text}")
+            return False
+        return True
 
 
 def question_in(state: State) -> Question:
@@ -173,5 +278,17 @@ def sentence_of(state: State) -> str:
     return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
 
 
+def _moves(text: str) -> bool:
+    """Whether a line may set the robot in motion."""
+    match text.split():
+        case ["go" | "resume" | "step" | "take", *_] | ["phase", "5"]:
+            return True
+    return False
+
+
+def _is_count(text: str) -> bool:
+    return text.isdecimal() and len(text) <= _MOST_DIGITS
+
+
 def _is_number(text: str) -> bool:
-    return text.replace(".", "", 1).isdecimal()
+    return text.replace(".", "", 1).isdecimal() and len(text) <= _MOST_DIGITS

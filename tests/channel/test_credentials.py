@@ -86,7 +86,7 @@ def test_what_is_no_name_is_refused(teachers: Path, devices: Path, name: str) ->
     assert not teachers.exists()
 
 
-@pytest.mark.parametrize("name", ["local", "auto"])
+@pytest.mark.parametrize("name", ["local", "auto", "terminal"])
 def test_the_names_of_this_machine_are_not_paired(teachers: Path, devices: Path, name: str) -> None:
     with pytest.raises(CredentialsError, match="choose another one"):
         pair(teachers, devices, name)

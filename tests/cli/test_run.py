@@ -37,7 +37,7 @@ def lesson(folder: Path) -> Iterator[Lesson]:
     with running("run", "--seconds", "120", "--port", "0", "--knowledge", "mine.knowledge", folder=folder) as robot:
         port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
         with running("teach", "--terminal", "--port", port, folder=folder) as person:
-            person.wait_for("local teaches")
+            person.wait_for("terminal teaches")
             yield Lesson(robot, person, folder / "mine.knowledge")
 
 
@@ -91,6 +91,19 @@ def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: 
     assert (end.exit_code, end.err) == (0, "")
     assert "/pair?token=" in said[0]
     assert actions_in(tmp_path / "mine.knowledge")
+
+
+def test_the_terminal_and_the_page_are_open_side_by_side(tmp_path: Path) -> None:
+    words = ("run", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
+    with running(*words, folder=tmp_path) as robot:
+        port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
+        robot.wait_for("/pair?token=")
+        with running("teach", "--terminal", "--port", port, folder=tmp_path) as person:
+            person.wait_for("terminal teaches")
+            person.type("quit")
+            person.wait_for("nobody teaches now")
+        end = robot.end(signal.SIGTERM)
+    assert (end.exit_code, end.err) == (0, "")
 
 
 def limit_files(process: "subprocess.Popen[str]", size_bytes: int) -> None:

@@ -1,0 +1,272 @@
+"""The terminal with a real client, a robot whose mind is the test's, and a person at the keyboard."""
+
+import os
+import socket
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import anyio
+import pytest
+
+from kurt2rt.channel.credentials import Pairing, pair
+from kurt2rt.channel.reply import Reply, Verdict, done
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    CorrectRequest,
+    HelloRequest,
+    LessonsRequest,
+    PhaseRequest,
+    Request,
+    ResumeRequest,
+    RewardRequest,
+    StopRequest,
+    TakeRequest,
+)
+from kurt2rt.cli.terminal import TerminalTeacher
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching import TeacherClient
+from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teaching.test_client import HELLO, Clock, seen
+
+
+@dataclass
+class Desk:
+    """A keyboard and a screen."""
+
+    client: TeacherClient
+    keyboard: int
+    clock: Clock
+    said: list[str] = field(default_factory=list)
+    _news: anyio.Event = field(default_factory=anyio.Event)
+
+    def type(self, line: str) -> None:
+        os.write(self.keyboard, f"{line}\n".encode())
+
+    def say(self, text: str) -> None:
+        self.said.append(text)
+        self._news.set()
+        self._news = anyio.Event()
+
+    async def reads(self, text: str) -> str:
+        """Wait until the screen shows a text; the line that does."""
+        with anyio.fail_after(10.0):
+            while True:
+                for line in self.said:
+                    if text in line:
+                        return line
+                await self._news.wait()
+
+
+class Mind:
+    """Introduces itself and does what it is told, but for some requests that it answers when it is let."""
+
+    def __init__(self, *slow: type[Request]) -> None:
+        self.slow = slow
+        self.may_answer = anyio.Event()
+
+    async def __call__(self, request: Request) -> Reply:
+        if isinstance(request, self.slow):
+            await self.may_answer.wait()
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, HELLO)
+        if isinstance(request, LessonsRequest):
+            return Reply(Verdict.DONE, {"lessons": []})
+        return done(7, f"{request.path} is done")
+
+
+@asynccontextmanager
+async def desk_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> AsyncIterator[Desk]:
+    reading, writing = os.pipe()
+    clock = Clock()
+    with os.fdopen(reading) as lines:
+        try:
+            async with (
+                TeacherClient(pairing.device.folder, port=port, patience_s=patience_s, now=clock) as client,
+                anyio.create_task_group() as tasks,
+            ):
+                desk = Desk(client, writing, clock)
+                tasks.start_soon(TerminalTeacher(client, lines, desk.say, f"127.0.0.1:{port}").teach)
+                yield desk
+                desk.type("quit")
+                tasks.cancel_scope.deadline = anyio.current_time() + 2.0
+        finally:
+            os.close(writing)
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+@pytest.fixture
+async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
+    async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
+        robot.mind = Mind()
+        robot.show(teacher="phone")  # so that who takes it sees at once that he teaches
+        yield robot
+
+
+async def looked_at(desk: Desk, robot: StandInRobot, **changes: object) -> int:
+    """Show one more picture; its tick, when it is on the screen."""
+    robot.showing = False
+    picture = robot.show(**changes)
+    await seen(desk.client, lambda: desk.client.state == picture)
+    return picture.tick
+
+
+async def test_enter_alone_stops_at_once_and_ends_what_waits_for_its_answer(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.mind = Mind(ResumeRequest)
+        desk.type("go")
+        await robot.hears(ResumeRequest)
+        desk.type("")
+        await desk.reads("refused: go was stopped meanwhile")
+        await desk.reads("/stop is done")
+        assert robot.all_of(StopRequest)[0].hold is None
+
+
+async def test_what_was_typed_before_a_stop_does_not_move_the_robot_after_it(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.mind = mind = Mind(LessonsRequest)
+        for line in ("lessons", "go", "step forward", "phase 5", "phase 2", "stop"):
+            desk.type(line)
+        await desk.reads("/stop is done")
+        mind.may_answer.set()
+        await desk.reads("/phase is done")
+        for line in ("go", "step forward", "phase 5"):
+            assert f"not done, you stopped the robot after you typed it: {line}" in desk.said
+        assert robot.all_of(ResumeRequest) == []
+        assert [each.phase for each in robot.all_of(PhaseRequest)] == [Phase.CORRECTIONS]
+
+
+async def test_go_that_is_typed_after_a_stop_is_said_after_it(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.mind = mind = Mind(StopRequest)
+        desk.type("stop")
+        desk.type("go")
+        await robot.hears(StopRequest, 3)
+        assert robot.all_of(ResumeRequest) == []
+        mind.may_answer.set()
+        await desk.reads("/resume is done")
+
+
+async def test_a_judgement_is_about_what_was_seen_when_it_was_typed(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.mind = mind = Mind(LessonsRequest)
+        ticks = []
+        for line, changes in (
+            ("lessons", {}),
+            ("+", {}),
+            ("-", {}),
+            ("forward", {"distance": 812.5, "radius": 600.0}),
+            ("spin_left", {"distance": 10.0}),
+        ):
+            ticks.append(await looked_at(desk, robot, **changes))
+            desk.type(line)
+            # A stop does not wait for its turn, so it tells that what stands before it has been read.
+            stops = len(robot.all_of(StopRequest))
+            desk.type("stop")
+            await robot.hears(StopRequest, stops + 1)
+        await looked_at(desk, robot, nearest=None)
+        mind.may_answer.set()
+        (correction,) = await robot.hears(CorrectRequest)
+        assert [(each.value, each.decision_tick) for each in robot.all_of(RewardRequest)] == [
+            (1, ticks[1]),
+            (-1, ticks[2]),
+        ]
+        assert [(each.action, each.decision_tick) for each in robot.all_of(AnswerRequest)] == [("forward", ticks[3])]
+        assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
+
+
+async def test_nothing_that_is_typed_ends_the_teaching(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port, patience_s=0.3) as desk:
+        await desk.reads("/take is done")
+        nines = "9" * 5000
+        for line in (
+            "phase 12",
+            "phase",
+            "phase 0",
+            f"delete {nines}",
+            f"step forward {nines}",
+            "delete ²",
+            "step forward 1e9",
+        ):
+            shown = sum("help, quit" in each for each in desk.said)
+            desk.type(line)
+            with anyio.fail_after(5.0):
+                while sum("help, quit" in each for each in desk.said) == shown:
+                    await desk._news.wait()
+        desk.type("step forward 999999999")
+        await desk.reads("refused: ticks has to be a whole number")
+        robot.mind = Mind(LessonsRequest)
+        desk.type("lessons")
+        await desk.reads("no answer for 0.3 s")
+        desk.type("phase 2")
+        await desk.reads("/phase is done")
+
+
+async def test_a_robot_that_is_not_there_yet_is_waited_for(pairing: Pairing) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+    async with AsyncExitStack() as stack:
+        desk = await stack.enter_async_context(in_a_task_of_its_own(desk_at(pairing, port, patience_s=0.3)))
+        await desk.reads(f"no robot at 127.0.0.1:{port} yet")
+        desk.type("forward")
+        await desk.reads(f"not done, there is no robot at 127.0.0.1:{port} yet: forward")
+        async with stand_in_robot(pairing.teacher.parent, port=port) as robot:
+            robot.mind = Mind()
+            robot.show(teacher="phone")
+            await desk.reads("actions: forward, spin_left")
+            await desk.reads("/take is done")
+            assert robot.all_of(AnswerRequest) == []
+            await looked_at(desk, robot, nearest=None)
+            desk.type("forward")
+            await robot.hears(AnswerRequest)
+            await stack.aclose()
+
+
+async def test_who_leaves_where_no_robot_ever_was_does_not_wait_for_one(pairing: Pairing) -> None:
+    with anyio.fail_after(5.0):
+        async with desk_at(pairing, 9, patience_s=0.2) as desk:
+            desk.type("quit")
+    assert [each.split(" yet")[0] for each in desk.said] == ["no robot at 127.0.0.1:9"]
+
+
+@pytest.mark.parametrize("teacher", [None, "anna"])
+async def test_after_a_restart_of_the_robot_it_is_taken_only_when_nobody_else_teaches(
+    pairing: Pairing, teacher: str | None
+) -> None:
+    teachers = pairing.teacher.parent
+    async with AsyncExitStack() as first_start, AsyncExitStack() as stack:
+        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
+        robot.mind = Mind()
+        robot.show(teacher="phone")
+        desk = await stack.enter_async_context(in_a_task_of_its_own(desk_at(pairing, robot.port)))
+        await desk.reads("/take is done")
+        await seen(desk.client, lambda: True)
+        await first_start.aclose()
+        desk.clock.ahead_s += 2.0
+        await desk.reads("no picture of the robot comes any more")
+        async with stand_in_robot(teachers, port=robot.port, boot=b"anew", showing=False) as robot:
+            robot.mind = Mind()
+            robot.show(teacher=teacher)
+            robot.showing = True
+            await desk.reads("the robot program was started anew")
+            await desk.reads("the robot is seen again")
+            if teacher is None:
+                await robot.hears(TakeRequest)
+            else:
+                await desk.reads("anna teaches now; type take to teach yourself")
+                assert robot.all_of(TakeRequest) == []
+            await stack.aclose()
