@@ -1,6 +1,10 @@
 """The scripted teacher over the channel: it sees what a person's page sees, and says what a person could say."""
 
 from collections.abc import Awaitable, Callable
+from contextlib import suppress
+from functools import partial
+
+import anyio
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.state import State
@@ -16,6 +20,10 @@ Say = Callable[[str], None]
 
 _STOPPED_ITSELF = ("the guard", "lost the link")
 """Reasons that a simulated robot may be told to go on after, unlike a person's stop."""
+_STOPPED = "stopped"
+_AGAIN_S = 0.2
+_SESSION_OVER = "the session "
+"""So begins the reason that the end of the lesson itself gives."""
 
 
 async def teach_by_script(
@@ -23,16 +31,20 @@ async def teach_by_script(
 ) -> None:
     """Teach the task for its whole time, then let the robot drive alone and look on, until cancelled.
 
-    Raises NoAnswerError when the robot is not there.
+    A robot that a person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning,
+    and RefusedError when it is no simulated one or refuses its teacher.
     """
     hello = await robot.hello()
+    if not hello.simulated:
+        raise RefusedError(f"{hello.robot} is a real robot; the scripted teacher teaches simulated ones only")
     teacher = teacher_of(task, settings, hello.actions, seed=seed, session="unused")
     corrections_from = round(task.teaching.supervised_s / hello.period_s)
     over_at = round(task.teaching.duration_s / hello.period_s)
     said = 0
-    await _must(robot.take())
-    await _must(robot.begin_session(f"scripted, seed {seed}"))
-    await _must(robot.set_phase(Phase.SUPERVISED))
+    session = f"scripted, seed {seed}"
+    await _must(robot, robot.take, lambda state: state.teacher == robot.name)
+    await _must(robot, lambda: robot.begin_session(session), lambda state: state.session == session)
+    await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
     say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
     first: int | None = None
     before = 0
@@ -46,21 +58,63 @@ async def teach_by_script(
             break
         if teacher.phase is Phase.SUPERVISED and state.tick - first >= corrections_from:
             teacher.enter(Phase.CORRECTIONS)
-            await _must(robot.set_phase(Phase.CORRECTIONS))
+            await _must(
+                robot, lambda: robot.set_phase(Phase.CORRECTIONS), lambda state: state.phase == Phase.CORRECTIONS
+            )
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
         if state.stopped_because.startswith(_STOPPED_ITSELF):
-            await robot.resume()
+            with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
+                await robot.resume()
         command = teacher.watch(picture_in(state), state.tick - before)
         before = state.tick
         if command is not None:
             said += await _say(robot, command, state.tick)
-    await _must(robot.end_session())
-    say(f"{said} lessons given; now the robot drives alone (phase 5)")
-    await _must(robot.set_phase(Phase.AUTONOMOUS))
-    await _must(robot.resume())
+    say(f"{said} lessons given")
+    await _let_drive_alone(robot, say)
     async for state in robot.states():
         if state.teacher != robot.name:
             return
+
+
+async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
+    # Looked at before the session ends: its end gives the robot another reason to stand.
+    stopped = _stopped_by_a_person(robot, await _picture(robot, 0))
+    ended = await _must(robot, robot.end_session, lambda state: state.session is None)
+    stopped = stopped or _stopped_by_a_person(robot, await _picture(robot, ended.tick))
+
+    async def unless_stopped(give: Callable[[], Awaitable[Answer]]) -> Answer:
+        state = await _picture(robot, 0)
+        # Nothing is awaited between this look and the saying: the robot refuses it if it is stopped after this picture.
+        because = _stopped_by_a_person(robot, state)
+        return Answer(False, _STOPPED, because, state.tick) if because else await give()
+
+    if not stopped:
+        say("now the robot drives alone (phase 5)")
+        for give in (lambda: robot.set_phase(Phase.AUTONOMOUS), robot.resume):
+            try:
+                got = await _must(robot, partial(unless_stopped, give), lambda _: False)
+            except RefusedError as error:
+                stopped = str(error)
+                break
+            if got.why == _STOPPED:
+                stopped = got.text
+                break
+    if stopped:
+        say(f"{stopped}: the robot stays where it is; take it and say go to let it drive")
+
+
+def _stopped_by_a_person(robot: TeacherClient, state: State) -> str:
+    """Why the robot stands since somebody said so; empty where this teacher, the guard or the link is the reason."""
+    own = (*_STOPPED_ITSELF, _SESSION_OVER, f"{robot.name} ")
+    return "" if state.stopped_because.startswith(own) else state.stopped_because
+
+
+async def _picture(robot: TeacherClient, tick: int) -> State:
+    """The newest one, of that tick or a later one while this teacher teaches."""
+    async for state in robot.states():
+        if state.tick >= tick or state.teacher != robot.name:
+            return state
+    raise NoAnswerError("no more pictures come")
 
 
 def picture_in(state: State) -> Picture:
@@ -83,9 +137,23 @@ async def _say(robot: TeacherClient, command: Command, tick: int) -> int:
     return int(answer.accepted)
 
 
-async def _must(answer: Awaitable[Answer]) -> None:
-    got = await answer
-    if not got.accepted:
+async def _must(robot: TeacherClient, give: Callable[[], Awaitable[Answer]], done: Callable[[State], bool]) -> Answer:
+    """Say it until the robot answers; a stop may come first, which is an answer, too. Raises RefusedError.
+
+    `done` tells in a picture that an earlier try counted, whose answer was lost.
+    """
+    tries = 0
+    while True:
+        tries += 1
+        try:
+            got = await give()
+        except NoAnswerError:
+            await anyio.sleep(_AGAIN_S)
+            continue
+        if got.accepted or got.why == _STOPPED:
+            return got
+        if tries > 1 and done(await _picture(robot, got.tick)):
+            return got
         raise RefusedError(f"the robot refuses the scripted teacher: {got.text}")
 
 

@@ -1,0 +1,184 @@
+"""The scripted teacher over the channel: a real client, and a robot whose mind is the test's."""
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.channel.credentials import AUTO, local_pairing
+from kurt2rt.channel.reply import Reply, Verdict, done, refusal
+from kurt2rt.channel.requests import (
+    HelloRequest,
+    PhaseRequest,
+    Request,
+    ResumeRequest,
+    SessionRequest,
+    TakeRequest,
+)
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.scripted_lesson import RefusedError, teach_by_script
+from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teaching.test_client import HELLO
+
+SETTINGS = load_robot("kurt2")
+
+
+def short() -> TaskSettings:
+    task = load_task("wall_following")
+    teaching = task.teaching.model_copy(update={"supervised_s": 0.1, "corrections_s": 0.1})
+    return task.model_copy(update={"teaching": teaching})
+
+
+class Mind:
+    """Does what the scripted teacher says, as far as its pictures show it; deaf to the first answers it should give."""
+
+    def __init__(self, robot: StandInRobot, *, simulated: bool = True, mute: int = 0) -> None:
+        self._robot = robot
+        self._simulated = simulated
+        self._mute = mute
+        self._silent: dict[type[Request], set[bytes]] = {}
+        self._done: set[bytes] = set()
+        self.stop_at_phase: Phase | None = None
+        self._stopped_tick = -1
+
+    async def __call__(self, request: Request) -> Reply:
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, {**HELLO, "simulated": self._simulated})
+        if not isinstance(request, TakeRequest | PhaseRequest | SessionRequest | ResumeRequest):
+            return done(self._robot.state.tick, "done")
+        reply = done(self._robot.state.tick, "done")
+        if request.command_id not in self._done:
+            self._done.add(request.command_id)
+            reply = self._carry_out(request)
+        lost = self._silent.setdefault(type(request), set())
+        if len(lost) < self._mute:
+            lost.add(request.command_id)
+        if request.command_id in lost:
+            await anyio.sleep_forever()
+        return reply
+
+    def stop(self) -> None:
+        """Anna says stop."""
+        self._stopped_tick = self._robot.show(stopped_because="anna said stop").tick
+
+    def _carry_out(self, request: TakeRequest | PhaseRequest | SessionRequest | ResumeRequest) -> Reply:
+        robot = self._robot
+        tick = robot.state.tick
+        match request:
+            case TakeRequest():
+                robot.show(teacher="auto")
+            case PhaseRequest(phase=phase):
+                robot.show(phase=int(phase))
+                if phase is self.stop_at_phase:
+                    self.stop()
+            case SessionRequest(name=None):
+                robot.show(session=None, stopped_because=f"the session {robot.state.session!r} is over")
+            case SessionRequest(name=name) if robot.state.session is not None:
+                return refusal("refused", f"the session {name!r} is on; end it first", tick)
+            case SessionRequest(name=name):
+                robot.show(session=name, stopped_because="")
+            case ResumeRequest(seen=seen) if seen < self._stopped_tick:
+                return refusal("stopped", "the robot was stopped after this was said", tick)
+            case ResumeRequest():
+                robot.show(stopped_because="")
+        return done(robot.state.tick, "done")
+
+
+@pytest.fixture
+async def robot(tmp_path: Path) -> AsyncIterator[StandInRobot]:
+    local_pairing(tmp_path / "teachers", tmp_path / "devices", AUTO)
+    async with in_a_task_of_its_own(stand_in_robot(tmp_path / "teachers")) as robot:
+        robot.show(session=None, phase=1, cause="stopped")
+        yield robot
+
+
+@pytest.fixture
+async def client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherClient]:
+    folder = tmp_path / "devices" / AUTO
+    async with in_a_task_of_its_own(TeacherClient(folder, port=robot.port, patience_s=0.15)) as client:
+        yield client
+
+
+async def lesson(client: TeacherClient, robot: StandInRobot, ends_with: str) -> list[str]:
+    """Let it teach until it has said its last; then somebody else takes the robot. What it said."""
+    said: list[str] = []
+
+    def say(text: str) -> None:
+        said.append(text)
+        if ends_with in text:
+            over.set()
+
+    over = anyio.Event()
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+
+            async def teach() -> None:
+                await teach_by_script(client, SETTINGS, short(), say)
+                tasks.cancel_scope.cancel()
+
+            tasks.start_soon(teach)
+            await over.wait()
+            if ends_with == ALONE:
+                await robot.hears(ResumeRequest)
+                async for state in client.states():
+                    if state.stopped_because == "":
+                        break
+            robot.show(teacher="anna")
+            await anyio.sleep_forever()
+    return said
+
+
+ALONE = "now the robot drives alone"
+
+
+def phases(robot: StandInRobot) -> list[Phase]:
+    return [each.phase for each in dict.fromkeys(robot.all_of(PhaseRequest))]
+
+
+async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
+    robot.mind = Mind(robot, simulated=False)
+    with pytest.raises(RefusedError, match="kurt2-indoor is a real robot; the scripted teacher teaches simulated"):
+        await teach_by_script(client, SETTINGS, short(), lambda _: None)
+    assert {type(each) for each in robot.orders()} == {HelloRequest}
+
+
+async def test_it_teaches_both_phases_and_lets_the_robot_drive_alone(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.mind = Mind(robot)
+    said = await lesson(client, robot, ALONE)
+    assert said[-2:] == ["0 lessons given", "now the robot drives alone (phase 5)"]
+    assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.AUTONOMOUS]
+
+
+async def test_answers_that_are_missing_do_not_end_it(client: TeacherClient, robot: StandInRobot) -> None:
+    robot.mind = Mind(robot, mute=2)
+    said = await lesson(client, robot, ALONE)
+    assert said[-1] == "now the robot drives alone (phase 5)"
+    assert robot.state.session is None
+    assert len(dict.fromkeys(robot.all_of(SessionRequest))) >= 4
+
+
+async def test_a_robot_that_a_person_stopped_during_the_lesson_stays_where_it_is(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.mind = mind = Mind(robot)
+    mind.stop_at_phase = Phase.CORRECTIONS
+    said = await lesson(client, robot, "stays where it is")
+    assert said[-1] == "anna said stop: the robot stays where it is; take it and say go to let it drive"
+    assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS]
+    assert robot.all_of(ResumeRequest) == []
+
+
+async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.mind = mind = Mind(robot)
+    mind.stop_at_phase = Phase.AUTONOMOUS
+    said = await lesson(client, robot, "stays where it is")
+    assert "the robot stays where it is" in said[-1]
+    assert robot.state.stopped_because == "anna said stop"
