@@ -60,6 +60,10 @@ def teach(
     host_name: Annotated[
         list[str] | None, typer.Option(help="Another name of this machine that browsers may use; can be repeated.")
     ] = None,
+    public_address: Annotated[
+        str | None,
+        typer.Option(help="Where a TLS proxy in front of the page serves it, such as https://robot.example."),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Decides the scripted teacher's chance.")] = 1,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
@@ -110,7 +114,8 @@ def teach(
         from kurt2rt.cli.teach_page import serve_page
 
         at = service.page_port if page_port is None else page_port
-        serve_page(device, way.host, way.port, at, tuple(host_name or ()), while_stdin=while_stdin)
+        names = tuple(host_name or ())
+        serve_page(device, way.host, way.port, at, names, while_stdin=while_stdin, public_address=public_address)
 
 
 def _device(service: ServiceSettings, name: str) -> Device:

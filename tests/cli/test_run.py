@@ -14,7 +14,7 @@ from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
 from kurt2rt.rla.rla import RlaCreated
-from tests.cli.helpers import Running, running
+from tests.cli.helpers import CommandLine, Running, running
 
 
 def actions_in(knowledge: Path) -> list[str]:
@@ -104,6 +104,17 @@ def test_the_terminal_and_the_page_are_open_side_by_side(tmp_path: Path) -> None
             person.wait_for("nobody teaches now")
         end = robot.end(signal.SIGTERM)
     assert (end.exit_code, end.err) == (0, "")
+
+
+def test_the_page_behind_a_proxy_is_opened_at_the_proxys_address(tmp_path: Path) -> None:
+    words = ("teach", "--page-port", "0", "--port", "9", "--public-address", "https://robot.example")
+    with running(*words, folder=tmp_path) as page:
+        page.wait_for("https://robot.example/pair?token=")
+        assert page.end(signal.SIGTERM).err == ""
+
+
+def test_a_public_address_without_tls_is_refused(kurt2rt: CommandLine) -> None:
+    assert "give https:// and a name" in kurt2rt.refused("teach", "--public-address", "http://robot.example")
 
 
 def limit_files(process: "subprocess.Popen[str]", size_bytes: int) -> None:
