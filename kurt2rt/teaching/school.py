@@ -232,7 +232,8 @@ class School:
             raise _RefusedError("no session is on")
         name, self._session_ticks = self.session, self.teaching_ticks(tick)
         self.session = None
-        self.stop(f"the session {name!r} is over", command.teacher)
+        # A reason that is there already stays: the end of a session must not hide that somebody said stop.
+        self.stop(self.stopped_because or f"the session {name!r} is over", command.teacher)
         return f"session {name!r} is over; the robot stands", SessionEnded(self._session_ticks, origin)
 
     def _lesson(self, command: Teach | Correct, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:

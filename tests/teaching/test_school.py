@@ -560,3 +560,11 @@ def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
     assert refused.text == "the robot was stopped after this was said; look at it, then say it again"
     assert lesson.school.stopped_because
     assert lesson.say(late(lesson.tick)).accepted
+
+
+def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
+    lesson = Lesson()
+    lesson.say(BeginSession("1", "Ann", "monday"))
+    lesson.say(Stop("2", "Ben"))
+    lesson.say(EndSession("3", "Ann"))
+    assert lesson.school.stopped_because == "Ben said stop"
