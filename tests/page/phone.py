@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from selenium import webdriver
+from selenium.common.exceptions import NoSuchElementException, StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.remote.webelement import WebElement
@@ -62,7 +63,8 @@ class Phone:
 
     def wait(self, until: Callable[[], object], what: str) -> None:
         """Wait for something to be so."""
-        WebDriverWait(self.driver, PATIENCE_S, poll_frequency=0.05).until(lambda _: until(), f"never: {what}")
+        waiting = WebDriverWait(self.driver, PATIENCE_S, 0.05, (NoSuchElementException, StaleElementReferenceException))
+        waiting.until(lambda _: until(), f"never: {what}")
 
     def touch(self, selector: str) -> None:
         """A short touch in the middle of an element."""

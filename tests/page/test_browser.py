@@ -60,6 +60,7 @@ def begin(phone: Phone, room: Classroom) -> None:
     phone.turn(PORTRAIT)
     phone.open(room.address)
     phone.wait(lambda: not no_picture(phone), "a picture")
+    phone.wait(lambda: phone.run("return innerWidth") == PORTRAIT[0], "the screen is turned")
     if room.state().teacher != "local":
         phone.touch("#claim-button")
     phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
@@ -167,6 +168,7 @@ def test_a_page_that_is_left_lets_go_of_the_robot(a_phone: Phone, room: Classroo
     phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
     phone.open("about:blank")
     phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+    phone.finger_up()
 
 
 def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classroom) -> None:
@@ -187,15 +189,18 @@ def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classro
 def stand(phone: Phone, room: Classroom) -> None:
     """Stop the robot, and let it drive again: whatever a key does after it is seen."""
     phone.touch("#stop")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: "stands until" in phone.text("#said"), "the robot answers")
+    after = room.state().tick
+    phone.wait(lambda: room.state().tick > after + 20, "pictures from after it")
+    assert room.state().stopped_because == "local said stop"
     phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
 
 
 def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     begin(phone, room)
-    phone.turn(LAPTOP, touch=False)
     stand(phone, room)
+    phone.turn(LAPTOP, touch=False)
     phone.run("document.querySelector('#show-keys').focus()")
     phone.key("keyDown", "Enter")
     phone.wait(lambda: phone.find("#keys").is_displayed(), "the list of keys opens")
@@ -276,8 +281,11 @@ def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Cl
     stand(phone, room)
     phone.touch("#go")
     phone.wait(lambda: "nothing yet" in phone.text("#sentence"), "the robot asks")
-    phone.run("for (const a of ['forward', 'curve_right']) document.querySelector(`[data-action=${a}]`).click()")
-    assert "was not sent" in phone.text("#said")
+    text = phone.run(
+        "for (const a of ['forward', 'curve_right']) document.querySelector(`[data-action=${a}]`).click();"
+        "return document.querySelector('#said').textContent;"
+    )
+    assert text.startswith("curve right was not sent")
     phone.wait(lambda: lessons_shown(phone) == 1, "one lesson")
     phone.wait(lambda: phone.find("#actions").get_attribute("aria-busy") == "false", "it may be taught again")
     assert room.state().rlas == 1

@@ -186,7 +186,6 @@ link.addEventListener("freshness", freshness);
 
 link.addEventListener("state", ({ detail: state }) => {
   world.see(state);
-  freshness();
   requestAnimationFrame(show);
 });
 

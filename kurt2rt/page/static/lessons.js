@@ -31,7 +31,7 @@ export function twice(button, question, act, asked = () => {}) {
 export class Lessons {
   #list = document.getElementById("lesson-list");
   #undo;
-  #lessons = [];
+  #lessons = null;
   after = 0; // number of the newest order whose lesson is in the list
 
   constructor(undo) {
@@ -40,12 +40,13 @@ export class Lessons {
 
   // The newest one that stands; undefined without one.
   get newest() {
-    return this.#lessons.find((lesson) => !lesson.undone);
+    return this.#lessons?.find((lesson) => !lesson.undone);
   }
 
   show(lessons, after) {
-    this.#lessons = lessons;
     this.after = after;
+    if (JSON.stringify(lessons) === JSON.stringify(this.#lessons)) return; // a first tap on Undo is not forgotten
+    this.#lessons = lessons;
     if (!lessons.length) {
       const none = document.createElement("li");
       none.textContent = "No lessons yet.";

@@ -131,10 +131,15 @@ export class Link extends EventTarget {
     }
     if (this.open && now - this.#heardMs > NO_WORD_MS) this.#drop();
     this.#stopAgain();
-    if (this.fresh !== this.#wasFresh) {
-      this.#wasFresh = this.fresh;
-      this.dispatchEvent(new Event("freshness"));
-    }
+    this.#tellFreshness();
+  }
+
+  // Also at once with each picture and with the end of the link: a link that lives shorter than a beat must not leave
+  // a picture behind that looks alive.
+  #tellFreshness() {
+    if (this.fresh === this.#wasFresh) return;
+    this.#wasFresh = this.fresh;
+    this.dispatchEvent(new Event("freshness"));
   }
 
   #connect() {
@@ -173,6 +178,7 @@ export class Link extends EventTarget {
     this.#stopAsked = false;
     this.#stopAskedMs = -Infinity;
     this.dispatchEvent(new Event("closed"));
+    this.#tellFreshness();
     if (!this.#left) setTimeout(() => this.#again(), RECONNECT_MS);
   }
 
@@ -197,6 +203,7 @@ export class Link extends EventTarget {
       this.#pictureMs = this.#heardMs;
       this.picture = message.picture;
       this.state = message;
+      this.#tellFreshness();
       if (message.echo) this.pageRttMs = this.#heardMs - message.echo[0] - message.echo[1];
     } else if (message.kind === "answer") {
       this.#waiting.get(message.number)?.(message);
