@@ -69,11 +69,11 @@ class NotingTeacher(TeacherClient):
         self.sent_ticks: list[int] = []
         self._at_work = at_work
 
-    async def _ask(self, request: Request) -> Answer:
+    async def _ask(self, request: Request, patience_s: float | None = None) -> Answer:
         note = Note(request)
         self.notes.append(note)
         began_s = self._loop.time()
-        note.answer = await super()._ask(request)
+        note.answer = await super()._ask(request, patience_s)
         note.took_s = self._loop.time() - began_s
         return note.answer
 
