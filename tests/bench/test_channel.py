@@ -16,6 +16,7 @@ from kurt2rt.knowledge.opening import open_knowledge
 SHORT = replace(QUICK, learning_s=3.0, channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=20), lessons=2))
 
 
+@pytest.mark.deep
 async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: Subject, tmp_path: Path) -> None:
     told: dict[str, list[float]] = {}
 
