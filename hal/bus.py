@@ -1,19 +1,21 @@
 """The CAN bus: opening, draining without waiting, and the two ports through which frames go out."""
 
 import contextlib
-import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from queue import Empty, Full, SimpleQueue
 
 import can
-from can.interfaces.virtual import VirtualBus, channels_lock
+
+from hal.bus_end import BusEnd
+from hal.in_process_bus import InProcessBus
+from hal.socketcan_bus import SocketCanBus
 
 CONTROL_ID = 0x01
 """Identifier of the only frame that moves the robot (reference 1.2)."""
 
-_QUEUE_FRAMES = 4096
-"""Frames that wait for a listener of the in-process bus, and the most that one drain takes: a bus that is full for
-10 ms carries about 200, so whatever waited when a drain began is taken by it."""
+_DRAIN_FRAMES = 4096
+"""The most that one drain takes: a bus that is full for 10 ms carries about 200, so whatever waited when it began is
+taken by it."""
 
 _CAN_INTERFACE = "280"
 """ARPHRD_CAN, the kind of network interface that Linux shows for CAN."""
@@ -26,23 +28,37 @@ class BusError(OSError):
 class CanBus:
     """One end of a CAN bus. CONTROL goes out through a port that exists once, all else through telemetry ports."""
 
-    def __init__(self, spec: str) -> None:
-        """Open `virtual:NAME` or a SocketCAN interface. Raises BusError."""
-        self.name = spec
-        self._python_can_bus: can.BusABC | None = _open_raw(spec)
+    def __init__(self, name: str, open_end: Callable[[str], BusEnd]) -> None:
+        """`open_end` opens the bus of that name, now and whenever it was lost. Raises what that raises: BusError."""
+        self.name = name
+        self._open_bus_end = open_end
+        self._bus_end: BusEnd | None = open_end(name)
+        self._heard: frozenset[int] | None = None
         self._control_taken = False
+        self._unconfirmed = 0
+
+    def listen_to(self, frame_ids: Iterable[int]) -> None:
+        """From now on hear only frames with these standard identifiers, and error frames; also after `reopen`."""
+        self._heard = frozenset(frame_ids)
+        self._usable().listen_to(self._heard)
+
+    def now_s(self) -> float | None:
+        """The present on the clock of the frames' time stamps; None where they count as just arrived. BusError."""
+        return self._usable().now_s()
 
     def drain(self) -> list[can.Message]:
-        """Every frame that waits, oldest first, without blocking. Raises BusError when the bus is gone."""
-        raw = self._usable()
+        """Every frame of others that waits, oldest first, without blocking. Raises BusError when the bus is gone."""
+        end = self._usable()
         messages: list[can.Message] = []
         try:
-            for _ in range(_QUEUE_FRAMES):
-                # No software filters are set: with them recv(0) gives None when a filtered frame was next.
-                message = raw.recv(0)
+            for _ in range(_DRAIN_FRAMES):
+                message = end.recv(0)
                 if message is None:
                     break
-                messages.append(message)
+                if message.is_rx:
+                    messages.append(message)
+                elif message.arbitration_id == CONTROL_ID and self._unconfirmed:
+                    self._unconfirmed -= 1
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
         return messages
@@ -61,26 +77,31 @@ class CanBus:
     def reopen(self) -> None:
         """Open the same bus anew after it was lost; ports stay valid. Raises BusError while it is still gone."""
         self.shutdown()
-        self._python_can_bus = _open_raw(self.name)
+        end = self._bus_end = self._open_bus_end(self.name)
+        if self._heard is not None:
+            end.listen_to(self._heard)
 
     def shutdown(self) -> None:
         """Give the bus back; may be called twice."""
-        raw, self._python_can_bus = self._python_can_bus, None
-        if raw is not None:
+        end, self._bus_end = self._bus_end, None
+        self._unconfirmed = 0
+        if end is not None:
             with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
-                raw.shutdown()
+                end.shutdown()
 
-    def _usable(self) -> can.BusABC:
-        if self._python_can_bus is None:
+    def _usable(self) -> BusEnd:
+        if self._bus_end is None:
             raise BusError(f"bus {self.name}: is shut down; open it again")
-        return self._python_can_bus
+        return self._bus_end
 
     def _send(self, frame: can.Message) -> None:
-        raw = self._usable()
+        end = self._usable()
         try:
-            raw.send(frame, timeout=0)
+            end.send(frame, timeout=0)
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
+        if end.confirms and frame.arbitration_id == CONTROL_ID:
+            self._unconfirmed += 1
 
 
 class FramePort:
@@ -89,6 +110,14 @@ class FramePort:
     def __init__(self, bus: CanBus, *, is_control: bool) -> None:
         self._bus = bus
         self._is_control = is_control
+
+    @property
+    def unconfirmed(self) -> int:
+        """CONTROL frames that were sent and that the bus has not carried yet, as far as the last drain knows.
+
+        Always 0 on a bus that does not confirm.
+        """
+        return self._bus._unconfirmed
 
     def send(self, frame: can.Message) -> None:
         """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""
@@ -102,64 +131,17 @@ class FramePort:
         self._bus._send(frame)
 
 
-class _InProcessBus(VirtualBus):
-    """One end of python-can's in-process bus, with a queue that is written in C.
-
-    Any other listener of python-can on the channel hears the same frames. The queue of its own end, the general
-    `deepcopy` for every listener and the log call for every frame took a third of a simulated tick.
-    """
-
-    def __init__(self, name: str) -> None:
-        super().__init__(channel=name)
-        waiting: SimpleQueue[can.Message] = SimpleQueue()
-        with channels_lock:
-            self.channel[self.channel.index(self.queue)] = waiting  # type: ignore[call-overload]  # same put and get
-            self.queue = waiting  # type: ignore[assignment]
-
-    def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. Raises can.CanOperationError after shutdown."""
-        if timeout != 0:
-            return super().recv(timeout)
-        self._check_if_open()
-        try:
-            return self.queue.get_nowait()
-        except Empty:
-            return None
-
-    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Give all others a copy. Raises can.CanOperationError when one has too many waiting, and after shutdown."""
-        self._check_if_open()
-        all_took_it = True
-        sent_at_s = time.time()
-        for queue in self.channel:
-            if queue is self.queue:
-                continue
-            copy = msg.__deepcopy__(None)
-            copy.timestamp = sent_at_s
-            copy.channel = self.channel_id
-            full = queue.qsize() >= _QUEUE_FRAMES  # a SimpleQueue has no limit of its own
-            if not full:
-                try:
-                    queue.put_nowait(copy)
-                except Full:
-                    full = True
-            if full:
-                all_took_it = False
-        if not all_took_it:
-            raise can.CanOperationError("a listener has too many frames waiting")
-
-
 def open_bus(spec: str) -> CanBus:
     """Open one end of a bus: `virtual:NAME` within this process, or a SocketCAN interface such as can0. BusError."""
-    return CanBus(spec)
+    return CanBus(spec, _end_of)
 
 
-def _open_raw(spec: str) -> can.BusABC:
+def _end_of(spec: str) -> BusEnd:
     kind, colon, name = spec.partition(":")
     if colon:
         if kind != "virtual" or not name:
             raise BusError(f"bus {spec!r}: no such kind; give virtual:NAME or a SocketCAN interface such as can0")
-        return _InProcessBus(name)
+        return InProcessBus(name)
     try:
         kind = Path(f"/sys/class/net/{spec}/type").read_text(encoding="ascii").strip()
     except (OSError, ValueError) as error:
@@ -170,7 +152,7 @@ def _open_raw(spec: str) -> can.BusABC:
     if kind != _CAN_INTERFACE:
         raise BusError(f"bus {spec!r}: is a network interface, but not of CAN; give one such as can0")
     try:
-        return can.Bus(interface="socketcan", channel=spec, ignore_config=True)
+        return SocketCanBus(spec)
     except (can.CanError, OSError, AttributeError) as error:
         raise BusError(
             f"bus {spec!r}: cannot be opened ({error}); load the kernel's CAN modules: modprobe can_raw"

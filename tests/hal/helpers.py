@@ -63,5 +63,5 @@ def robot_with(**limits: float) -> RobotSettings:
 
 def pull_the_plug(bus: CanBus) -> None:
     """The adapter goes away: python-can's bus fails from now on, and CanBus has not been told."""
-    assert bus._python_can_bus is not None
-    bus._python_can_bus.shutdown()
+    assert bus._bus_end is not None
+    bus._bus_end.shutdown()
