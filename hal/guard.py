@@ -21,6 +21,11 @@ REAR_BUMPER = "rear bumper"
 SPEED_LIMIT = "speed limit"
 SLEW_LIMIT = "slew limit"
 BUS_LOST = "bus lost"
+BUS_BLOCKED = "bus blocked"
+BUS_OFF = "bus off"
+FOREIGN_CONTROL = "another CONTROL sender"
+WHEELS_DISOBEY = "wheels disobey"
+INFRARED_FROZEN = "infra-red frozen"
 
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
 
