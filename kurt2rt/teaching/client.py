@@ -7,15 +7,13 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
             await robot.answer("forward", of=state.tick)
 """
 
-import math
 import secrets
 import time
-from collections import deque
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import NamedTuple, Self
 
 import anyio
 import anyio.abc
@@ -27,7 +25,6 @@ from kurt2rt.channel.requests import (
     COMMAND_ID_BYTES,
     AnswerRequest,
     BehaviourRequest,
-    CommandRequest,
     CorrectRequest,
     DeleteRequest,
     ExportRequest,
@@ -38,7 +35,6 @@ from kurt2rt.channel.requests import (
     PlaceRequest,
     ReleaseRequest,
     ReplaceRequest,
-    Request,
     ResumeRequest,
     RewardRequest,
     SaveRequest,
@@ -49,30 +45,32 @@ from kurt2rt.channel.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.state import State
-from kurt2rt.channel.wire import WireError, decode_answer, decode_state, encode_request
 from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.answer import Answer, NoAnswerError, answer_of
+from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.asking import Asking, facts_of
 from kurt2rt.teaching.hand import BEAT_S, Hand
 from kurt2rt.teaching.hello import Hello, hello_of
 from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
 from kurt2rt.teaching.link import Link
-from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response, open_requests
+from kurt2rt.teaching.observing import observe
+from kurt2rt.teaching.oscore_requests import OscoreRequests, open_requests
 from kurt2rt.teaching.pictures import Pictures
+from kurt2rt.teaching.stopping import Stopping
 from kurt2rt.teaching.wheel import Wheel
 from kurt2rt.teaching.world import World, world_of
 
-RESEND_S = 0.1
 ANSWER_WITHIN_S = 3.5
-SILENT_AFTER_S = 1.0
-"""Without a picture for so long the robot is asked for them anew."""
-_LOOK_EVERY_S = 0.1
-_MOST_COPIES = 35
-"""Of one command that still wait for an answer: one that comes later than ANSWER_WITHIN_S is none."""
 _STOP_WITHIN_S = 0.5
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
-_STATE = "/state"
 
-_Told = TypeVar("_Told")
+
+class _Parts(NamedTuple):
+    """What an open client consists of."""
+
+    requests: OscoreRequests
+    asking: Asking
+    stopping: Stopping
+    hand: Hand
 
 
 class TeacherClient:
@@ -106,10 +104,7 @@ class TeacherClient:
         self._patience_s = patience_s
         self._now = now
         self._pictures = Pictures(now)
-        self._parts: tuple[OscoreRequests, Hand, anyio.abc.TaskGroup] | None = None
-        self._moving: set[anyio.CancelScope] = set()
-        self._stopping: anyio.CancelScope | None = None
-        self._wishes = 0
+        self._parts: _Parts | None = None
         self._stack = AsyncExitStack()
         self._period_s: float | None = None
 
@@ -150,7 +145,7 @@ class TeacherClient:
     @property
     def trouble(self) -> str:
         """Why the robot is not heard, as far as the network tells; empty while it is."""
-        return self._requests.trouble
+        return self._asking.trouble
 
     def states(self) -> AsyncIterator[State]:
         """Each picture as it comes, the newest first; a slow reader misses some. Ends when the client closes."""
@@ -158,65 +153,65 @@ class TeacherClient:
 
     async def hello(self) -> Hello:
         """What robot this is."""
-        hello = await self._told(HelloRequest(), lambda response: hello_of(_facts(response)))
+        hello = await self._asking.told(HelloRequest(), lambda response: hello_of(facts_of(response)))
         self._pictures.hear(hello.boot, hello.tick)
         return hello
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         """The newest lessons, up to 20, newest first."""
-        return await self._told(LessonsRequest(count), lambda response: lesson_lines_of(_facts(response)))
+        return await self._asking.told(LessonsRequest(count), lambda response: lesson_lines_of(facts_of(response)))
 
     async def world(self) -> World | None:
         """The simulated world; None where the robot is a real one."""
-        return await self._told(
-            WorldRequest(), lambda response: None if response.code.startswith("4.04") else world_of(_facts(response))
+        return await self._asking.told(
+            WorldRequest(), lambda response: None if response.code.startswith("4.04") else world_of(facts_of(response))
         )
 
     # Teaching. `of` is the tick of the picture that is meant; None: the present decision.
 
     async def answer(self, action: str, *, of: int | None = None) -> Answer:
         """Answer a situation: a new RLA (phase 1)."""
-        return await self._command(AnswerRequest, action=action, decision_tick=of)
+        return await self._asking.command(AnswerRequest, action=action, decision_tick=of)
 
     async def correct(self, action: str, *, of: int | None = None) -> Answer:
         """Another action is right (phase 2)."""
-        return await self._command(CorrectRequest, action=action, decision_tick=of)
+        return await self._asking.command(CorrectRequest, action=action, decision_tick=of)
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         """Praise (+1) or blame (-1)."""
-        return await self._command(RewardRequest, value=value, decision_tick=of)
+        return await self._asking.command(RewardRequest, value=value, decision_tick=of)
 
     async def replace(self, rla: int, action: str) -> Answer:
         """Give one RLA another action."""
-        return await self._command(ReplaceRequest, rla_id=rla, action=action)
+        return await self._asking.command(ReplaceRequest, rla_id=rla, action=action)
 
     async def delete(self, rla: int) -> Answer:
         """Delete one RLA."""
-        return await self._command(DeleteRequest, rla_id=rla)
+        return await self._asking.command(DeleteRequest, rla_id=rla)
 
     async def undo(self, lesson: str | None = None) -> Answer:
         """Take a lesson back by its command id; None: the last one that still stands."""
-        return await self._command(UndoRequest, lesson=lesson)
+        return await self._asking.command(UndoRequest, lesson=lesson)
 
     # Organising
 
     async def set_phase(self, phase: Phase) -> Answer:
         """Another training phase. In phase 5 the robot drives without its teacher, so a stop ends that command."""
         if phase is not Phase.AUTONOMOUS:
-            return await self._command(PhaseRequest, phase=phase)
-        return await self._move("phase 5", lambda: self._command(PhaseRequest, moves=True, phase=phase))
+            return await self._asking.command(PhaseRequest, phase=phase)
+        return await self._stopping.move("phase 5", lambda: self._asking.command(PhaseRequest, moves=True, phase=phase))
 
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins: the teaching clock runs."""
-        return await self._command(SessionRequest, name=name)
+        return await self._asking.command(SessionRequest, name=name)
 
     async def end_session(self) -> Answer:
         """Teaching ends."""
-        return await self._command(SessionRequest, name=None)
+        return await self._asking.command(SessionRequest, name=None)
 
     async def take(self) -> Answer:
         """Be the teacher from now on; the robot knows that he is there when this returns."""
-        answer = await self._move("take", lambda: self._command(TakeRequest, moves=True))
+        answer = await self._stopping.move("take", lambda: self._asking.command(TakeRequest, moves=True))
         if answer.accepted:
             with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
                 async for state in self.states():
@@ -227,15 +222,15 @@ class TeacherClient:
 
     async def hand_over(self, to: str | None = None) -> Answer:
         """Be the teacher no longer; `to` is who is next, None: whoever takes it."""
-        return await self._command(ReleaseRequest, to=to)
+        return await self._asking.command(ReleaseRequest, to=to)
 
     async def save(self, label: str = "") -> Answer:
         """A copy of the knowledge on the robot; its `name` and `sha256` are in `extra`."""
-        return await self._command(SaveRequest, label=label)
+        return await self._asking.command(SaveRequest, label=label)
 
     async def export(self) -> Answer:
         """The RLAs as a readable table on the robot; `name` and `sha256` are in `extra`."""
-        return await self._command(ExportRequest)
+        return await self._asking.command(ExportRequest)
 
     # Moving
 
@@ -246,46 +241,31 @@ class TeacherClient:
         Raises NoAnswerError as every command does, but goes on being sent then: see `stop_pending`.
         """
         self._hand.end()
-        for command in tuple(self._moving):
-            command.cancel()
-        request = StopRequest(secrets.token_bytes(COMMAND_ID_BYTES))
-        wishes = self._wishes
-        try:
-            answer = await self._ask(request)
-        except NoAnswerError as error:
-            if wishes != self._wishes:
-                raise
-            self._go_on_stopping(request)
-            raise NoAnswerError(
-                f"the stop is not answered: no answer for {self._patience_s:g} s; it is sent on until it is. "
-                f"{self.trouble}".strip()
-            ) from error
-        self._end_stopping()
-        return answer
+        return await self._stopping.stop()
 
     @property
     def stop_pending(self) -> bool:
         """Whether a stop that was not answered in time is still being sent: until it is, or until the teacher wishes
         something later, which is `resume`, `run` or the begin of a press.
         """
-        return self._stopping is not None
+        return self._stopping.pending
 
     async def resume(self) -> Answer:
         """Drive again after a stop."""
-        self._wish_anew()
-        return await self._move("go", lambda: self._command(ResumeRequest, moves=True))
+        self._stopping.wish_anew()
+        return await self._stopping.move("go", lambda: self._asking.command(ResumeRequest, moves=True))
 
     async def run(self, action: str, *, seconds: float) -> Answer:
         """Run one action of the repertoire for a time; the robot stands afterwards."""
-        self._wish_anew()
+        self._stopping.wish_anew()
 
         async def begin() -> Answer:
             if self._period_s is None:
                 self._period_s = (await self.hello()).period_s
             ticks = round(seconds / self._period_s)
-            return await self._command(BehaviourRequest, moves=True, action=action, ticks=ticks)
+            return await self._asking.command(BehaviourRequest, moves=True, action=action, ticks=ticks)
 
-        return await self._move(action, begin)
+        return await self._stopping.move(action, begin)
 
     @property
     def watching(self) -> bool:
@@ -337,23 +317,31 @@ class TeacherClient:
 
     async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
         """Shift a wall or an obstacle."""
-        return await self._command(MoveWallRequest, name=name, dx_m=dx, dy_m=dy)
+        return await self._asking.command(MoveWallRequest, name=name, dx_m=dx, dy_m=dy)
 
     async def place(self, x: float, y: float, heading: float) -> Answer:
         """Put the robot down elsewhere."""
-        return await self._command(PlaceRequest, x_m=x, y_m=y, heading_rad=heading)
+        return await self._asking.command(PlaceRequest, x_m=x, y_m=y, heading_rad=heading)
 
     # How it works
 
     @property
     def _requests(self) -> OscoreRequests:
-        return self._opened_parts()[0]
+        return self._opened_parts().requests
+
+    @property
+    def _asking(self) -> Asking:
+        return self._opened_parts().asking
+
+    @property
+    def _stopping(self) -> Stopping:
+        return self._opened_parts().stopping
 
     @property
     def _hand(self) -> Hand:
-        return self._opened_parts()[1]
+        return self._opened_parts().hand
 
-    def _opened_parts(self) -> tuple[OscoreRequests, Hand, anyio.abc.TaskGroup]:
+    def _opened_parts(self) -> _Parts:
         if self._parts is None:
             raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
         return self._parts
@@ -363,11 +351,13 @@ class TeacherClient:
         device = await anyio.to_thread.run_sync(_read_device, self._folder)
         self.name = device.name
         requests = await open_requests(self._folder, self._host or device.host, self._port or device.port)
-        hand = Hand(self.name, self._pictures, requests, now=self._now, on_begin=self._wish_anew)
+        asking = Asking(requests, self._pictures, self._patience_s)
         try:
             async with anyio.create_task_group() as tasks:
-                self._parts = requests, hand, tasks
-                tasks.start_soon(self._observe, requests)
+                stopping = Stopping(asking, tasks)
+                hand = Hand(self.name, self._pictures, requests, now=self._now, on_begin=stopping.wish_anew)
+                self._parts = _Parts(requests, asking, stopping, hand)
+                tasks.start_soon(observe, requests, self._pictures, self._now)
                 tasks.start_soon(_beat, hand)
                 try:
                     yield
@@ -375,146 +365,17 @@ class TeacherClient:
                     with anyio.CancelScope(shield=True):
                         await self._release_anyhow(hand.hold)
                     tasks.cancel_scope.cancel()
+                    hand.forget()
         finally:
-            hand.forget()
             self._pictures.close()
             with anyio.CancelScope(shield=True):
                 await requests.close()
-
-    async def _observe(self, requests: OscoreRequests) -> None:
-        while True:
-            before, began_s, newest = self._pictures.count, self._now(), -2
-
-            def on_response(response: Response) -> None:
-                nonlocal newest
-                # A captured picture that is sent again must not be shown, and none may overtake a newer one.
-                if response.number <= newest:
-                    return
-                newest = response.number
-                self._show(response, requests)
-
-            observation = requests.observe(_STATE, on_response)
-            while True:
-                await anyio.sleep(_LOOK_EVERY_S)
-                came = self._pictures.count > before
-                if observation.ended and came:
-                    break
-                if self._now() - began_s > SILENT_AFTER_S and self._pictures.age_s > SILENT_AFTER_S:
-                    break
-            observation.end()
-            if self._pictures.count == before:
-                await requests.find_robot()  # it may have another address by now
-
-    def _show(self, response: Response, requests: OscoreRequests) -> None:
-        if not response.successful:
-            requests.trouble = f"the robot shows no picture: {response.code}"
-            return
-        try:
-            picture = decode_state(response.payload)
-        except WireError as error:
-            requests.trouble = f"the robot's picture is not understood, it may be of another version: {error}"
-        else:
-            self._pictures.show(picture)
-
-    async def _move(self, what: str, give: Callable[[], Awaitable[Answer]]) -> Answer:
-        """Say what may set the robot in motion; a stop that is said before the answer ends it."""
-        with anyio.CancelScope() as scope:
-            self._moving.add(scope)
-            try:
-                return await give()
-            finally:
-                self._moving.discard(scope)
-        return Answer(False, "stopped", f"{what} was stopped meanwhile", -1)
-
-    def _wish_anew(self) -> None:
-        self._wishes += 1
-        self._end_stopping()
-
-    def _go_on_stopping(self, request: StopRequest) -> None:
-        if self._stopping is None:
-            self._stopping = anyio.CancelScope()
-            self._opened_parts()[2].start_soon(self._stop_until_answered, request, self._stopping)
-
-    async def _stop_until_answered(self, request: StopRequest, scope: anyio.CancelScope) -> None:
-        with scope, suppress(NoAnswerError):  # one that is not understood is an answer, too
-            await self._ask(request, math.inf)
-        if self._stopping is scope:
-            self._stopping = None
-
-    def _end_stopping(self) -> None:
-        stopping, self._stopping = self._stopping, None
-        if stopping is not None:
-            stopping.cancel()
-
-    async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
-        command_id = secrets.token_bytes(COMMAND_ID_BYTES)
-        with anyio.move_on_after(self._patience_s):
-            await self._pictures.first()
-        state = self._pictures.newest
-        if state is None:
-            raise NoAnswerError(f"there is no picture of the robot, so nothing was sent to it. {self.trouble}".strip())
-        seen = self._pictures.looked_tick if moves else self._pictures.heard_tick
-        return await self._ask(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
-
-    async def _ask(self, request: Request, patience_s: float | None = None) -> Answer:
-        try:
-            payload = encode_request(request)
-        except WireError as error:
-            return Answer(False, "malformed", str(error), -1)
-        # A stop names no start of the robot: the one that was seen when it was said, or a later one, took it.
-        newest = self._pictures.newest
-        boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot
-        response = await self._answered(request.path, payload, patience_s)
-        try:
-            answer = answer_of(response.code, _body(response))
-        except WireError as error:
-            raise NoAnswerError(f"the robot's answer to {request.path} is not understood: {error}") from error
-        if answer.why != "boot":
-            self._pictures.hear(boot, answer.tick, stopped=answer.accepted and isinstance(request, StopRequest))
-        return answer
-
-    async def _told(self, request: Request, read: Callable[[Response], _Told]) -> _Told:
-        response = await self._answered(request.path, encode_request(request))
-        try:
-            return read(response)
-        except WireError as error:
-            raise NoAnswerError(f"the robot's answer to {request.path} is not understood: {error}") from error
-
-    async def _answered(self, path: str, payload: bytes, patience_s: float | None = None) -> Response:
-        requests = self._requests
-        patience_s = self._patience_s if patience_s is None else patience_s
-        answered = anyio.Event()
-        responses: list[Response] = []
-
-        def on_response(response: Response) -> None:
-            responses.append(response)
-            answered.set()
-
-        copies: deque[Exchange] = deque()
-        try:
-            with anyio.move_on_after(patience_s):
-                while not responses:
-                    await anyio.lowlevel.checkpoint_if_cancelled()  # nothing is sent behind a stop
-                    if len(copies) == _MOST_COPIES:
-                        copies.popleft().end()
-                    copies.append(requests.post(path, payload, on_response))
-                    with anyio.move_on_after(RESEND_S):
-                        await answered.wait()
-        finally:
-            for copy in copies:
-                copy.end()
-        if not responses:
-            raise NoAnswerError(
-                f"no answer for {patience_s:g} s: it is not known whether it counted; look at the lessons. "
-                f"{requests.trouble}".strip()
-            )
-        return responses[0]
 
     async def _release(self, hold: int | None) -> Answer | None:
         if hold is None or hold != self._hand.hold:
             return None
         self._hand.end()
-        return await self._ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), hold))
+        return await self._asking.ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), hold))
 
     async def _release_anyhow(self, hold: int | None) -> None:
         # The robot lets go by itself when it hears nothing, so a stop that nobody answers is no error here.
@@ -529,17 +390,6 @@ async def _beat(hand: Hand) -> None:
         # No burst after a pause: what was missed is missed.
         due_s = max(due_s + BEAT_S, anyio.current_time())
         await anyio.sleep_until(due_s)
-
-
-def _facts(response: Response) -> dict[str, Any]:
-    body = _body(response)
-    if not response.successful:
-        raise WireError(f"{response.code} {body.get('text', '')}")
-    return body
-
-
-def _body(response: Response) -> dict[str, Any]:
-    return decode_answer(response.payload) if response.payload else {}
 
 
 def _read_device(folder: Path) -> Device:

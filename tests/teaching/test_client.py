@@ -606,7 +606,7 @@ async def test_a_stop_that_nobody_answers_is_sent_on_until_it_is(pairing: Pairin
 async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
     pairing: Pairing, robot: StandInRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("kurt2rt.teaching.client.RESEND_S", 0.001)
+    monkeypatch.setattr("kurt2rt.teaching.asking.RESEND_S", 0.001)
     async with (
         LossyLink(robot.port) as link,
         TeacherClient(pairing.device.folder, port=link.port, patience_s=0.05) as client,
