@@ -9,6 +9,7 @@ import can
 from hal.bus_end import BusEnd
 from hal.in_process_bus import InProcessBus
 from hal.socketcan_bus import SocketCanBus
+from hal.tap import Tap
 
 CONTROL_ID = 0x01
 """Identifier of the only frame that moves the robot (reference 1.2)."""
@@ -31,6 +32,8 @@ class CanBus:
     def __init__(self, name: str, open_end: Callable[[str], BusEnd]) -> None:
         """`open_end` opens the bus of that name, now and whenever it was lost. Raises what that raises: BusError."""
         self.name = name
+        self.tap: Tap | None = None
+        """Looks on, also after `reopen`; None: nobody."""
         self._open_bus_end = open_end
         self._bus_end: BusEnd | None = open_end(name)
         self._heard: frozenset[int] | None = None
@@ -61,6 +64,10 @@ class CanBus:
                     self._unconfirmed -= 1
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
+        if self.tap is not None and messages:
+            now_s = end.now_s()
+            for message in messages:
+                self.tap.heard(message, 0.0 if now_s is None else max(0.0, now_s - message.timestamp))
         return messages
 
     def telemetry_port(self) -> "FramePort":
@@ -102,6 +109,8 @@ class CanBus:
             raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
         if end.confirms and frame.arbitration_id == CONTROL_ID:
             self._unconfirmed += 1
+        if self.tap is not None:
+            self.tap.sent(frame)
 
 
 class FramePort:

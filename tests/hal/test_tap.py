@@ -1,0 +1,76 @@
+"""Who looks on at a bus sees what this end takes from it and gives to it, and how old it is."""
+
+import can
+
+from hal.bus import CanBus, open_bus
+from hal.bus_end import BusEnd
+from hal.control import encode_brake
+from hal.in_process_bus import InProcessBus
+from tests.hal.helpers import CODEC, cycle, send
+
+
+class Onlooker:
+    """Keeps what it saw."""
+
+    def __init__(self) -> None:
+        self.heard_frames: list[tuple[int, float]] = []
+        self.sent_frames: list[int] = []
+
+    def heard(self, frame: can.Message, age_s: float) -> None:
+        self.heard_frames.append((frame.arbitration_id, age_s))
+
+    def sent(self, frame: can.Message) -> None:
+        self.sent_frames.append(frame.arbitration_id)
+
+
+def test_every_frame_that_is_heard_or_sent_is_seen_in_order(ends: tuple[CanBus, CanBus]) -> None:
+    robot_end, far_end = ends
+    onlooker = robot_end.tap = Onlooker()
+    send(far_end, cycle())
+    robot_end.control_port().send(encode_brake())
+    robot_end.drain()
+    assert onlooker.heard_frames == [(frame.arbitration_id, 0.0) for frame in cycle()]
+    assert onlooker.sent_frames == [0x01]
+
+
+def test_it_sees_on_after_the_bus_was_lost_and_opened_anew(ends: tuple[CanBus, CanBus]) -> None:
+    robot_end, far_end = ends
+    onlooker = robot_end.tap = Onlooker()
+    robot_end.reopen()
+    send(far_end, [CODEC.message("ENCODER").pack(1, 2)])
+    robot_end.drain()
+    assert onlooker.heard_frames == [(CODEC.message("ENCODER").frame_id, 0.0)]
+
+
+class StampedBus(InProcessBus):
+    """Its clock shows what the test sets, and a frame is stamped 5.0 s."""
+
+    time_s = 0.0
+
+    def now_s(self) -> float | None:
+        return self.time_s
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:
+        frame = super().recv(timeout)
+        if frame is not None:
+            frame.timestamp = 5.0
+        return frame
+
+
+def test_a_frame_is_as_old_as_the_clock_of_its_bus_says_and_never_negative() -> None:
+    opened: list[StampedBus] = []
+
+    def open_stamped(name: str) -> BusEnd:
+        opened.append(StampedBus(name))
+        return opened[-1]
+
+    bus = CanBus("stamped", open_stamped)
+    far_end = open_bus("virtual:stamped")
+    onlooker = bus.tap = Onlooker()
+    for now_s in (5.25, 4.0):
+        opened[0].time_s = now_s
+        send(far_end, [CODEC.message("ENCODER").pack(0, 0)])
+        bus.drain()
+    assert [age_s for _, age_s in onlooker.heard_frames] == [0.25, 0.0]
+    for each in (bus, far_end):
+        each.shutdown()
