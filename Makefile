@@ -15,7 +15,7 @@ demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
 test: lint types
-	$(BIN)/pytest -n 2 -q
+	$(BIN)/pytest -n 4 -q
 
 test-deep: $(INSTALLED)
 	$(BIN)/pytest -n 2 -q -m deep
