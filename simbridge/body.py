@@ -95,11 +95,15 @@ class Body:
         body = self._body
         body.position = (pose.x_m, pose.y_m)
         body.angle = pose.heading_rad
-        body.velocity = (0.0, 0.0)
-        body.angular_velocity = 0.0
         self.pose = pose
-        self._points.clear()
+        self.rest()
         self._space.reindex_shapes_for_body(body)
+
+    def rest(self) -> None:
+        """One cycle without touching anything, wherever the wheels turn."""
+        self._body.velocity = (0.0, 0.0)
+        self._body.angular_velocity = 0.0
+        self._points.clear()
 
     @property
     def velocity(self) -> tuple[float, float, float]:

@@ -4,6 +4,7 @@ import hashlib
 import struct
 
 from hal.bus import CanBus
+from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from simbridge.body import Body
 from simbridge.bumpers import Bumpers, Collisions
@@ -45,6 +46,8 @@ class SimulatedRobot:
         self._collisions = Collisions(cycle_s)
         self._laps = Laps(self.world)
         self._pressed = 0
+        self.lifted = False
+        """True while it stands on a block: its wheels turn in the air and the body stays."""
         self.controller = MicroController(robot, bus, Instruments(robot, self._body, self._wheels))
         self.place(world.start_poses[0].pose)
 
@@ -54,7 +57,10 @@ class SimulatedRobot:
         controller, wheels, body = self.controller, self._wheels, self._body
         controller.receive()
         wheels.turn(*controller.orders)
-        body.move(wheels.left_m_s, wheels.right_m_s)
+        if self.lifted:
+            body.rest()
+        else:
+            body.move(wheels.left_m_s, wheels.right_m_s)
         pose = body.pose
         self._collisions.note(body.touching)
         self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
@@ -82,6 +88,11 @@ class SimulatedRobot:
     def pose(self) -> Pose:
         """Where it really is."""
         return self._body.pose
+
+    @property
+    def wheel_speeds(self) -> WheelSpeeds:
+        """Speeds at which the rims of the two sides really turn."""
+        return WheelSpeeds(self._wheels.left_m_s, self._wheels.right_m_s)
 
     @property
     def collisions(self) -> int:
