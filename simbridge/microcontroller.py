@@ -3,10 +3,11 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hal.bus import CONTROL_ID, CanBus
+from hal.bus import CONTROL_ID
 from hal.codec import JunkFrameError, load_codec
 from hal.control import Mode, RawControl, SystemControl, decode_control
 from hal.robot_settings import RobotSettings
+from simbridge.controller_bus import ControllerBus
 from simbridge.instruments import Instruments
 from simbridge.telemetry import Telemetry
 
@@ -35,7 +36,7 @@ class MicroController:
     controller go dead: motors off and no telemetry until MC_RESET. It never reverses a side without ramping it down.
     """
 
-    def __init__(self, robot: RobotSettings, bus: CanBus, instruments: Instruments) -> None:
+    def __init__(self, robot: RobotSettings, bus: ControllerBus, instruments: Instruments) -> None:
         self._bus = bus
         self._motors = robot.motors
         self._instruments = instruments
@@ -49,6 +50,8 @@ class MicroController:
         self.orders = _BRAKED
         self.dead = False
         """True after a crash, until MC_RESET."""
+        self.control_frames = 0
+        """CONTROL frames that were understood, since the robot was switched on."""
         self.junk_frames = 0
         """CONTROL frames that could not be understood, since the robot was switched on."""
 
@@ -68,6 +71,7 @@ class MicroController:
                 except JunkFrameError:
                     self.junk_frames += 1
                     continue
+            self.control_frames += 1
             self._silent_cycles = 0
             newest = self._obey(self._last_command, newest) if self._last_command else self._last_orders
         if self.dead:
@@ -75,8 +79,13 @@ class MicroController:
         if newest is not None and self._actuators_on:
             if newest is not self.orders:
                 self._take(newest)
-        elif self._silent_cycles >= self._watchdog_cycles:
+        elif self.unheard:
             self.orders = _BRAKED
+
+    @property
+    def unheard(self) -> bool:
+        """True while the watchdog holds the robot: no valid CONTROL for its time."""
+        return self._silent_cycles >= self._watchdog_cycles
 
     @property
     def state(self) -> tuple[int, ...]:

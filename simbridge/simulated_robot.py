@@ -3,11 +3,11 @@
 import hashlib
 import struct
 
-from hal.bus import CanBus
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from simbridge.body import Body
 from simbridge.bumpers import Bumpers, Collisions
+from simbridge.controller_bus import ControllerBus
 from simbridge.infrared import InfraredSensors
 from simbridge.instruments import Instruments
 from simbridge.laps import Laps
@@ -25,7 +25,13 @@ class SimulatedRobot:
     """The other end of the bus. Its time advances only by `step`; the same seeds and frames give the same run."""
 
     def __init__(
-        self, robot: RobotSettings, world: WorldSettings, bus: CanBus, seed: int, *, robot_seed: int | None = None
+        self,
+        robot: RobotSettings,
+        world: WorldSettings,
+        bus: ControllerBus,
+        seed: int,
+        *,
+        robot_seed: int | None = None,
     ) -> None:
         """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down.
 
@@ -108,6 +114,11 @@ class SimulatedRobot:
     def bumped(self) -> bool:
         """True while a bumper is pressed."""
         return self._pressed != 0
+
+    @property
+    def wheel_speeds_m_s(self) -> tuple[float, float]:
+        """How fast the wheels turn, left and right."""
+        return self._wheels.left_m_s, self._wheels.right_m_s
 
     @property
     def laps(self) -> float:

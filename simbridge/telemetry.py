@@ -2,16 +2,17 @@
 
 from collections.abc import Callable, Sequence
 
-from hal.bus import FramePort
 from hal.codec import Codec, MessageCodec
+from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import RobotSettings
 from simbridge.analog_frames import AnalogFrames
+from simbridge.controller_bus import SendingPort
 from simbridge.instruments import Instruments
 
 SLOW_CYCLES = 10
 """Period of frames that nobody drives by. The reference confirms 10 ms for ENCODER alone; sending all seventeen each
 cycle would double the load of the bus and the cost of a simulated second, and tell nothing more."""
-_HARDWARE_ID, _FIRMWARE_VERSION = 167, 1
+_FIRMWARE_VERSION = 1
 
 
 class Telemetry:
@@ -20,7 +21,7 @@ class Telemetry:
     Slow frames take turns, so that no cycle carries a burst.
     """
 
-    def __init__(self, robot: RobotSettings, codec: Codec, port: FramePort, instruments: Instruments) -> None:
+    def __init__(self, robot: RobotSettings, codec: Codec, port: SendingPort, instruments: Instruments) -> None:
         self._port = port
         self._instruments = instruments
         self._analog = AnalogFrames(robot.infrared, codec)
@@ -64,4 +65,4 @@ class Telemetry:
         send(self._bumper_frame)  # last: old hosts take it as the end of a cycle
 
     def _info(self) -> tuple[int, ...]:
-        return _HARDWARE_ID, _FIRMWARE_VERSION, self._instruments.cycles % (1 << 32)
+        return SIMULATED_HARDWARE_ID, _FIRMWARE_VERSION, self._instruments.cycles % (1 << 32)

@@ -2,6 +2,7 @@ import can
 import pytest
 
 from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
+from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from simbridge.pose import Pose
@@ -219,7 +220,7 @@ def test_info_counts_the_cycles() -> None:
     with Rig() as rig:
         rig.run(1.0, STAND)
         hardware, firmware, cycles = rig.heard["INFO_1"]
-        assert (hardware, firmware) == (167, 1)
+        assert (hardware, firmware) == (SIMULATED_HARDWARE_ID, 1)
         assert 90 <= cycles <= 100
 
 
