@@ -116,11 +116,6 @@ class SimulatedRobot:
         return self._pressed != 0
 
     @property
-    def wheel_speeds_m_s(self) -> tuple[float, float]:
-        """How fast the wheels turn, left and right."""
-        return self._wheels.left_m_s, self._wheels.right_m_s
-
-    @property
     def laps(self) -> float:
         """Laps along the outer wall so far, positive with the wall on the left."""
         return self._laps.count

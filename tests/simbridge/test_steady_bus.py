@@ -59,12 +59,12 @@ def test_the_robot_stands_while_its_bus_is_gone_and_goes_on_when_it_is_back(adap
             adapter.notebook.drain()
 
     cycles(50)
-    assert min(robot.wheel_speeds_m_s) > 0.1
+    assert min(robot.wheel_speeds) > 0.1
     assert not robot.controller.unheard
     adapter.unplug()
     cycles(60)
     assert robot.controller.unheard
-    assert robot.wheel_speeds_m_s == (0.0, 0.0)
+    assert robot.wheel_speeds == (0.0, 0.0)
     assert adapter.steady.trouble
     assert adapter.steady.lost > 100
     cycles(300)
@@ -74,7 +74,7 @@ def test_the_robot_stands_while_its_bus_is_gone_and_goes_on_when_it_is_back(adap
     cycles(150)
     assert adapter.steady.trouble == ""
     assert not robot.controller.unheard
-    assert min(robot.wheel_speeds_m_s) > 0.1
+    assert min(robot.wheel_speeds) > 0.1
 
 
 def test_one_full_queue_costs_its_frame_and_no_more(adapter: Adapter) -> None:
