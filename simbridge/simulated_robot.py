@@ -32,11 +32,13 @@ class SimulatedRobot:
         seed: int,
         *,
         robot_seed: int | None = None,
+        wheels: Wheels | None = None,
     ) -> None:
         """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down.
 
         `robot_seed` (`seed` unless given) says which robot of its kind it is: gains and periods of its sensors.
         `seed` says which run: noise, phases, slip. So an exam can be driven by the robot that was taught.
+        `wheels`: others than sound ones, to see what becomes of it.
         """
         cycle_s = robot.can.cycle_s
         self.world = World(world)
@@ -44,7 +46,7 @@ class SimulatedRobot:
         self._cycles = 0
         self._infrared_noise = Noise(seed, "infrared")
         self._slip_noise = Noise(seed, "slip")
-        self._wheels = Wheels(robot)
+        self._wheels = wheels or Wheels(robot)
         self._body = Body(self.world, robot.geometry, cycle_s, self._slip_noise)
         build = Noise(seed if robot_seed is None else robot_seed, "robot")
         self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise, build)
