@@ -1,12 +1,13 @@
 # make run    a simulated robot that asks to be taught, and the page to teach it from; ARGS=--auto teaches by itself
 # make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
-# make test   all that CI runs: lint, types, tests
+# make test   lint, types, and the tests that need nothing but Python
+# make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-.PHONY: run demo test test-deep bench lint types clean
+.PHONY: run demo test test-deep hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --page $(ARGS)
@@ -19,6 +20,13 @@ test: lint types
 
 test-deep: $(INSTALLED)
 	$(BIN)/pytest -n 2 -q -m deep
+
+# First that both machines can be had (the small kernel is built once, 3 minutes), then real time, then simulated time.
+hil: $(INSTALLED)
+	$(BIN)/python -m tests.hil.machine $(HIL) --check
+	$(BIN)/python -m tests.hil.machine $(HIL) --simulated-time --check
+	$(BIN)/python -m tests.hil.machine $(BIN)/python -m pytest -q -m hil
+	$(BIN)/pytest -n 2 -q -m boots
 
 bench: $(INSTALLED)
 	$(BIN)/kurt2rt bench

@@ -31,6 +31,8 @@ _PATIENCE_S = 5.0
 _LOOK_S = 0.05
 _SHARED_MEMORY = Path("/dev/shm")
 _LOG_LINES = 15
+_TRACE = "[<"
+"""In lines of the kernel log that list a stack."""
 
 
 class Uml:
@@ -157,7 +159,8 @@ class Uml:
         lines = []
         for said in (control / "complaints", log):
             with contextlib.suppress(FileNotFoundError):
-                lines += said.read_text(encoding="utf-8", errors="replace").splitlines()[-_LOG_LINES:]
+                text = said.read_text(encoding="utf-8", errors="replace")
+                lines += [line for line in text.splitlines() if _TRACE not in line][-_LOG_LINES:]
         raise MachineError("\n    ".join([f"the uml machine ended early, exit status {ended}:", *lines]))
 
 

@@ -1,0 +1,65 @@
+"""The part inside the machine runs one command as a shell would, within its time."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.hil.machine.task import INSIDE
+
+# The interfaces need a machine; the command does not.
+_RUN_ONLY = "import inside, json, sys; sys.exit(inside.run(json.loads(sys.argv[1])))"
+
+
+def run(*command: str, limit_s: float = 60.0, **more: object) -> "subprocess.CompletedProcess[str]":
+    task: dict[str, object] = {
+        "command": command,
+        "environment": {"PATH": "/usr/bin:/bin", "WHO": "me"},
+        "directory": "/",
+        "limit_s": limit_s,
+        "stdout": None,
+        "stderr": None,
+        "prefix": [],
+        **more,
+    }
+    return subprocess.run(
+        [sys.executable, "-c", _RUN_ONLY, json.dumps(task)],
+        cwd=INSIDE.parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "status"),
+    [(("true",), 0), (("sh", "-c", "exit 7"), 7), (("sh", "-c", "kill -9 $$"), 137), (("nosuch",), 127), (("/",), 126)],
+)
+def test_the_exit_status_is_what_a_shell_would_give(command: tuple[str, ...], status: int) -> None:
+    assert run(*command).returncode == status
+
+
+def test_a_command_that_cannot_run_is_named() -> None:
+    assert run("nosuch").stderr == "machine: cannot run nosuch: No such file or directory\n"
+
+
+def test_output_environment_and_directory_are_those_of_the_order(tmp_path: Path) -> None:
+    done = run("sh", "-c", "echo $WHO in $PWD; echo oh >&2; cat", directory=str(tmp_path), prefix=["env", "WHO=you"])
+    assert (done.stdout, done.stderr) == (f"you in {tmp_path}\n", "oh\n")
+
+
+def test_output_goes_to_files_where_the_order_says_so(tmp_path: Path) -> None:
+    both = tmp_path / "both"
+    run("sh", "-c", "echo one; echo two >&2; echo three", stdout=str(both), stderr=str(both))
+    assert both.read_text() == "one\ntwo\nthree\n"
+
+
+# Both end only because nobody is left who holds the output open.
+def test_a_command_that_takes_too_long_is_ended_with_all_it_started() -> None:
+    assert run("sh", "-c", "sleep 1000 & wait", limit_s=0.3).returncode == 124
+
+
+def test_what_a_command_leaves_running_ends_with_it() -> None:
+    assert run("sh", "-c", "sleep 1000 &").returncode == 0

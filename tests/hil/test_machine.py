@@ -1,0 +1,141 @@
+"""The machine runs a command, tells how it ended, leaves nothing behind, and says what is missing."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.hil.machine.__main__ import main
+from tests.hil.machine.packages import need
+from tests.hil.machine.processor import least_busy
+from tests.hil.machine.trouble import MachineError
+
+ROOT = Path(__file__).parents[2]
+MACHINE = (sys.executable, "-m", "tests.hil.machine")
+boots = pytest.mark.boots
+
+
+def in_uml(*words: str, **environment: str) -> "subprocess.CompletedProcess[str]":
+    """Options and a command, in a machine that is booted, also where the native way would do."""
+    return subprocess.run(
+        [*MACHINE, "--way", "uml", *words],
+        cwd=ROOT,
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        ([], "give a command"),
+        (["--limit", "soon", "true"], "argument --limit: soon: give a whole number above 0"),
+        (["--interface", "a/b", "true"], "argument --interface: a/b: no name for a network interface"),
+        (["--share", "/nowhere", "true"], "argument --share: /nowhere: no such directory"),
+        (["--way", "qemu", "true"], "argument --way: invalid choice: 'qemu'"),
+    ],
+)
+def test_a_wrong_argument_is_told_in_a_line(
+    arguments: list[str], complaint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 125
+    assert capsys.readouterr().err.startswith(f"machine: {complaint}")
+
+
+def test_missing_packages_are_named_with_the_line_that_installs_them() -> None:
+    with pytest.raises(MachineError) as caught:
+        need({"sh": "dash", "no-such-tool": "toolbox", "/usr/src/no-such-*.xz": "sources"}, install=False)
+    assert str(caught.value).splitlines() == [
+        "missing Debian packages: sources toolbox",
+        "    apt-get update && apt-get install --no-install-recommends sources toolbox    (as root, or give --install)",
+    ]
+
+
+def test_the_machine_is_put_on_a_processor_that_it_may_use() -> None:
+    assert least_busy() in os.sched_getaffinity(0)
+
+
+@boots
+def test_output_and_exit_status_come_through() -> None:
+    done = in_uml("--", "sh", "-c", "echo out; echo err >&2; exit 7")
+    assert (done.returncode, done.stdout, done.stderr) == (7, "out\n", "err\n")
+
+
+@boots
+def test_the_bus_is_up_and_gives_frames_back_by_its_driver() -> None:
+    done = in_uml("--interface", "vcan0", "--interface", "vcan1", "ip", "-br", "link", "show", "type", "vcan")
+    rows = [line.split() for line in done.stdout.splitlines()]
+    assert [(row[0], row[-1]) for row in rows] == [(name, "<NOARP,UP,LOWER_UP,ECHO>") for name in ("vcan0", "vcan1")]
+    done = in_uml("--no-echo", "ip", "-br", "link", "show", "type", "vcan")
+    assert done.stdout.split() == ["vcan0", "UNKNOWN", "<NOARP,UP,LOWER_UP>"]
+
+
+@boots
+def test_what_is_written_lasts_in_shared_directories_alone(tmp_path: Path) -> None:
+    shared, other = tmp_path / "shared", tmp_path / "other"
+    shared.mkdir()
+    other.mkdir()
+    done = in_uml(
+        "--share", str(shared), "--", "sh", "-c", f"echo 1 >{shared}/kept; echo 1 >{other}/lost; cat {other}/*"
+    )
+    assert done.stdout == "1\n"
+    assert (shared / "kept").read_text() == "1\n"
+    assert list(other.iterdir()) == []
+
+
+@boots
+def test_a_command_that_takes_too_long_is_ended() -> None:
+    done = in_uml("--limit", "1", "sleep", "1000")
+    assert (done.returncode, done.stderr) == (124, "machine: time limit of 1 s\n")
+
+
+@boots
+def test_a_machine_that_does_not_come_up_is_told_with_its_last_words() -> None:
+    done = in_uml("--kernel-argument", "init=/nowhere", "true")
+    assert done.returncode == 125
+    assert done.stderr.startswith("machine: the uml machine ended early, exit status ")
+    assert "Requested init /nowhere failed" in done.stderr
+
+
+@boots
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_machine_and_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
+    words = [*MACHINE, "--way", "uml", "--", "sh", "-c", "echo up; sleep 1000"]
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    with subprocess.Popen(words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True) as runner:
+        assert runner.stdout is not None
+        assert runner.stdout.readline() == "up\n"
+        runner.send_signal(number)
+        assert runner.wait() == 128 + number
+    assert list(tmp_path.iterdir()) == []
+    assert not [line for line in command_lines() if str(tmp_path) in line]
+
+
+@boots
+def test_ten_minutes_pass_at_once_in_simulated_time_and_every_run_sees_the_same_clock() -> None:
+    # In real time this test's own limit would end it.
+    words = ("--simulated-time", "--", "sh", "-c", "date +%s; sleep 600; date +%s.%N")
+    first, second = in_uml(*words), in_uml(*words)
+    began, ended = first.stdout.split()
+    assert float(ended) - float(began) == pytest.approx(600.0, abs=1.0)
+    assert first.stdout == second.stdout
+
+
+def command_lines() -> list[str]:
+    """Of all processes that run here."""
+    lines = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            lines.append(path.read_bytes().replace(b"\0", b" ").decode(errors="replace"))
+        except ProcessLookupError:
+            continue
+        except FileNotFoundError:
+            continue
+    return lines

@@ -1,0 +1,47 @@
+"""Where the kernel has vcan, a machine is a namespace of its own, for root and for anybody else."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.hil
+
+ROOT = Path(__file__).parents[2]
+# The virtual environment's interpreter may lie in somebody's home.
+SYSTEM_PYTHON = "/usr/bin/python3"
+AS_NOBODY = ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups")
+
+
+def native(*words: str, interpreter: str = sys.executable, user: tuple[str, ...] = ()) -> str:
+    done = subprocess.run(
+        [*user, interpreter, "-m", "tests.hil.machine", "--way", "native", *words],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return f"{done.stdout}{done.stderr}exit status {done.returncode}"
+
+
+@pytest.mark.usefixtures("vcan0")
+def test_a_command_has_a_bus_of_its_own_and_the_one_outside_stays_up() -> None:
+    said = native("--interface", "vcan7", "--", "sh", "-c", "ls /sys/class/net; ip link del vcan7; exit 3")
+    assert said == "lo\nvcan7\nexit status 3"
+    assert int(Path("/sys/class/net/vcan0/flags").read_text(), 16) & 1
+
+
+@pytest.mark.usefixtures("vcan0")
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
+def test_an_ordinary_user_has_one_too_and_may_set_its_link() -> None:
+    said = native("--", "sh", "-c", "ip link set vcan0 down && echo down", interpreter=SYSTEM_PYTHON, user=AS_NOBODY)
+    assert said == "down\nexit status 0"
+
+
+@pytest.mark.usefixtures("vcan0")
+def test_a_bus_that_takes_the_short_cut_will_not_do() -> None:
+    said = native("--check")
+    assert said.startswith("native: vcan of this machine's kernel, by unshare --net --mount")
