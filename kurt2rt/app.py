@@ -7,6 +7,7 @@ from typing import NamedTuple
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
+from hal.tap import Tap
 from kurt2rt.channel.ground import Ground
 
 SIMULATED = "sim"
@@ -20,9 +21,12 @@ class OpenedRobot(NamedTuple):
 
 
 @contextmanager
-def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iterator[OpenedRobot]:
+def open_robot(
+    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None
+) -> Iterator[OpenedRobot]:
     """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
 
+    `tap` looks on at the runtime's end of the bus.
     Raises BusError, SettingsError, and on leaving whatever ended the simulation.
     """
     if bus == SIMULATED:
@@ -32,7 +36,9 @@ def open_robot(settings: RobotSettings, bus: str, world: str, seed: int) -> Iter
         with simulated_robot(settings, world, seed) as (simulated, ground):
             yield OpenedRobot(simulated, ground)
         return
-    robot = Kurt2(settings, open_bus(bus))
+    end = open_bus(bus)
+    end.tap = tap
+    robot = Kurt2(settings, end)
     try:
         with robot.watchdog:
             yield OpenedRobot(robot, None)

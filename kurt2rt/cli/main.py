@@ -19,11 +19,13 @@ from kurt2rt.cli.knowledge import knowledge
 from kurt2rt.cli.lesson import lesson
 from kurt2rt.cli.pair import pair
 from kurt2rt.cli.run import run
+from kurt2rt.cli.sim import sim
 from kurt2rt.cli.teach import teach
 from kurt2rt.experiments.curriculum import LessonLostError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
 from kurt2rt.page.error import PageError
+from kurt2rt.recording.error import RecordingError
 from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.scripted_lesson import RefusedError
 
@@ -47,6 +49,7 @@ _ONE_LINERS = (
     NoAnswerError,
     RefusedError,
     PageError,
+    RecordingError,
 )
 """Errors whose message tells the user what, where and what to do."""
 
@@ -74,6 +77,7 @@ app = typer.Typer(
 )
 app.command()(demo)
 app.command()(run)
+app.command()(sim)
 app.command()(teach)
 app.command()(pair)
 app.command()(lesson)

@@ -18,6 +18,7 @@ from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing
 from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.printer import Printer
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.recording.can_log import open_can_log
 from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
 from kurt2rt.service_settings import ServiceSettings, load_service
@@ -27,7 +28,11 @@ from kurt2rt.timing.priority import take_real_time_priority
 
 def run(
     robot: Annotated[
-        str, typer.Option(help="sim: the simulated robot; else the SocketCAN interface of a real one, such as can0.")
+        str,
+        typer.Option(
+            help="sim: a simulated robot in this program; else the bus that the robot is on, a SocketCAN interface "
+            "such as can0, or shared:NAME, where kurt2rt sim is one."
+        ),
     ] = "sim",
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
@@ -59,6 +64,13 @@ def run(
         int | None,
         typer.Option(min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."),
     ] = None,
+    can_log: Annotated[
+        Path | None,
+        typer.Option(
+            help="Keep every frame that is heard and sent, with its time, in a new file: .log (candump's), .asc, .blf, "
+            ".csv, .trc or .mf4. 130 MB an hour as .log.",
+        ),
+    ] = None,
     seconds: Annotated[
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
@@ -84,7 +96,13 @@ def run(
 
         sudo ip link set can0 up type can bitrate 1000000
 
-    With --teacher none nobody can say resume: a real robot drives at once where
+    A robot of which the rest does not know that it is simulated runs in a program
+    of its own; it stands until resume as well:
+
+        kurt2rt sim --bus shared:desk
+        kurt2rt run --robot shared:desk --page
+
+    With --teacher none nobody can say resume: any robot drives at once where
     it knows the situation, and once stopped by the guard it stands until the
     program is started anew.
     """
@@ -115,11 +133,16 @@ def run(
             if acknowledgement.error is not None:
                 say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
 
-        opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed))
+        log = None if can_log is None else ending.enter_context(open_can_log(can_log, robot))
+        opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed, log))
+
+        def line(status: Status) -> str:
+            trouble = "" if log is None else log.trouble
+            return " | ".join(part for part in (status_line(status, opened.robot.health), trouble) if part)
 
         def show(status: Status) -> None:
             # The line is made by the printer as well: the percentiles in it cost more than a tick.
-            printer.put(lambda: tell(status_line(status, opened.robot.health)))
+            printer.put(lambda: tell(line(status)))
 
         at = () if page_port is None else ("--page-port", str(page_port))
 
@@ -146,6 +169,8 @@ def run(
 
         last = anyio.run(serve_it)
     count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
+    if log is not None:
+        tell(log.trouble or f"{log.written} frames are in {log.name}")
     tell(f"the robot stands{count}")
 
 

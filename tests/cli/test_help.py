@@ -26,6 +26,7 @@ def test_every_command_is_found() -> None:
         *(
             "demo",
             "run",
+            "sim",
             "teach",
             "pair",
             "lesson",

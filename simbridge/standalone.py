@@ -1,0 +1,60 @@
+"""The simulated robot alone on its end of a bus, in real time: hardware for a runtime in another process."""
+
+import random
+import time
+from types import TracebackType
+from typing import Self
+
+from hal.bus import CONTROL_ID, BusError, CanBus
+from hal.robot_settings import RobotSettings
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.steady_bus import SteadyBus
+from simbridge.world_settings import WorldSettings
+
+_LISTENS_S = 0.12
+"""Longer than any robot is silent: its slowest frames come every 0.1 s."""
+
+
+class StandaloneRobot:
+    """A robot that is switched on, with the bus it owns. It outlives the loss of its bus."""
+
+    def __init__(
+        self, settings: RobotSettings, world: WorldSettings, bus: CanBus, seed: int, *, start: int | None = None
+    ) -> None:
+        """`seed` decides the robot's sensors, its noise and, unless `start` says which, the start pose, from 1.
+
+        Raises BusError when a robot is on the bus already.
+        """
+        _require_no_robot(bus)
+        bus.listen_to({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
+        self._bus = bus
+        self.bus = SteadyBus(bus)
+        chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
+        self.robot = SimulatedRobot(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
+        starts = [each.pose for each in world.start_poses]
+        self.robot.place(chance.choice(starts) if start is None else starts[start - 1])
+        self.simulation = RealtimeSimulation(self.robot, settings.can.cycle_s)
+
+    def __enter__(self) -> Self:
+        self.simulation.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self.simulation.__exit__(kind, error, trace)
+        finally:
+            self._bus.shutdown()
+
+
+def _require_no_robot(bus: CanBus) -> None:
+    """Two robots on a bus would both obey, and the runtime would see a mixture of them."""
+    time.sleep(_LISTENS_S)
+    heard = sorted({frame.arbitration_id for frame in bus.drain() if not frame.is_error_frame} - {CONTROL_ID})
+    if heard:
+        bus.shutdown()
+        raise BusError(
+            f"bus {bus.name}: a robot is on it already, frame 0x{heard[0]:X} was heard; end it, or take another bus"
+        )

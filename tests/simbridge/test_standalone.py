@@ -1,0 +1,91 @@
+"""A simulated robot alone on its end of a bus: a runtime elsewhere finds it there, once."""
+
+import itertools
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from hal.bus import BusError, CanBus, open_bus
+from hal.identity import SIMULATED_HARDWARE_ID
+from hal.kurt2 import Kurt2
+from hal.robot import WheelSpeeds
+from simbridge.standalone import StandaloneRobot
+from simbridge.world_settings import load_world
+from tests.simbridge.rig import CODEC, ROBOT
+
+WORLD = load_world("a")
+
+_numbers = itertools.count()
+
+
+@pytest.fixture
+def name() -> str:
+    return f"virtual:standalone-test-{next(_numbers)}"
+
+
+@pytest.fixture
+def notebook(name: str) -> Iterator[CanBus]:
+    bus = open_bus(name)
+    yield bus
+    bus.shutdown()
+
+
+def test_the_runtimes_end_drives_it_by_real_time(name: str, notebook: CanBus) -> None:
+    standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1, start=2)
+    robot = standalone.robot
+    assert robot.pose == WORLD.start_poses[1].pose
+    kurt2 = Kurt2(ROBOT, notebook)
+    for tick in range(20):  # by hand as yet, so that nothing waits for the time of day
+        robot.step()
+        now_s = tick * ROBOT.can.cycle_s
+        kurt2.sense(now_s)
+        kurt2.drive(WheelSpeeds(0.2, 0.2), now_s, now_s)
+    assert min(robot.wheel_speeds) > 0.0
+    with standalone:
+        assert not standalone.simulation.wait(0.0)
+    assert standalone.simulation.wait(0.0)
+    kurt2.close()
+
+
+def test_it_says_that_it_is_simulated(name: str, notebook: CanBus) -> None:
+    standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1)
+    for _ in range(10):
+        standalone.robot.step()
+    told = {CODEC.by_id[frame.arbitration_id].name: frame.data for frame in notebook.drain()}
+    for each in ("INFO_1", "INFO_2"):
+        assert CODEC.message(each).unpack(told[each])[0] == SIMULATED_HARDWARE_ID
+    with standalone:
+        pass
+
+
+def test_the_seed_decides_robot_and_start(name: str) -> None:
+    def start_of(seed: int) -> tuple[float, ...]:
+        standalone = StandaloneRobot(ROBOT, WORLD, open_bus(f"{name}-{next(_numbers)}"), seed=seed)
+        seen = (*standalone.robot.pose, *standalone.robot.infrared_counts)
+        with standalone:
+            return seen
+
+    assert start_of(1) == start_of(1)
+    assert len({start_of(seed) for seed in range(1, 5)}) > 1
+
+
+def test_a_second_robot_on_the_bus_is_refused(name: str) -> None:
+    with StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1) as first:
+        stepped = threading.Event()
+        end = open_bus(name)
+        first.simulation.ask(stepped.set)
+        assert stepped.wait(30.0)
+        with pytest.raises(
+            BusError, match=r"a robot is on it already, frame 0x[0-9A-F]+ was heard; end it, or take another bus"
+        ):
+            StandaloneRobot(ROBOT, WORLD, end, seed=2)
+        with pytest.raises(BusError, match="is shut down"):
+            end.drain()
+
+
+def test_a_runtime_alone_on_the_bus_is_no_robot(name: str, notebook: CanBus) -> None:
+    end = open_bus(name)
+    Kurt2(ROBOT, notebook).close()  # brakes
+    with StandaloneRobot(ROBOT, WORLD, end, seed=1):
+        pass
