@@ -25,8 +25,8 @@ test-deep: $(INSTALLED)
 hil: $(INSTALLED)
 	$(BIN)/python -m tests.hil.machine $(HIL) --check
 	$(BIN)/python -m tests.hil.machine $(HIL) --simulated-time --check
-	$(BIN)/python -m tests.hil.machine $(BIN)/python -m pytest -q -m hil
-	$(BIN)/pytest -n 2 -q -m boots
+	$(BIN)/python -m tests.hil.machine $(BIN)/python -m pytest -q -m hil tests/hil
+	$(BIN)/pytest -n 2 -q -m boots tests/hil
 
 bench: $(INSTALLED)
 	$(BIN)/kurt2rt bench
