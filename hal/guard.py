@@ -27,6 +27,9 @@ FOREIGN_CONTROL = "another CONTROL sender"
 WHEELS_DISOBEY = "wheels disobey"
 INFRARED_FROZEN = "infra-red frozen"
 
+_UNCONFIRMED = 2
+"""Own CONTROL frames that the bus has not carried yet: with so many waiting a set point would come to the motors older
+than 20 ms. A brake is never too old."""
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
 
 
@@ -49,6 +52,7 @@ class Guard:
         """Take the bus's CONTROL port. Raises hal.bus.BusError when another guard has it."""
         limits = robot.guard
         self._port = bus.control_port()
+        self._bus_name = bus.name
         self._speed_mode = robot.can.speed_mode
         self._motors = robot.motors
         self._maximum_speed_m_s = limits.maximum_speed_m_s
@@ -84,7 +88,7 @@ class Guard:
 
     @property
     def bus_trouble(self) -> str:
-        """Text of the newest sending error; empty when there was none."""
+        """Text of the newest sending error; empty when there was none since the last release."""
         return self._bus_trouble
 
     def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
@@ -93,6 +97,11 @@ class Guard:
         The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own.
         """
         with self._lock:
+            if self._latched is None and self._port.unconfirmed >= _UNCONFIRMED:
+                self._bus_trouble = (
+                    f"bus {self._bus_name}: frames are not carried; switch the robot on, check cable and bit rate"
+                )
+                self._latch(BUS_BLOCKED)
             if self._latched is not None:
                 return self._stay_stopped()
             left_m_s, right_m_s = wanted
@@ -126,6 +135,7 @@ class Guard:
         """End a latched stop; the robot stands until it is driven, and starts from zero."""
         with self._lock:
             self._latched = None
+            self._bus_trouble = ""
 
     def _reason_to_stand(
         self, left_m_s: float, right_m_s: float, senses: Senses, decided_at_s: float, now_s: float

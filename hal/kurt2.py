@@ -2,33 +2,36 @@
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Final
 
 import can
 
 from hal.bus import CONTROL_ID, BusError, CanBus
+from hal.bus_state import BusState
 from hal.codec import Codec, JunkFrameError, MessageCodec, load_codec
-from hal.guard import BUS_LOST, Guard
+from hal.guard import BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
 from hal.health import Health
-from hal.robot import HIGHEST_COUNTS, Grant, Senses, WheelSpeeds
+from hal.infrared_watch import Board, InfraredWatch
+from hal.robot import HIGHEST_COUNTS, STANDSTILL, Grant, Senses, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import TICKS_CEASED, Watchdog
+from hal.wheel_watch import WheelWatch
 
 CLOSED = "closed"
 REOPEN_PERIOD_S = 1.0
 
 
 class _AnalogFrame:
-    """One frame of the converter: where its channels go in Senses.infrared_counts."""
+    """One frame of a converter: where its distance channels go in Senses.infrared_counts, and on which board it is."""
 
-    __slots__ = ("codec", "last_payload", "places", "received_at_s")
+    __slots__ = ("board", "codec", "last_payload", "places", "received_at_s")
 
-    def __init__(self, codec: MessageCodec, sensor_of_channel: Mapping[str, int]) -> None:
+    def __init__(self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board) -> None:
+        """`places`: of each distance channel its place in the frame and in Senses.infrared_counts."""
         self.codec = codec
-        self.places = tuple(
-            (at, sensor_of_channel[channel]) for at, channel in enumerate(codec.signals) if channel in sensor_of_channel
-        )
+        self.places = places
+        self.board = board
         self.last_payload: bytes | bytearray = b""
         self.received_at_s = -math.inf
 
@@ -41,59 +44,77 @@ class Kurt2:
     ) -> None:
         """Take the bus. Raises hal.bus.BusError when another robot has it, hal.codec.CodecError for a bad database."""
         self._bus: Final = bus
+        self._bus_state: Final = BusState(bus.name)
         self._guard: Final = Guard(settings, bus)
         self.watchdog: Final = Watchdog(self._guard, settings.guard.ticks_ceased_s, watchdog_clock)
         """The second guard; whoever runs the robot in real time starts it. `drive` is its beat."""
+        channels = tuple(sensor.channel for sensor in settings.infrared.sensors)
+        self._infrared_watch: Final = InfraredWatch(channels, settings.guard.frozen_infrared_s)
+        self._wheel_watch: Final = WheelWatch(settings)
         codec = load_codec(settings.can.database)
-        self._analog = _analog_frames(settings, codec)
+        self._analog = _analog_frames(channels, codec, self._infrared_watch)
         self._encoder = codec.message("ENCODER")
         self._bumperc = codec.message("BUMPERC")
-        self._known_ids = frozenset(codec.by_id)
         self._bumper_mask = (1 << len(settings.bumpers)) - 1
-        self._counts = [0] * len(settings.infrared.sensors)
+        self._counts = [0] * len(channels)
         self._bumpers = 0
         self._encoder_at_s = self._bumpers_at_s = -math.inf
         self._senses = Senses(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
+        self._told = STANDSTILL
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
-        self._frames = self._junk = self._unknown = self._foreign_control = self._receive_failures = 0
-        self._receive_trouble = ""
+        self._frames = self._junk = self._foreign_control = self._receive_failures = 0
+        self._receive_trouble = self._alarm = ""
+        # CONTROL as well: a second sender of it must not go unnoticed.
+        bus.listen_to({CONTROL_ID, self._encoder.frame_id, self._bumperc.frame_id, *self._analog})
 
     def sense(self, now_s: float) -> Senses:
         """Take everything that arrived, without waiting, and return the newest values.
 
-        Frames count as received at `now_s`. A frame with junk in it changes nothing, not even its age: a channel that
-        stays broken becomes stale, and the guard stands. A lost bus raises nothing; the senses age.
+        A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk
+        in it changes nothing, not even its age: a channel that stays broken becomes stale, and the guard stands. A lost
+        bus raises nothing; the senses age. What must stop the robot at once does so here.
         """
-        left_ticks = right_ticks = 0
-        changed = False
-        for message in self._drain(now_s):
-            data = message.data
-            frame_id = message.arbitration_id
-            if message.is_extended_id or message.is_remote_frame or message.is_error_frame:
+        messages, bus_now_s = self._drain(now_s)
+        if now_s < self._senses.time_s:
+            self._forget_ages()
+        left_ticks = right_ticks = encoder_frames = error_frames = foreign_control = 0
+        changed = bus_off = False
+        for message in messages:
+            if message.is_error_frame:
+                error_frames += 1
+                self._bus_state.note(message)
+                bus_off = bus_off or self._bus_state.off
+                continue
+            if message.is_extended_id or message.is_remote_frame:
                 self._junk += 1
                 continue
+            data = message.data
+            frame_id = message.arbitration_id
+            at_s = now_s if bus_now_s is None else now_s - max(0.0, bus_now_s - message.timestamp)
             analog = self._analog.get(frame_id)
             try:
                 if analog is not None:
-                    if data != analog.last_payload:
-                        self._read_analog(analog, data)
+                    if data != analog.last_payload and self._read_analog(analog, data):
+                        analog.board.alive_at_s = now_s
                         changed = True
-                    analog.received_at_s = now_s
+                    analog.received_at_s = at_s
                 elif frame_id == self._encoder.frame_id:
                     left, right = self._encoder.unpack(data)
                     left_ticks += left
                     right_ticks += right
-                    self._encoder_at_s = now_s
+                    encoder_frames += 1
+                    self._encoder_at_s = at_s
                 elif frame_id == self._bumperc.frame_id:
                     self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
-                    self._bumpers_at_s = now_s
+                    self._bumpers_at_s = at_s
                 elif frame_id == CONTROL_ID:
-                    self._foreign_control += 1
-                elif frame_id not in self._known_ids:
-                    self._unknown += 1
+                    foreign_control += 1
             except JunkFrameError:
                 self._junk += 1
+        if len(messages) > error_frames and not bus_off:
+            self._bus_state.note_traffic()
+        self._foreign_control += foreign_control
         infrared_at_s = min([analog.received_at_s for analog in self._analog.values()])
         self._senses = Senses(
             now_s,
@@ -105,6 +126,16 @@ class Kurt2:
             self._bumpers,
             now_s - self._bumpers_at_s,
         )
+        if bus_off or self._bus_state.off:
+            self._stop(BUS_OFF)
+        if foreign_control:
+            self._stop(FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it")
+        disobedience = self._wheel_watch.disobedience(left_ticks, right_ticks, encoder_frames, now_s)
+        if disobedience:
+            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders and their cables")
+        freeze = self._infrared_watch.freeze(now_s, driving=self._told != STANDSTILL)
+        if freeze:
+            self._stop(INFRARED_FROZEN, freeze)
         return self._senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
@@ -113,6 +144,8 @@ class Kurt2:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
             self._guard.emergency_stop(TICKS_CEASED)
         grant = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
+        self._told = grant.wheel_speeds
+        self._wheel_watch.tell(grant.wheel_speeds)
         self.watchdog.beat()
         return grant
 
@@ -122,6 +155,7 @@ class Kurt2:
 
     def release(self) -> None:
         """End a latched stop; the robot still stands until it is driven."""
+        self._alarm = ""
         self._guard.release()
 
     def close(self) -> None:
@@ -134,21 +168,33 @@ class Kurt2:
     @property
     def health(self) -> Health:
         """Counters as they stand now."""
+        bus = self._bus_state
         return Health(
             frames=self._frames,
             junk=self._junk,
-            unknown=self._unknown,
+            error_frames=bus.error_frames,
             foreign_control=self._foreign_control,
             send_failures=self._guard.send_failures,
             receive_failures=self._receive_failures,
             bus_trouble=self._receive_trouble or self._guard.bus_trouble,
+            controller=bus.controller,
+            controller_trouble=bus.trouble,
+            alarm=self._alarm,
             latched=self._guard.latched,
         )
 
-    def _drain(self, now_s: float) -> list[can.Message]:
+    def _stop(self, reason: str, alarm: str = "") -> None:
+        if self._guard.latched is None:  # the first reason stands, and with it what is said about it
+            self._alarm = alarm
+            self._guard.emergency_stop(reason)
+
+    def _drain(self, now_s: float) -> tuple[list[can.Message], float | None]:
+        """What waits on the bus, and the present on the clock of its time stamps."""
         messages: list[can.Message] = []
+        bus_now_s: float | None = None
         try:
-            messages = self._bus.drain()
+            # The clock after the frames, and both or neither: a frame must not look younger than it is.
+            messages, bus_now_s = self._bus.drain(), self._bus.now_s()
         except BusError as error:
             self._receive_failures += 1
             if not self._bus_lost:
@@ -159,7 +205,7 @@ class Kurt2:
         if self._bus_lost and now_s >= self._reopen_at_s and not self._closed:
             self._reopen(now_s)
         self._frames += len(messages)
-        return messages
+        return messages, bus_now_s
 
     def _reopen(self, now_s: float) -> None:
         """An adapter that was unplugged fails once and is silent then: only opening it anew shows that it is back."""
@@ -172,19 +218,34 @@ class Kurt2:
             self._bus_lost = False
             self._receive_trouble = ""
 
-    def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> None:
+    def _forget_ages(self) -> None:
+        """The runtime's clock ran backwards: times kept from before would make old frames look new."""
+        self._encoder_at_s = self._bumpers_at_s = -math.inf
+        for analog in self._analog.values():
+            analog.received_at_s = -math.inf
+
+    def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> bool:
+        """Take over the frame's distance channels; True when one of them changed. Raises JunkFrameError."""
         raw = analog.codec.unpack(data)
         for at, _ in analog.places:
             # The C167's result register keeps the channel number above the result (reference 5, point 7).
             if raw[at] > HIGHEST_COUNTS:
                 raise JunkFrameError(f"{analog.codec.name}: {raw[at]} counts, a 10-bit converter has {HIGHEST_COUNTS}")
+        changed = False
         for at, sensor in analog.places:
-            self._counts[sensor] = raw[at]
+            if self._counts[sensor] != raw[at]:
+                self._counts[sensor] = raw[at]
+                changed = True
         analog.last_payload = data
+        return changed
 
 
-def _analog_frames(settings: RobotSettings, codec: Codec) -> dict[int, _AnalogFrame]:
+def _analog_frames(channels: tuple[str, ...], codec: Codec, watch: InfraredWatch) -> dict[int, _AnalogFrame]:
     """The frames that carry channels of the sensor table, by identifier; channel names are signal names."""
-    sensor_of_channel = {sensor.channel: at for at, sensor in enumerate(settings.infrared.sensors)}
-    frames = {frame_id: _AnalogFrame(message, sensor_of_channel) for frame_id, message in codec.by_id.items()}
-    return {frame_id: frame for frame_id, frame in frames.items() if frame.places}
+    frames = {}
+    for frame_id, message in codec.by_id.items():
+        places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)
+        if places:
+            board = watch.board_of(channels[places[0][1]])
+            frames[frame_id] = _AnalogFrame(message, places, board)
+    return frames

@@ -80,6 +80,10 @@ class GuardSettings(Settings):
     stale_bumper_s: Seconds
     command_age_s: Seconds
     ticks_ceased_s: Seconds
+    wheel_error_m_s: MetresPerSecond
+    wheel_error_share: Annotated[float, Field(ge=0, lt=1)]
+    wheel_error_s: Seconds
+    frozen_infrared_s: Annotated[float, Field(gt=0, le=3600)]
 
 
 class SensorSettings(Settings):

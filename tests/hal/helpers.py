@@ -34,6 +34,19 @@ def cycle(counts: int = 200, left_ticks: int = 0, right_ticks: int = 0, bumpers:
     return [*frames, encoder, CODEC.message("BUMPERC").pack(bumpers, 0)]
 
 
+def ticks(speed_m_s: float) -> int:
+    """What an encoder counts in a cycle at that speed."""
+    return round(speed_m_s * TICK_S / ROBOT.geometry.metres_per_tick)
+
+
+def error_frame(classes: int, *, status: int = 0, sending: int = 0, receiving: int = 0) -> can.Message:
+    """What an adapter says of itself: classes of linux/can/error.h, status of the controller, and its counters."""
+    data = bytes((0, status, 0, 0, 0, 0, sending, receiving))
+    return can.Message(
+        arbitration_id=classes, is_extended_id=classes > 0x7FF, is_error_frame=True, data=data, check=True
+    )
+
+
 def send(bus: CanBus, frames: Iterable[can.Message]) -> None:
     port = bus.telemetry_port()
     for frame in frames:

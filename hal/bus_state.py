@@ -1,0 +1,109 @@
+"""What this machine's CAN controller says of itself: Linux's error frames (linux/can/error.h), read and counted."""
+
+from collections import Counter
+from enum import StrEnum
+
+import can
+
+
+class ControllerState(StrEnum):
+    """How far the controller still takes part in the bus, by the errors that it counted."""
+
+    ACTIVE = "error-active"
+    WARNING = "error-warning"
+    PASSIVE = "error-passive"
+    OFF = "bus-off"
+
+
+# Classes of error: bits of the identifier.
+_CONTROLLER = 0x004
+_BUS_OFF = 0x040
+_RESTARTED = 0x100
+_COUNTERS = 0x200
+_CLASSES = 0x3FF
+_KINDS = (
+    (0x020, "not acknowledged"),
+    (0x088, "broken"),
+    (0x010, "transceiver"),
+    (0x001, "not sent in time"),
+    (0x002, "lost arbitration"),
+)
+# Status of the controller, data[1] of class CONTROLLER: a bit for receiving and one for sending, ACTIVE for both.
+_OVERFLOW = 0x03
+_STATES = ((0x30, ControllerState.PASSIVE), (0x0C, ControllerState.WARNING), (0x40, ControllerState.ACTIVE))
+
+
+class BusState:
+    """The state of one bus, kept by its error frames. Junk in them changes nothing but the count."""
+
+    def __init__(self, bus: str) -> None:
+        """`bus`: its name, for what is said about it."""
+        self._bus = bus
+        self._seen: Counter[int] = Counter()
+        self.controller = ControllerState.ACTIVE
+        self.sending_errors = 0
+        """The controller's own counter; from 96 on it warns, from 128 on it is passive, from 256 on it is off."""
+        self.receiving_errors = 0
+        self.overflows = 0
+        """Times that the controller lost frames because nobody fetched them."""
+
+    def note(self, frame: can.Message) -> None:
+        """Read one error frame; cheap, for a broken cable makes thousands in a second."""
+        classes = frame.arbitration_id & _CLASSES
+        self._seen[classes] += 1
+        data = frame.data
+        if len(data) >= 8:
+            # Kernels before 6.0 fill in the counters without the bit that says so.
+            if classes & (_COUNTERS | _CONTROLLER):
+                self.sending_errors, self.receiving_errors = data[6], data[7]
+            if classes & _CONTROLLER:
+                self._note_status(data[1])
+        if classes & _RESTARTED:
+            self.controller = ControllerState.ACTIVE
+        if classes & _BUS_OFF:
+            self.controller = ControllerState.OFF
+
+    def note_traffic(self) -> None:
+        """Frames flow: whatever was said before, the controller takes part in the bus."""
+        if self.off:
+            self.controller = ControllerState.ACTIVE
+
+    @property
+    def off(self) -> bool:
+        """True while nothing can be sent."""
+        return self.controller is ControllerState.OFF
+
+    @property
+    def error_frames(self) -> int:
+        """Error frames so far."""
+        return self._seen.total()
+
+    @property
+    def kinds(self) -> dict[str, int]:
+        """How many of the error frames were about what, in words; those that never came are left out."""
+        kinds = {word: sum(self._seen[seen] for seen in self._seen if seen & bits) for bits, word in _KINDS}
+        return {word: count for word, count in {**kinds, "overflow": self.overflows}.items() if count}
+
+    @property
+    def trouble(self) -> str:
+        """What is wrong and what to do, in a line; empty while the controller is error-active."""
+        if self.controller is ControllerState.ACTIVE:
+            return ""
+        if self.off:
+            return (
+                f"bus {self._bus}: bus-off, the adapter left the bus after too many errors; check cable, termination "
+                f"and bit rate, then: ip link set {self._bus} type can restart (or once: restart-ms 100)"
+            )
+        kinds = ", ".join(f"{count} {word}" for word, count in self.kinds.items())
+        return (
+            f"bus {self._bus}: {self.controller}, {self.sending_errors} errors sending and {self.receiving_errors} "
+            f"receiving; check cable, termination and bit rate; error frames: {kinds or self.error_frames}"
+        )
+
+    def _note_status(self, status: int) -> None:
+        if status & _OVERFLOW:
+            self.overflows += 1
+        for bits, state in _STATES:
+            if status & bits:
+                self.controller = state
+                return

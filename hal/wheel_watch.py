@@ -1,0 +1,109 @@
+"""Do the wheels do what they are told? What the encoders count, held against all that obedient wheels could do."""
+
+import math
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot_settings import RobotSettings
+
+SLOWEST = 2.0
+"""An obedient side answers a set point at most this many times slower than the settings say. Acceleration, braking and
+the time of the speed loop are our choice (reference 4); nobody has measured the real ones."""
+REVERSAL_SPEED_M_S = 0.02
+"""Faster than this a side that is told to turn back slows down first (firmware's SLOW_SPEED)."""
+
+
+class WheelWatch:
+    """Knows how fast each side may be turning, and notices when it does not.
+
+    Whatever its motor is like, an obedient side is between its set point and the slowest answer to all set points so
+    far: a band that is as wide as needed while speeds change, and closes when they do not. A side disobeys when it has
+    been off the band by more than `wheel_error_m_s` and `wheel_error_share` for `wheel_error_s`; time on the band
+    counts against time off it.
+    """
+
+    def __init__(self, robot: RobotSettings) -> None:
+        limits = robot.guard
+        self._tick_m_s = robot.geometry.metres_per_tick / robot.can.cycle_s
+        # After a longer pause nobody knows what became of the set point: others have stopped the robot meanwhile.
+        self._pause_s = limits.ticks_ceased_s
+        self._error_s = limits.wheel_error_s
+        self._left, self._right = _Side(robot), _Side(robot)
+        self._told = STANDSTILL
+        self._at_s = -math.inf
+        self._lost = True
+
+    def tell(self, told: WheelSpeeds) -> None:
+        """Set points in m/s that this tick's CONTROL carries."""
+        self._told = told
+
+    def disobedience(self, left_ticks: int, right_ticks: int, frames: int, now_s: float) -> str:
+        """What a side does that disobeys, in a line; empty while both obey.
+
+        The ticks are those of all `frames` ENCODER frames of this tick of the runtime, none or several.
+        """
+        elapsed_s = now_s - self._at_s
+        self._at_s = now_s
+        left, right, told = self._left, self._right, self._told
+        if 0.0 <= elapsed_s <= self._pause_s:
+            left.follow(told.left_m_s, elapsed_s)
+            right.follow(told.right_m_s, elapsed_s)
+        else:
+            self._lost = True
+        if not frames:
+            return ""
+        # By frames, not by time: a frame that was lost takes its ticks along.
+        left_m_s, right_m_s = left_ticks * self._tick_m_s / frames, right_ticks * self._tick_m_s / frames
+        if self._lost:
+            self._lost = False
+            left.start(left_m_s)
+            right.start(right_m_s)
+            return ""
+        if left.off_s(left_m_s, elapsed_s) >= self._error_s:
+            return f"left wheels were told {told.left_m_s:.2f} m/s and turn at {left_m_s:.2f}"
+        if right.off_s(right_m_s, elapsed_s) >= self._error_s:
+            return f"right wheels were told {told.right_m_s:.2f} m/s and turn at {right_m_s:.2f}"
+        return ""
+
+
+class _Side:
+    """The band of one side's speeds in m/s, and for how long the side has been off it."""
+
+    def __init__(self, robot: RobotSettings) -> None:
+        motors, limits = robot.motors, robot.guard
+        self._loop_s = SLOWEST * motors.speed_loop_time_s
+        self._acceleration_m_s2 = motors.acceleration_m_s2 / SLOWEST
+        self._braking_m_s2 = motors.braking_m_s2 / SLOWEST
+        self._error_m_s = limits.wheel_error_m_s
+        self._error_share = limits.wheel_error_share
+        self._error_s = limits.wheel_error_s
+        self._low_m_s = self._high_m_s = self._off_s = 0.0
+
+    def start(self, speed_m_s: float) -> None:
+        """Nothing is known but this speed."""
+        self._low_m_s = self._high_m_s = speed_m_s
+        self._off_s = 0.0
+
+    def follow(self, told_m_s: float, elapsed_s: float) -> None:
+        """Go on for a while with this set point."""
+        self._low_m_s = min(told_m_s, self._slowest(self._low_m_s, told_m_s, elapsed_s))
+        self._high_m_s = max(told_m_s, self._slowest(self._high_m_s, told_m_s, elapsed_s))
+
+    def off_s(self, speed_m_s: float, elapsed_s: float) -> float:
+        """For how long it has been off the band, this speed included; at most `wheel_error_s`."""
+        low_m_s, high_m_s = self._low_m_s, self._high_m_s
+        below_m_s = low_m_s - speed_m_s - self._error_share * abs(low_m_s)
+        above_m_s = speed_m_s - high_m_s - self._error_share * abs(high_m_s)
+        if below_m_s > self._error_m_s or above_m_s > self._error_m_s:
+            self._off_s = min(self._error_s, self._off_s + elapsed_s)
+        else:
+            self._off_s = max(0.0, self._off_s - elapsed_s)
+        return self._off_s
+
+    def _slowest(self, speed_m_s: float, told_m_s: float, elapsed_s: float) -> float:
+        """The speed after a while of the slowest side that still obeys."""
+        if speed_m_s * told_m_s < 0.0 and abs(speed_m_s) > REVERSAL_SPEED_M_S:
+            told_m_s = 0.0
+        change_m_s = (told_m_s - speed_m_s) * elapsed_s / (self._loop_s + elapsed_s)
+        speeds_up = speed_m_s * change_m_s >= 0.0
+        most_m_s = (self._acceleration_m_s2 if speeds_up else self._braking_m_s2) * elapsed_s
+        return speed_m_s + max(-most_m_s, min(most_m_s, change_m_s))
