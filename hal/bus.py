@@ -8,6 +8,7 @@ import can
 
 from hal.bus_end import BusEnd
 from hal.in_process_bus import InProcessBus
+from hal.shared_bus import SharedBus
 from hal.socketcan_bus import SocketCanBus
 from hal.tap import Tap
 
@@ -20,6 +21,13 @@ taken by it."""
 
 _CAN_INTERFACE = "280"
 """ARPHRD_CAN, the kind of network interface that Linux shows for CAN."""
+_INTERFACE_UP = 0x1
+_LONGEST_FRAME = 8
+
+_CONTROLLER_RESET = 0x040 | 0x100
+"""Error frames (linux/can/error.h): bus-off, restarted. What waited in the controller then is never confirmed."""
+
+_KINDS = "virtual:NAME, shared:NAME or a SocketCAN interface such as can0"
 
 
 class BusError(OSError):
@@ -38,12 +46,23 @@ class CanBus:
         self._bus_end: BusEnd | None = open_end(name)
         self._heard: frozenset[int] | None = None
         self._control_taken = False
-        self._unconfirmed = 0
+        # Two counters, for each has one writer: the watchdog's thread may send while the loop drains.
+        self._sent_controls = self._carried_controls = 0
+        self._lost = 0
+
+    @property
+    def lost(self) -> int:
+        """Frames since the bus was opened that were gone before the last drain, which came too late for them."""
+        return self._lost
 
     def listen_to(self, frame_ids: Iterable[int]) -> None:
-        """From now on hear only frames with these standard identifiers, and error frames; also after `reopen`."""
-        self._heard = frozenset(frame_ids)
-        self._usable().listen_to(self._heard)
+        """From now on hear only frames with these standard identifiers, also after `reopen`. Raises BusError.
+
+        CONTROL and error frames are always heard: whoever is on this bus has to know of them.
+        """
+        heard = frozenset(frame_ids) | {CONTROL_ID}
+        self._filter(self._usable(), heard)
+        self._heard = heard
 
     def now_s(self) -> float | None:
         """The present on the clock of the frames' time stamps; None where they count as just arrived. BusError."""
@@ -60,8 +79,13 @@ class CanBus:
                     break
                 if message.is_rx:
                     messages.append(message)
-                elif message.arbitration_id == CONTROL_ID and self._unconfirmed:
-                    self._unconfirmed -= 1
+                    if message.is_error_frame and message.arbitration_id & _CONTROLLER_RESET:
+                        self._carried_controls = self._sent_controls
+                elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
+                    self._carried_controls = min(self._carried_controls + 1, self._sent_controls)
+            if end.lost != self._lost:
+                self._lost = end.lost
+                self._carried_controls = self._sent_controls  # their confirmations may be among the lost
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
         if self.tap is not None and messages:
@@ -84,31 +108,45 @@ class CanBus:
     def reopen(self) -> None:
         """Open the same bus anew after it was lost; ports stay valid. Raises BusError while it is still gone."""
         self.shutdown()
-        end = self._bus_end = self._open_bus_end(self.name)
-        if self._heard is not None:
-            end.listen_to(self._heard)
+        end = self._open_bus_end(self.name)
+        try:
+            if self._heard is not None:
+                self._filter(end, self._heard)
+        except BusError:
+            _close(end)
+            raise
+        self._bus_end = end
 
     def shutdown(self) -> None:
         """Give the bus back; may be called twice."""
         end, self._bus_end = self._bus_end, None
-        self._unconfirmed = 0
+        self._carried_controls = self._sent_controls
+        self._lost = 0
         if end is not None:
-            with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
-                end.shutdown()
+            _close(end)
 
     def _usable(self) -> BusEnd:
         if self._bus_end is None:
             raise BusError(f"bus {self.name}: is shut down; open it again")
         return self._bus_end
 
-    def _send(self, frame: can.Message) -> None:
+    def _filter(self, end: BusEnd, heard: frozenset[int]) -> None:
+        try:
+            end.listen_to(heard)
+        except (can.CanError, OSError, ValueError) as error:
+            raise BusError(f"bus {self.name}: takes no receive filter ({error})") from error
+
+    def _send(self, frame: can.Message, *, is_control: bool) -> None:
         end = self._usable()
+        awaited = is_control and end.confirms
+        if awaited:
+            self._sent_controls += 1  # before it is out, for it may be back at once
         try:
             end.send(frame, timeout=0)
         except (can.CanError, OSError, ValueError) as error:
+            if awaited:
+                self._sent_controls -= 1
             raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
-        if end.confirms and frame.arbitration_id == CONTROL_ID:
-            self._unconfirmed += 1
         if self.tap is not None:
             self.tap.sent(frame)
 
@@ -126,7 +164,7 @@ class FramePort:
 
         Always 0 on a bus that does not confirm.
         """
-        return self._bus._unconfirmed
+        return self._bus._sent_controls - self._bus._carried_controls
 
     def send(self, frame: can.Message) -> None:
         """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""
@@ -137,32 +175,54 @@ class FramePort:
         if (frame_id == CONTROL_ID and not frame.is_extended_id) is not self._is_control:
             carries = "only CONTROL" if self._is_control else "all but CONTROL, which the guard sends"
             raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} refused, this port carries {carries}")
-        self._bus._send(frame)
+        if len(frame.data) > _LONGEST_FRAME or frame.is_fd:
+            raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} is not of classic CAN")
+        self._bus._send(frame, is_control=self._is_control)
 
 
 def open_bus(spec: str) -> CanBus:
-    """Open one end of a bus: `virtual:NAME` within this process, or a SocketCAN interface such as can0. BusError."""
+    """Open one end of a bus. Raises BusError.
+
+    `virtual:NAME` is within this process, `shared:NAME` among processes of this user on this machine, any other word is
+    a SocketCAN interface such as can0.
+    """
     return CanBus(spec, _end_of)
 
 
 def _end_of(spec: str) -> BusEnd:
     kind, colon, name = spec.partition(":")
-    if colon:
-        if kind != "virtual" or not name:
-            raise BusError(f"bus {spec!r}: no such kind; give virtual:NAME or a SocketCAN interface such as can0")
-        return InProcessBus(name)
+    if not colon:
+        return _socketcan(spec)
+    if kind not in ("virtual", "shared") or not name:
+        raise BusError(f"bus {spec!r}: no such kind; give {_KINDS}")
     try:
-        kind = Path(f"/sys/class/net/{spec}/type").read_text(encoding="ascii").strip()
+        return InProcessBus(name) if kind == "virtual" else SharedBus(name)
+    except (can.CanError, OSError) as error:
+        raise BusError(f"bus {spec!r}: cannot be opened ({error})") from error
+
+
+def _socketcan(interface: str) -> SocketCanBus:
+    folder = Path("/sys/class/net") / interface
+    try:
+        kind = (folder / "type").read_text(encoding="ascii").strip()
+        flags = int((folder / "flags").read_text(encoding="ascii"), base=16)
     except (OSError, ValueError) as error:
         raise BusError(
-            f"bus {spec!r}: no such network interface; plug in the adapter, or set it up: "
-            f"ip link set {spec or 'can0'} up type can bitrate 1000000"
+            f"bus {interface!r}: no such network interface; plug in the adapter, or set it up: "
+            f"ip link set {interface or 'can0'} up type can bitrate 1000000 (other kinds: {_KINDS})"
         ) from error
     if kind != _CAN_INTERFACE:
-        raise BusError(f"bus {spec!r}: is a network interface, but not of CAN; give one such as can0")
+        raise BusError(f"bus {interface!r}: is a network interface, but not of CAN; give {_KINDS}")
+    if not flags & _INTERFACE_UP:
+        raise BusError(f"bus {interface!r}: the interface is down; ip link set {interface} up")
     try:
-        return SocketCanBus(spec)
+        return SocketCanBus(interface)
     except (can.CanError, OSError, AttributeError) as error:
         raise BusError(
-            f"bus {spec!r}: cannot be opened ({error}); load the kernel's CAN modules: modprobe can_raw"
+            f"bus {interface!r}: cannot be opened ({error}); load the kernel's CAN modules: modprobe can_raw"
         ) from error
+
+
+def _close(end: BusEnd) -> None:
+    with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
+        end.shutdown()

@@ -15,6 +15,9 @@ class BusEnd(Protocol):
     confirms: bool
     """True when an end hears its own frames, too (`is_rx` False), as soon as the bus has carried them."""
 
+    lost: int
+    """Frames since it was opened that were gone before this end took them, for it was behind."""
+
     def now_s(self) -> float | None:
         """The present on the clock that stamps the frames; None where they count as just arrived."""
         ...

@@ -6,6 +6,8 @@ from queue import Empty, Full, SimpleQueue
 import can
 from can.interfaces.virtual import VirtualBus, channels_lock
 
+from hal.bus_frame import is_heard
+
 QUEUE_FRAMES = 4096
 """Frames that wait for a listener before the next sender fails."""
 
@@ -18,6 +20,8 @@ class InProcessBus(VirtualBus):
     """
 
     confirms = False
+    lost = 0
+    """None ever: the sender fails instead."""
 
     def __init__(self, name: str) -> None:
         """Join the bus of that name in this process."""
@@ -45,9 +49,7 @@ class InProcessBus(VirtualBus):
         try:
             while True:
                 frame = self.queue.get_nowait()
-                if heard is None or (frame.arbitration_id in heard and not frame.is_extended_id):
-                    return frame
-                if frame.is_error_frame:
+                if is_heard(frame, heard):
                     return frame
         except Empty:
             return None
@@ -63,6 +65,7 @@ class InProcessBus(VirtualBus):
             copy = msg.__deepcopy__(None)
             copy.timestamp = sent_at_s
             copy.channel = self.channel_id
+            copy.is_rx = True
             full = queue.qsize() >= QUEUE_FRAMES  # a SimpleQueue has no limit of its own
             if not full:
                 try:

@@ -9,7 +9,13 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("config", "hal", "behaviors", "kurt2rt", "simbridge")
 RAW_BUS = {"Bus", "BusABC", "ThreadSafeBus", "VirtualBus", "SocketcanBus", "interface", "interfaces"}
-KINDS_OF_BUS = {"hal/bus.py", "hal/bus_end.py", "hal/in_process_bus.py", "hal/socketcan_bus.py"}
+KINDS_OF_BUS = {
+    "hal/bus.py",
+    "hal/bus_end.py",
+    "hal/in_process_bus.py",
+    "hal/shared_bus.py",
+    "hal/socketcan_bus.py",
+}
 INSIDES = {"_bus_end", "_open_bus_end"}
 ALLOWED = {
     "control_port": {"hal/bus.py", "hal/guard.py"},

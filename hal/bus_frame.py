@@ -1,0 +1,53 @@
+"""A classic CAN frame in the 16 bytes of Linux's `struct can_frame`: how buses outside this process carry it."""
+
+import struct
+
+import can
+
+from hal.frame import Frame
+
+BUS_FRAME = struct.Struct("=IB3x8s")
+"""Identifier with its flags, length, payload padded with zeros."""
+
+_EXTENDED, _REMOTE, _ERROR = 0x8000_0000, 0x4000_0000, 0x2000_0000
+_FLAGS = _EXTENDED | _REMOTE | _ERROR
+_STANDARD_ID, _EXTENDED_ID = 0x7FF, 0x1FFF_FFFF
+_LONGEST = 8
+
+
+def pack_bus_frame(frame: can.Message) -> bytes:
+    """The 16 bytes of a frame. Raises ValueError for one that classic CAN does not have."""
+    length = frame.dlc if frame.is_remote_frame else len(frame.data)
+    if length > _LONGEST or frame.is_fd:
+        raise ValueError(f"frame 0x{frame.arbitration_id:X} is not of classic CAN: {length} bytes, FD {frame.is_fd}")
+    flagged_id = frame.arbitration_id
+    if frame.is_extended_id:
+        flagged_id |= _EXTENDED
+    if frame.is_remote_frame:
+        flagged_id |= _REMOTE
+    if frame.is_error_frame:
+        flagged_id |= _ERROR
+    return BUS_FRAME.pack(flagged_id, length, frame.data)
+
+
+def frame_of(flagged_id: int, length: int, payload: bytes) -> can.Message:
+    """The frame of a record that BUS_FRAME unpacked, without time stamp and channel."""
+    if not flagged_id & _FLAGS:
+        return Frame(flagged_id & _STANDARD_ID, payload[:length])
+    is_extended = bool(flagged_id & _EXTENDED)
+    is_remote = bool(flagged_id & _REMOTE)
+    return can.Message(
+        arbitration_id=flagged_id & (_EXTENDED_ID if is_extended else _STANDARD_ID),
+        is_extended_id=is_extended,
+        is_remote_frame=is_remote,
+        is_error_frame=bool(flagged_id & _ERROR),
+        dlc=min(length, _LONGEST),
+        data=None if is_remote else payload[:length],
+    )
+
+
+def is_heard(frame: can.Message, heard: frozenset[int] | None) -> bool:
+    """Whether an end that listens to these standard identifiers (None: to all) gets a frame; error frames always."""
+    if heard is None or frame.is_error_frame:
+        return True
+    return frame.arbitration_id in heard and not frame.is_extended_id

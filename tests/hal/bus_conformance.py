@@ -1,0 +1,320 @@
+"""What every kind of bus does. A kind inherits the suite and says how to join its bus."""
+
+import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from enum import Enum, auto
+from typing import ClassVar
+
+import can
+import pytest
+
+from hal.bus import CONTROL_ID, BusError, CanBus
+from hal.control import encode_brake
+from hal.frame import Frame
+from tests.hal.helpers import CODEC, cycle, pull_the_plug, send
+
+Join = Callable[[], CanBus]
+Ends = tuple[CanBus, CanBus]
+
+BUS_OFF = can.Message(arbitration_id=0x040, is_extended_id=False, is_error_frame=True, dlc=8, data=bytes(8))
+"""What a controller reports when it takes no more part in the bus, as Linux lays it out."""
+RESTARTED = can.Message(arbitration_id=0x100, is_extended_id=False, is_error_frame=True, dlc=8, data=bytes(8))
+EXTENDED = can.Message(arbitration_id=0x1234_5678, is_extended_id=True, data=b"\x01\x02\x03")
+REMOTE = can.Message(arbitration_id=0x20, is_extended_id=False, is_remote_frame=True, dlc=5)
+
+_NUMBER = struct.Struct(">I")
+_NUMBERED_ID = 0x123
+
+
+class Behind(Enum):
+    """What becomes of frames for a listener that takes none."""
+
+    SENDER_IS_TOLD = auto()
+    OLDEST_ARE_LOST = auto()
+    NEWEST_ARE_LOST = auto()
+
+
+@contextmanager
+def joining(open_end: Callable[[], CanBus]) -> Iterator[Join]:
+    """Join a bus as often as asked, and leave it with every end."""
+    ends: list[CanBus] = []
+
+    def join() -> CanBus:
+        ends.append(open_end())
+        return ends[-1]
+
+    try:
+        yield join
+    finally:
+        for end in ends:
+            end.shutdown()
+
+
+def numbered(number: int) -> Frame:
+    return Frame(_NUMBERED_ID, _NUMBER.pack(number))
+
+
+def numbers(frames: list[can.Message]) -> list[int]:
+    return [_NUMBER.unpack(frame.data)[0] for frame in frames]
+
+
+def identity(frame: can.Message) -> tuple[object, ...]:
+    """All that a receiver can tell about what was sent."""
+    return (
+        frame.arbitration_id,
+        frame.is_extended_id,
+        frame.is_remote_frame,
+        frame.is_error_frame,
+        frame.dlc,
+        bytes(frame.data),
+    )
+
+
+class BusConformance:
+    """The behaviours; `ends` are the robot's end and the controller's."""
+
+    confirms: ClassVar[bool] = False
+    """Whether an end learns that its CONTROL was carried."""
+    behind: ClassVar[Behind] = Behind.SENDER_IS_TOLD
+    too_many_frames: ClassVar[int] = 10_000
+    """More than wait for a listener."""
+
+    @pytest.fixture
+    def join(self) -> Iterator[Join]:
+        """Opens one more end of a bus of its own."""
+        raise NotImplementedError
+
+    @pytest.fixture
+    def ends(self, join: Join) -> Ends:
+        return join(), join()
+
+    def carry(self) -> None:
+        """Let the bus carry what was sent; most need no time for it."""
+
+    def heard(self, end: CanBus) -> list[can.Message]:
+        self.carry()
+        return end.drain()
+
+    def test_frames_arrive_once_in_their_order_and_nobody_hears_itself(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        send(far_end, map(numbered, range(150)))
+        assert numbers(self.heard(robot_end)) == list(range(150))
+        assert self.heard(robot_end) == []
+        assert self.heard(far_end) == []
+
+    def test_an_empty_bus_is_silent(self, ends: Ends) -> None:
+        assert [self.heard(end) for end in ends] == [[], []]
+
+    def test_every_listener_hears_every_frame_in_one_order(self, join: Join) -> None:
+        robot_end, far_end, one, other = (join() for _ in range(4))
+        for number in range(0, 100, 2):
+            send(far_end, [numbered(number)])
+            self.carry()
+            send(robot_end, [numbered(number + 1)])
+            self.carry()
+        assert numbers(self.heard(one)) == numbers(self.heard(other)) == list(range(100))
+        assert numbers(self.heard(robot_end)) == list(range(0, 100, 2))
+        assert numbers(self.heard(far_end)) == list(range(1, 100, 2))
+
+    def test_who_joins_hears_what_is_sent_from_then_on(self, ends: Ends, join: Join) -> None:
+        _, far_end = ends
+        send(far_end, [numbered(1)])
+        self.carry()
+        late = join()
+        send(far_end, [numbered(2)])
+        assert numbers(self.heard(late)) == [2]
+
+    def test_both_directions_carry_what_the_robot_and_its_controller_say(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        control = robot_end.control_port()
+        for counts in range(5):
+            control.send(encode_brake())
+            send(far_end, cycle(counts))
+            assert [identity(frame) for frame in self.heard(robot_end)] == [identity(frame) for frame in cycle(counts)]
+            assert [identity(frame) for frame in self.heard(far_end)] == [identity(encode_brake())]
+
+    @pytest.mark.parametrize("length", range(9))
+    def test_a_payload_of_every_length_arrives_whole(self, ends: Ends, length: int) -> None:
+        robot_end, far_end = ends
+        sent = Frame(0x7FF, bytes(range(0xF0, 0xF0 + length)))
+        send(far_end, [sent])
+        (arrived,) = self.heard(robot_end)
+        assert identity(arrived) == identity(sent)
+        assert arrived.dlc == length
+
+    @pytest.mark.parametrize(
+        "sent", [EXTENDED, REMOTE, BUS_OFF, can.Message(arbitration_id=CONTROL_ID, is_extended_id=True, data=b"12")]
+    )
+    def test_frames_of_other_formats_arrive_as_what_they_are(self, ends: Ends, sent: can.Message) -> None:
+        robot_end, far_end = ends
+        send(far_end, [sent])
+        (arrived,) = self.heard(robot_end)
+        assert identity(arrived) == identity(sent)
+        assert arrived.is_rx
+
+    @pytest.mark.parametrize(
+        "sent",
+        [
+            can.Message(arbitration_id=0x09, is_extended_id=False, data=bytes(9)),
+            can.Message(arbitration_id=0x09, is_extended_id=False, is_fd=True, data=bytes(8)),
+        ],
+    )
+    def test_what_is_not_classic_can_is_refused(self, ends: Ends, sent: can.Message) -> None:
+        robot_end, far_end = ends
+        with pytest.raises(ValueError, match="frame 0x9 is not of classic CAN"):
+            send(far_end, [sent])
+        assert self.heard(robot_end) == []
+
+    def test_only_what_is_listened_to_arrives_and_control_and_errors_always(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        robot_end.listen_to({0x09, 0x20})
+        far_end.control_port().send(encode_brake())
+        send(far_end, [Frame(0x08, b""), Frame(0x09, b"a"), EXTENDED, BUS_OFF, Frame(0x20, b"b"), Frame(0x21, b"")])
+        send(far_end, [can.Message(arbitration_id=0x09, is_extended_id=True, data=b"c")])
+        send(far_end, [can.Message(arbitration_id=0x809, is_extended_id=True, data=b"d")])
+        assert [identity(frame)[0] for frame in self.heard(robot_end)] == [CONTROL_ID, 0x09, 0x40, 0x20]
+        robot_end.listen_to({0x08})
+        send(far_end, [Frame(0x08, b"e"), Frame(0x09, b"f")])
+        assert [bytes(frame.data) for frame in self.heard(robot_end)] == [b"e"]
+
+    def test_listening_to_nothing_is_not_listening_to_all(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        robot_end.listen_to(())
+        send(far_end, [*cycle(), BUS_OFF])
+        assert [identity(frame)[0] for frame in self.heard(robot_end)] == [0x40]
+
+    def test_what_waits_already_is_filtered_as_well(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        send(far_end, [Frame(0x08, b""), Frame(0x09, b"")])
+        self.carry()
+        robot_end.listen_to({0x09})
+        assert [frame.arbitration_id for frame in self.heard(robot_end)] == [0x09]
+
+    def test_only_the_control_port_carries_control_and_nothing_else(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        with pytest.raises(ValueError, match="frame 0x1 refused, this port carries all but CONTROL"):
+            robot_end.telemetry_port().send(encode_brake())
+        control = robot_end.control_port()
+        with pytest.raises(ValueError, match="frame 0x9 refused, this port carries only CONTROL"):
+            control.send(CODEC.message("ENCODER").pack(0, 0))
+        with pytest.raises(BusError, match="the CONTROL port is taken; one guard drives one robot"):
+            robot_end.control_port()
+        assert self.heard(far_end) == []
+        control.send(encode_brake())
+        assert [frame.arbitration_id for frame in self.heard(far_end)] == [CONTROL_ID]
+
+    @pytest.mark.parametrize(("frame_id", "is_extended"), [(0x801, False), (0x4000_0001, True), (-0x7FF, False)])
+    def test_control_is_not_smuggled_out_by_a_wide_identifier(
+        self, ends: Ends, frame_id: int, is_extended: bool
+    ) -> None:
+        robot_end, far_end = ends
+        smuggled = can.Message(arbitration_id=frame_id, is_extended_id=is_extended, data=encode_brake().data)
+        with pytest.raises(ValueError, match="does not fit its frame"):
+            robot_end.telemetry_port().send(smuggled)
+        assert self.heard(far_end) == []
+
+    def test_own_control_waits_until_it_was_carried(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        robot_end.listen_to({0x09})  # the confirmation comes all the same
+        control = robot_end.control_port()
+        for waiting in (1, 2, 3):
+            control.send(encode_brake())
+            assert control.unconfirmed == (waiting if self.confirms else 0)
+        send(robot_end, [numbered(1), can.Message(arbitration_id=CONTROL_ID, is_extended_id=True, data=b"")])
+        assert self.heard(robot_end) == []
+        assert control.unconfirmed == 0
+        assert len(self.heard(far_end)) == 5
+
+    def test_control_of_somebody_else_is_heard_and_confirms_nothing(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        control = robot_end.control_port()
+        far_end.control_port().send(encode_brake())
+        self.carry()
+        control.send(encode_brake())
+        heard = robot_end.drain() + self.heard(robot_end)
+        assert [(frame.arbitration_id, frame.is_rx) for frame in heard] == [(CONTROL_ID, True)]
+        assert control.unconfirmed == 0
+        assert [frame.arbitration_id for frame in self.heard(far_end)] == [CONTROL_ID]
+
+    def test_a_frame_is_no_older_than_its_sending(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        if robot_end.now_s() is None:  # all that waits has just arrived
+            return
+        before_s = robot_end.now_s()
+        for number in range(3):
+            send(far_end, [numbered(number)])
+            frames = self.heard(robot_end)
+            after_s = robot_end.now_s()
+            assert before_s is not None
+            assert after_s is not None
+            assert [number] == numbers(frames)
+            assert before_s <= frames[0].timestamp <= after_s
+            before_s = frames[0].timestamp
+
+    def test_an_end_that_was_shut_down_says_so_and_the_others_go_on(self, ends: Ends, join: Join) -> None:
+        robot_end, far_end = ends
+        other = join()
+        port = robot_end.telemetry_port()
+        robot_end.shutdown()
+        robot_end.shutdown()
+        with pytest.raises(BusError, match=f"bus {robot_end.name}: is shut down; open it again"):
+            robot_end.drain()
+        with pytest.raises(BusError, match="is shut down"):
+            port.send(numbered(0))
+        with pytest.raises(BusError, match="is shut down"):
+            robot_end.listen_to({0x09})
+        send(far_end, [numbered(1)])
+        assert numbers(self.heard(other)) == [1]
+
+    def test_a_reopened_end_hears_what_it_listened_to_and_its_ports_stay_good(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        port, control = robot_end.telemetry_port(), robot_end.control_port()
+        robot_end.listen_to({0x09})
+        control.send(encode_brake())
+        robot_end.reopen()
+        assert control.unconfirmed == 0
+        self.carry()
+        far_end.drain()
+        port.send(numbered(1))
+        control.send(encode_brake())
+        send(far_end, [Frame(0x08, b""), Frame(0x09, b"x")])
+        assert [bytes(frame.data) for frame in self.heard(robot_end)] == [b"x"]
+        assert [frame.arbitration_id for frame in self.heard(far_end)] == [_NUMBERED_ID, CONTROL_ID]
+
+    def test_a_bus_that_goes_away_is_told_in_one_line_until_it_is_reopened(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        pull_the_plug(robot_end)
+        for _ in range(2):
+            with pytest.raises(BusError, match=f"bus {robot_end.name}: receiving failed .*; check adapter, cable"):
+                robot_end.drain()
+            with pytest.raises(BusError, match=f"bus {robot_end.name}: sending failed"):
+                send(robot_end, [numbered(0)])
+        robot_end.reopen()
+        send(far_end, [numbered(1)])
+        assert numbers(self.heard(robot_end)) == [1]
+
+    def test_frames_for_a_listener_that_takes_none(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        port = far_end.telemetry_port()
+        sent = 0
+        try:
+            while sent < self.too_many_frames:
+                port.send(numbered(sent))
+                self.carry()
+                sent += 1
+        except BusError:
+            assert self.behind is Behind.SENDER_IS_TOLD
+        else:
+            assert self.behind is not Behind.SENDER_IS_TOLD
+        heard: list[int] = []
+        while arrived := numbers(self.heard(robot_end)):
+            heard += arrived
+        assert heard
+        port.send(numbered(sent))
+        assert numbers(self.heard(robot_end)) == [sent]  # it goes on as if nothing had been
+        lost = sent - len(heard)
+        assert robot_end.lost == lost
+        assert (lost == 0) is (self.behind is Behind.SENDER_IS_TOLD)
+        first = lost if self.behind is Behind.OLDEST_ARE_LOST else 0
+        assert heard == list(range(first, first + len(heard)))
