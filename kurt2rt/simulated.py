@@ -1,13 +1,11 @@
 """The simulated half of the composition root: robot, world and bus, put together for experiments and for a run."""
 
 import random
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Position
@@ -16,6 +14,7 @@ from simbridge.drawing import draw_world
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
+from simbridge.wire.line import NO_WIRE, open_line, require_wire
 from simbridge.world_settings import load_world
 
 if TYPE_CHECKING:
@@ -23,18 +22,20 @@ if TYPE_CHECKING:
 
 
 class SimulatedArena:
-    """The simulated KURT2 in one world, on an in-process CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
+    """The simulated KURT2 in one world, on a CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int, purpose: str) -> None:
-        """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise."""
+    def __init__(self, settings: RobotSettings, world: str, seed: int, purpose: str, wire: str = NO_WIRE) -> None:
+        """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
+
+        `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
+        """
         self._world = load_world(world, settings)
         self._cycle_s = settings.can.cycle_s
         chance = random.Random(f"{purpose} in world {world}, seed {seed}")
-        # Two arenas in one process must not hear each other.
-        spec = f"virtual:{uuid.uuid4()}"
-        self._far_end = open_bus(spec)
-        self.simulation = SimulatedRobot(settings, self._world, self._far_end, chance.getrandbits(32), robot_seed=seed)
-        self.robot = Kurt2(settings, open_bus(spec))
+        noise_seed = chance.getrandbits(32)
+        self._line = open_line(wire, self._cycle_s, noise_seed)
+        self.simulation = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
+        self.robot = Kurt2(settings, self._line.notebook_end)
         self._starts = [start.pose for start in self._world.start_poses]
         self.simulation.place(chance.choice(self._starts))
 
@@ -61,7 +62,7 @@ class SimulatedArena:
 
     def step(self) -> None:
         """One cycle of 10 ms."""
-        self.simulation.step()
+        self._line.cycle(self.simulation.step)
 
     def rescue(self) -> None:
         """Set the robot down at the nearest start pose."""
@@ -75,13 +76,17 @@ class SimulatedArena:
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:
         """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
-        with RealtimeSimulation(self.simulation, self._cycle_s) as simulation, self.robot.watchdog:
+        with (
+            self._line.live(),
+            RealtimeSimulation(self.simulation, self._cycle_s) as simulation,
+            self.robot.watchdog,
+        ):
             yield simulation
 
     def close(self) -> None:
         """Stop the robot and shut both ends of the bus."""
         self.robot.close()
-        self._far_end.shutdown()
+        self._line.robot_end.shutdown()
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +94,15 @@ class SimulatedStage:
     """Opens simulated arenas (kurt2rt.experiments.arena.Stage); can be sent to another process."""
 
     settings: RobotSettings
+    wire: str = NO_WIRE
 
     def open(self, world: str, seed: int, purpose: str) -> SimulatedArena:
         """The simulated robot in a world."""
-        return SimulatedArena(self.settings, world, seed, purpose)
+        return SimulatedArena(self.settings, world, seed, purpose, self.wire)
 
     def require_worlds(self, *worlds: str) -> None:
-        """Look at each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        """Look at the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        require_wire(self.wire)
         for world in worlds:
             load_world(world, self.settings)
 
@@ -105,12 +112,14 @@ class SimulatedStage:
 
 
 @contextmanager
-def simulated_robot(settings: RobotSettings, world: str, seed: int) -> Iterator[tuple[Kurt2, SimulatedGround]]:
+def simulated_robot(
+    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE
+) -> Iterator[tuple[Kurt2, SimulatedGround]]:
     """The simulated robot in real time, its second guard awake, and the ground that it stands on.
 
     Raises SettingsError, and on leaving whatever ended the simulation.
     """
-    arena = SimulatedArena(settings, world, seed, "run")
+    arena = SimulatedArena(settings, world, seed, "run", wire)
     try:
         with arena.live() as simulation:
             yield (

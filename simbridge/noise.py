@@ -1,4 +1,4 @@
-"""Standard normal numbers for the simulation, drawn in blocks since single draws cost a microsecond each."""
+"""Numbers of chance for the simulation, drawn in blocks since single draws cost a microsecond each."""
 
 import numpy as np
 
@@ -6,13 +6,14 @@ _BLOCK = 2048
 
 
 class Noise:
-    """One stream of standard normal numbers; the same seed gives the same stream in every process."""
+    """One stream of numbers of chance; the same seed gives the same stream in every process."""
 
     def __init__(self, seed: int, stream: str) -> None:
         """Streams of one seed are independent, so that a change in one part does not disturb another part's draws."""
         self._generator = np.random.Generator(np.random.PCG64([seed, *stream.encode()]))
         self._block: list[float] = []
         self._used = 0
+        self._fractions: list[float] = []
         self.drawn = 0
         """Numbers given out so far; with the seed it is the whole state of the stream."""
 
@@ -24,6 +25,13 @@ class Noise:
         self._used += 1
         self.drawn += 1
         return self._block[self._used - 1]
+
+    def fraction(self) -> float:
+        """Next number from 0 up to, but not including, 1, all alike in chance."""
+        if not self._fractions:
+            self._fractions = self._generator.random(_BLOCK).tolist()
+        self.drawn += 1
+        return self._fractions.pop()
 
     def uniform(self, count: int) -> list[float]:
         """Numbers in -1 to 1, for what is fixed once when the robot is built."""

@@ -1,0 +1,119 @@
+"""One controller on the wire: what it has queued to send, what it heard, and its error state."""
+
+from bisect import insort_left, insort_right
+from collections import deque
+from typing import NamedTuple
+
+import can
+
+from simbridge.wire.bits import arbitration_key, frame_bits
+from simbridge.wire.error_counters import ErrorCounters, ErrorState
+from simbridge.wire.error_frames import restarted_frame, state_frame
+from simbridge.wire.settings import NodeSettings, SendingOrder
+
+HEARD_FRAMES = 4096
+"""Frames that wait for their reader; one that comes on top of them is lost to it."""
+
+
+class Queued(NamedTuple):
+    """A frame that wants to go out."""
+
+    key: int
+    frame: can.Message
+    bits: int
+
+    @staticmethod
+    def of(frame: can.Message) -> "Queued":
+        """A frame with what the wire needs to know of it."""
+        return Queued(arbitration_key(frame), frame, frame_bits(frame))
+
+
+class WireNode:
+    """State of a controller; the wire decides what becomes of it. Times are nanoseconds of the wire."""
+
+    def __init__(self, settings: NodeSettings, joined_ns: int) -> None:
+        self.settings = settings
+        self.counters = ErrorCounters()
+        self.queue: list[Queued] = []
+        self.waits_until_ns = joined_ns
+        """No frame of its own begins before."""
+        self.hears_from_ns = joined_ns
+        """It takes no part in frames that began before."""
+        self.restarts_at_ns: int | None = None
+        """While bus-off, when it starts anew, if it does."""
+        self.state = ErrorState.ACTIVE
+        self.leaving = False
+        """True when nobody reads it any more: it sends what it has queued and goes."""
+        self.heard_ids: frozenset[int] | None = None
+        self.heard: deque[can.Message] = deque()
+        self.overrun = 0
+        """Frames that found its buffer full."""
+        self._by_identifier = settings.order is SendingOrder.IDENTIFIER
+
+    @property
+    def off(self) -> bool:
+        """Whether it withdrew from the wire."""
+        return self.state is ErrorState.BUS_OFF
+
+    def put(self, frame: can.Message) -> None:
+        """Queue a frame. Raises can.CanOperationError when the queue is full. A node that is off drops it."""
+        if self.off:
+            # As Linux does: the interface has no carrier, and what is sent then is lost without a word.
+            return
+        if len(self.queue) >= self.settings.queue_frames:
+            raise can.CanOperationError("transmit queue is full")
+        queued = Queued.of(frame)
+        if self._by_identifier:
+            insort_right(self.queue, queued, key=_key)
+        else:
+            self.queue.append(queued)
+
+    def put_back(self, queued: Queued) -> None:
+        """Queue a frame that was destroyed, ahead of its equals. A node without a reader gives it up."""
+        if self.leaving:
+            self.queue.clear()
+        elif self._by_identifier:
+            insort_left(self.queue, queued, key=_key)
+        else:
+            self.queue.insert(0, queued)
+
+    def hear(self, frame: can.Message, time_s: float, *, own: bool) -> None:
+        """Take a copy of a carried frame, unless its reader does not want it."""
+        if self.heard_ids is not None and (frame.is_extended_id or frame.arbitration_id not in self.heard_ids):
+            return
+        copy = frame.__deepcopy__(None)
+        copy.is_rx = not own
+        copy.timestamp = time_s
+        self._keep(copy)
+
+    def note_state(self, time_ns: int) -> None:
+        """Tell the reader when the counters say another state than before; withdraw at bus-off."""
+        state = self.counters.state
+        if state is self.state:
+            return
+        self.state = state
+        self._keep(state_frame(self.counters, time_ns / 1e9))
+        if state is ErrorState.BUS_OFF:
+            self.queue.clear()
+            if self.settings.restart_s is not None:
+                self.restarts_at_ns = time_ns + round(self.settings.restart_s * 1e9)
+
+    def restart(self, time_ns: int, joins_ns: int) -> None:
+        """Begin anew after bus-off; it takes part in the bus again from `joins_ns`."""
+        self.counters = ErrorCounters()
+        self.state = ErrorState.ACTIVE
+        self.restarts_at_ns = None
+        self.waits_until_ns = self.hears_from_ns = joins_ns
+        self._keep(restarted_frame(self.counters, time_ns / 1e9))
+
+    def _keep(self, frame: can.Message) -> None:
+        if self.leaving:
+            return
+        if len(self.heard) >= HEARD_FRAMES:
+            self.overrun += 1
+            return
+        self.heard.append(frame)
+
+
+def _key(queued: Queued) -> int:
+    return queued.key
