@@ -1,0 +1,91 @@
+"""`kurt2rt sim`: the simulated robot as a program of its own, and a runtime that meets it on a bus."""
+
+import os
+import re
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.cli.helpers import CommandLine, running
+from tests.cli.three_programs import ROBOT, teach_kill_and_return
+
+BRAKING_CYCLES = 30
+"""From the fastest that the guard allows, 0.6 m/s at 3 m/s², it takes 20 cycles, and some for the speed loop."""
+
+
+def a_bus(name: str) -> str:
+    return f"shared:{name}-{os.getpid()}"
+
+
+async def test_taught_over_a_bus_killed_while_it_drives_and_back_with_all_it_knew(tmp_path: Path) -> None:
+    told = await teach_kill_and_return(a_bus("story"), tmp_path)
+    watchdog_cycles = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
+    assert told.cycles_to_rest <= watchdog_cycles + BRAKING_CYCLES
+
+
+@pytest.mark.deep
+async def test_how_long_a_killed_program_is_away(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    away_s = []
+    for number in range(5):
+        (tmp_path / str(number)).mkdir()
+        away_s.append((await teach_kill_and_return(a_bus("away"), tmp_path / str(number))).silence_s)
+    with capsys.disabled():
+        print(f"\nfrom kill -9 to the next CONTROL: {', '.join(f'{each:.2f}' for each in away_s)} s; wanted: 2 s")
+
+
+def test_a_person_at_the_desk_sees_the_robot_and_puts_it_elsewhere(tmp_path: Path) -> None:
+    with running("sim", "--bus", a_bus("desk"), "--start", "1", folder=tmp_path) as sim:
+        sim.wait_for("a simulated kurt2-indoor in world a is on bus shared:desk")
+        sim.type("start 2")
+        sim.wait_for("the robot stands at 1.45 3.50 m, -90 deg")
+        line = sim.wait_for(" s | at ")
+        assert "at 1.45 3.50 m, -90 deg | wheels +0.00 +0.00 m/s" in line
+        assert line.endswith("| no CONTROL, braked\n")
+        said = sim.end(signal.SIGTERM)
+    assert (said.exit_code, said.err) == (0, "")
+    assert re.fullmatch(
+        r"switched off after \d+\.\d\d s: 0 collisions, \d+ cycles missed, state [0-9a-f]{16}",
+        said.out.splitlines()[-1],
+    )
+
+
+def test_it_ends_when_its_time_or_its_input_is_over(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("sim", "--bus", a_bus("short"), "--seconds", "0.1")
+    assert "switched off after" in said.out
+    said = kurt2rt("sim", "--bus", a_bus("short"), "--while-stdin")
+    assert "switched off after" in said.out
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("--bus", "can7"), "bus 'can7': no such network interface"),
+        (("--world", "nope"), "nope: no such file in worlds"),
+        (("--robot-settings", "nope"), "nope: no such file in robots"),
+        (("--start", "99"), "world a: has 12 start poses, there is none of number 99"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.refused("sim", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("--bus", "virtual:x"), "nobody outside this program hears a virtual bus"),
+        (("--seconds", "inf"), "a number of seconds has an end"),
+        (("--start", "0"), "--start"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_an_option_that_makes_no_sense_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.misused("sim", *words)
+
+
+def test_a_bus_has_room_for_one_robot(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    bus = a_bus("crowd")
+    with running("sim", "--bus", bus, folder=tmp_path) as sim:
+        sim.wait_for("is on bus")
+        assert f"bus {bus}: a robot is on it already" in kurt2rt.refused("sim", "--bus", bus)
