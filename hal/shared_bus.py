@@ -30,7 +30,7 @@ _RECORD_BYTES = _RECORD.size
 _CHECKED_BYTES = _RECORD_BYTES - _CHECKSUM.size
 _HOLE = bytes(_RECORD_BYTES)
 _BLOCK_BYTES = 4096
-_HEAD_BYTES = mmap.ALLOCATIONGRANULARITY  # memory is given back in pages, and the head stays
+_HEAD_BYTES = mmap.ALLOCATIONGRANULARITY  # a page of its own: memory is given back in pages, and the head stays
 _KEPT_BYTES = KEPT_FRAMES * _RECORD_BYTES
 _GIVE_BACK_BYTES = 16 * mmap.ALLOCATIONGRANULARITY
 _OPENING_TRIES = 20
@@ -47,7 +47,7 @@ class SharedBus(can.BusABC):
     than KEPT_FRAMES is given back to the system as a hole in the file; a reader that is further behind goes on
     after the hole and counts what it lost. Time stamps are those of the sender, on the monotonic clock of the machine.
 
-    The file is there while somebody is on the bus; who leaves last removes it.
+    The file is there while somebody is on the bus; who leaves last removes it, and any that was left behind.
     """
 
     confirms = False
@@ -108,7 +108,8 @@ class SharedBus(can.BusABC):
         with self._lock:
             file, self._file = self._file, None
             if file is not None:
-                _leave(file, self._path)
+                os.close(file)
+                _remove_unused(self._path.parent)
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
         """Wait as python-can's tools want to; nothing wakes a reader, so it looks again and again."""
@@ -224,19 +225,23 @@ def _require(opened: int, path: Path, *, is_folder: bool) -> None:
 def _require_head(file: int, path: Path) -> None:
     size = os.fstat(file).st_size
     if size == 0:
-        os.write(file, _HEAD)
+        os.write(file, _HEAD * (_HEAD_BYTES // _RECORD_BYTES))
     if size % _RECORD_BYTES or os.pread(file, _RECORD_BYTES, 0) != _HEAD:
         raise can.CanInitializationError(f"{path} is not a bus of this version; remove it when nobody uses it")
 
 
-def _leave(file: int, path: Path) -> None:
-    try:
-        with contextlib.suppress(OSError):  # others are there, or it was removed already
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            if path.stat().st_ino == os.fstat(file).st_ino:
-                path.unlink()
-    finally:
-        os.close(file)
+def _remove_unused(folder: Path) -> None:
+    """Remove every bus that nobody is on: the one just left, and what killed processes left behind."""
+    for path in folder.iterdir():
+        # Somebody is there, or came first, or it is not a bus.
+        with contextlib.suppress(OSError):
+            file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC | os.O_NONBLOCK)
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                if os.pread(file, _RECORD_BYTES, 0) == _HEAD and path.stat().st_ino == os.fstat(file).st_ino:
+                    path.unlink()
+            finally:
+                os.close(file)
 
 
 def _give_back(file: int, until: int) -> None:

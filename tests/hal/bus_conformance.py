@@ -72,7 +72,7 @@ def identity(frame: can.Message) -> tuple[object, ...]:
 
 
 class BusConformance:
-    """The behaviours; `ends` are the robot's end and the controller's."""
+    """The behaviours of all kinds; `ends` are the robot's end and the controller's."""
 
     confirms: ClassVar[bool] = False
     """Whether an end learns that its CONTROL was carried."""
@@ -144,7 +144,7 @@ class BusConformance:
         assert arrived.dlc == length
 
     @pytest.mark.parametrize(
-        "sent", [EXTENDED, REMOTE, BUS_OFF, can.Message(arbitration_id=CONTROL_ID, is_extended_id=True, data=b"12")]
+        "sent", [EXTENDED, REMOTE, can.Message(arbitration_id=CONTROL_ID, is_extended_id=True, data=b"12")]
     )
     def test_frames_of_other_formats_arrive_as_what_they_are(self, ends: Ends, sent: can.Message) -> None:
         robot_end, far_end = ends
@@ -166,14 +166,14 @@ class BusConformance:
             send(far_end, [sent])
         assert self.heard(robot_end) == []
 
-    def test_only_what_is_listened_to_arrives_and_control_and_errors_always(self, ends: Ends) -> None:
+    def test_only_what_is_listened_to_arrives_and_control_always(self, ends: Ends) -> None:
         robot_end, far_end = ends
         robot_end.listen_to({0x09, 0x20})
         far_end.control_port().send(encode_brake())
-        send(far_end, [Frame(0x08, b""), Frame(0x09, b"a"), EXTENDED, BUS_OFF, Frame(0x20, b"b"), Frame(0x21, b"")])
+        send(far_end, [Frame(0x08, b""), Frame(0x09, b"a"), EXTENDED, Frame(0x20, b"b"), Frame(0x21, b"")])
         send(far_end, [can.Message(arbitration_id=0x09, is_extended_id=True, data=b"c")])
         send(far_end, [can.Message(arbitration_id=0x809, is_extended_id=True, data=b"d")])
-        assert [identity(frame)[0] for frame in self.heard(robot_end)] == [CONTROL_ID, 0x09, 0x40, 0x20]
+        assert [identity(frame)[0] for frame in self.heard(robot_end)] == [CONTROL_ID, 0x09, 0x20]
         robot_end.listen_to({0x08})
         send(far_end, [Frame(0x08, b"e"), Frame(0x09, b"f")])
         assert [bytes(frame.data) for frame in self.heard(robot_end)] == [b"e"]
@@ -181,8 +181,9 @@ class BusConformance:
     def test_listening_to_nothing_is_not_listening_to_all(self, ends: Ends) -> None:
         robot_end, far_end = ends
         robot_end.listen_to(())
-        send(far_end, [*cycle(), BUS_OFF])
-        assert [identity(frame)[0] for frame in self.heard(robot_end)] == [0x40]
+        far_end.control_port().send(encode_brake())
+        send(far_end, cycle())
+        assert [frame.arbitration_id for frame in self.heard(robot_end)] == [CONTROL_ID]
 
     def test_what_waits_already_is_filtered_as_well(self, ends: Ends) -> None:
         robot_end, far_end = ends
@@ -318,3 +319,21 @@ class BusConformance:
         assert (lost == 0) is (self.behind is Behind.SENDER_IS_TOLD)
         first = lost if self.behind is Behind.OLDEST_ARE_LOST else 0
         assert heard == list(range(first, first + len(heard)))
+
+
+class ErrorFrameConformance(BusConformance):
+    """The behaviours of kinds on which an error frame can be sent for what a controller would report by itself."""
+
+    @pytest.mark.parametrize("sent", [BUS_OFF, RESTARTED])
+    def test_error_frames_arrive_as_what_they_are(self, ends: Ends, sent: can.Message) -> None:
+        robot_end, far_end = ends
+        send(far_end, [sent])
+        (arrived,) = self.heard(robot_end)
+        assert identity(arrived) == identity(sent)
+        assert arrived.is_rx
+
+    def test_error_frames_pass_every_filter(self, ends: Ends) -> None:
+        robot_end, far_end = ends
+        robot_end.listen_to(())
+        send(far_end, [*cycle(), BUS_OFF, *cycle(), RESTARTED])
+        assert [identity(frame) for frame in self.heard(robot_end)] == [identity(BUS_OFF), identity(RESTARTED)]

@@ -9,13 +9,13 @@ import pytest
 
 from hal.bus import BusError, open_bus
 from hal.frame import Frame
-from tests.hal.bus_conformance import BusConformance, Ends, Join, joining
+from tests.hal.bus_conformance import Ends, ErrorFrameConformance, Join, joining
 from tests.hal.helpers import CODEC, cycle, send
 
 _numbers = itertools.count()
 
 
-class TestInProcessBus(BusConformance):
+class TestInProcessBus(ErrorFrameConformance):
     @pytest.fixture
     def join(self) -> Iterator[Join]:
         name = f"virtual:conformance-{next(_numbers)}"

@@ -1,0 +1,318 @@
+"""The bus across processes: as every bus, whatever happens to the other processes, and for nobody else."""
+
+import fcntl
+import itertools
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import can
+import pytest
+
+from hal.bus import BusError, CanBus, open_bus
+from hal.frame import Frame
+from hal.shared_bus import KEPT_FRAMES, SHARED_MEMORY, SharedBus
+from tests.hal.bus_conformance import Behind, Ends, ErrorFrameConformance, Join, joining
+from tests.hal.helpers import cycle, send
+from tests.hal.shared_bus_writer import NUMBERED, payload
+
+ROOT = Path(__file__).parents[2]
+RECORD_BYTES = 32
+
+_numbers = itertools.count()
+
+
+def new_name() -> str:
+    return f"test-{os.getpid()}-{next(_numbers)}"
+
+
+def file_of(name: str) -> Path:
+    return SHARED_MEMORY / f"kurt2rt-can-{os.geteuid()}" / name
+
+
+@contextmanager
+def writing(name: str, frame_id: int) -> Iterator["subprocess.Popen[bytes]"]:
+    """A process that writes as fast as it can."""
+    command = [sys.executable, "-m", "tests.hal.shared_bus_writer", name, str(frame_id)]
+    with subprocess.Popen(command, cwd=ROOT) as writer:
+        try:
+            yield writer
+        finally:
+            writer.kill()  # also when it is stopped
+
+
+def waiting(bus: SharedBus) -> Iterator[can.Message]:
+    while frame := bus.recv(0):
+        yield frame
+
+
+class Listener:
+    """Takes numbered frames of writers, and sees to it that each is whole and comes after the one before."""
+
+    def __init__(self, bus: SharedBus) -> None:
+        self._bus = bus
+        self._newest: dict[int, int] = {}
+
+    def take(self) -> int:
+        """Who sent the next frame; waits for it."""
+        frame = self._bus.recv(20.0)
+        assert frame is not None
+        number, turned = NUMBERED.unpack(frame.data)
+        assert turned == number ^ 0xFFFF_FFFF
+        assert number > self._newest.get(frame.arbitration_id, -1)
+        self._newest[frame.arbitration_id] = number
+        return frame.arbitration_id
+
+    def take_until_from(self, sender: int) -> None:
+        while self.take() != sender:
+            pass
+
+    def take_waiting(self) -> None:
+        """All that is on the bus already."""
+        here = os.fstat(_opened(self._bus)).st_size
+        while self._bus._position < here and self._bus.recv(0) is not None:
+            pass
+
+
+def _opened(bus: SharedBus) -> int:
+    assert bus._file is not None
+    return bus._file
+
+
+@pytest.fixture
+def name() -> str:
+    return new_name()
+
+
+@pytest.fixture
+def ends(name: str) -> Iterator[Ends]:
+    with joining(lambda: open_bus(f"shared:{name}")) as join:
+        yield join(), join()
+    assert not file_of(name).exists()
+
+
+class TestSharedBus(ErrorFrameConformance):
+    behind = Behind.OLDEST_ARE_LOST
+    too_many_frames = 2 * KEPT_FRAMES
+
+    @pytest.fixture
+    def join(self) -> Iterator[Join]:
+        spec = f"shared:{new_name()}"
+        with joining(lambda: open_bus(spec)) as join:
+            yield join
+
+    @pytest.fixture
+    def ends(self, join: Join) -> Ends:
+        return join(), join()
+
+
+def test_a_killed_writer_leaves_no_trace_and_the_others_go_on(name: str) -> None:
+    bus = SharedBus(name)
+    listener = Listener(bus)
+    with writing(name, 0x10) as victim, writing(name, 0x11):
+        for sender in (0x10, 0x11, 0x10, 0x11):  # both are at it
+            listener.take_until_from(sender)
+        victim.kill()
+        victim.wait()
+        listener.take_waiting()
+        for _ in range(2000):
+            assert listener.take() == 0x11
+        bus.send(Frame(0x12, payload(0)))
+    assert bus.damaged == 0
+    bus.shutdown()
+    assert not file_of(name).exists()  # the lock of a killed process is gone as well
+
+
+def test_a_stopped_writer_stops_nobody_else(name: str) -> None:
+    bus, other = SharedBus(name), SharedBus(name)
+    listener = Listener(bus)
+    with writing(name, 0x10) as sleeper:
+        for round_ in range(10):  # somewhere else in its work each time
+            listener.take_until_from(0x10)
+            sleeper.send_signal(signal.SIGSTOP)
+            os.waitid(os.P_PID, sleeper.pid, os.WSTOPPED)
+            listener.take_waiting()
+            for number in range(100 * round_, 100 * round_ + 100):
+                other.send(Frame(0x12, payload(number)))
+                assert listener.take() == 0x12
+            sleeper.send_signal(signal.SIGCONT)
+    assert bus.damaged == 0
+    other.shutdown()
+    bus.shutdown()
+
+
+def test_two_processes_are_heard_in_one_order_by_all(name: str) -> None:
+    one, other = SharedBus(name), SharedBus(name)
+    with writing(name, 0x10), writing(name, 0x11):
+        listener = Listener(one)
+        for sender in (0x10, 0x11, 0x10, 0x11):
+            listener.take_until_from(sender)
+    heard = [[(frame.arbitration_id, bytes(frame.data)) for frame in waiting(bus)] for bus in (one, other)]
+    length = min(map(len, heard))
+    assert {sender for sender, _ in heard[0][-length:]} == {0x10, 0x11}
+    assert heard[0][-length:] == heard[1][-length:]
+    one.shutdown()
+    other.shutdown()
+
+
+def test_old_frames_do_not_pile_up(name: str, ends: Ends) -> None:
+    send(ends[0], (Frame(0x10, payload(number)) for number in range(5 * KEPT_FRAMES)))
+    status = file_of(name).stat()
+    assert status.st_size > 5 * KEPT_FRAMES * RECORD_BYTES
+    assert status.st_blocks * 512 < 1.5 * KEPT_FRAMES * RECORD_BYTES
+
+
+def test_what_no_end_has_written_is_passed_over_and_counted(name: str) -> None:
+    bus, other = SharedBus(name), SharedBus(name)
+    other.send(Frame(0x10, payload(0)))
+    with file_of(name).open("ab") as file:
+        file.write(b"x" * 2 * RECORD_BYTES)
+    other.send(Frame(0x10, payload(1)))
+    heard = [bus.recv(0) for _ in range(5)]  # it looks twice at what may be on its way
+    assert [bytes(frame.data) for frame in heard if frame] == [payload(0), payload(1)]
+    assert (bus.damaged, bus.lost) == (2, 0)
+    bus.shutdown()
+    other.shutdown()
+
+
+def test_two_beginnings_are_one_bus(name: str, ends: Ends) -> None:
+    with file_of(name).open("ab") as file:
+        file.write(file_of(name).read_bytes())  # of another who found the file empty at the same time
+    send(ends[1], cycle())
+    assert len(ends[0].drain()) == len(cycle())
+
+
+def test_the_bus_is_gone_with_its_last_end_and_stays_until_then(name: str) -> None:
+    one, other = SharedBus(name), SharedBus(name)
+    one.shutdown()
+    assert file_of(name).exists()
+    third = SharedBus(name)
+    third.send(Frame(0x10, b""))
+    assert other.recv(0) is not None
+    third.shutdown()
+    other.shutdown()
+    assert not file_of(name).exists()
+
+
+def test_what_killed_processes_left_behind_goes_when_somebody_leaves_any_bus(name: str) -> None:
+    with writing(name, 0x10) as last:
+        listener = SharedBus(name)
+        assert listener.recv(20.0) is not None
+        listener.shutdown()
+        last.kill()
+        last.wait()
+    assert file_of(name).exists()
+    SharedBus(new_name()).shutdown()
+    assert not file_of(name).exists()
+
+
+def drain_often(bus: CanBus) -> None:
+    for _ in range(200):
+        assert bus.drain() == []
+
+
+def test_an_end_whose_file_was_removed_says_so_and_meets_the_others_at_the_new_one(name: str, ends: Ends) -> None:
+    robot_end, _ = ends
+    file_of(name).unlink()
+    newcomer = SharedBus(name)
+    with pytest.raises(BusError, match=r"receiving failed .*was removed; others meet at a new one"):
+        drain_often(robot_end)
+    robot_end.reopen()
+    newcomer.send(cycle()[0])
+    assert len(robot_end.drain()) == 1
+    newcomer.shutdown()
+
+
+def test_a_new_bus_waits_for_the_end_of_the_old_one_and_no_longer(name: str) -> None:
+    path = file_of(name)
+    SharedBus(name).shutdown()
+    with path.open("wb") as leaving:  # killed by nobody, stopped while it removes the file
+        path.chmod(0o600)
+        fcntl.flock(leaving, fcntl.LOCK_EX)
+        with pytest.raises(BusError, match=rf"bus 'shared:{name}': cannot be opened .*is being removed; try again"):
+            open_bus(f"shared:{name}")
+    path.unlink()
+
+
+def test_tools_of_python_can_listen_and_wait(name: str) -> None:
+    bus, other = SharedBus(name), SharedBus(name)
+    reader = can.BufferedReader()
+    with can.Notifier(bus, [reader], timeout=0.01):
+        other.send(cycle()[0])
+        message = reader.get_message(timeout=20.0)
+    assert message is not None
+    assert bytes(message.data) == cycle()[0].data
+    assert other.recv(0.001) is None
+    bus.shutdown()
+    other.shutdown()
+
+
+@pytest.mark.parametrize("bad", ["../x", ".x", "a/b", "a b", "x" * 65, "ä", "a\n"])
+def test_a_name_is_a_plain_word(bad: str) -> None:
+    with pytest.raises(BusError, match=r"a name is up to 64 letters, digits and _ \. -") as caught:
+        open_bus(f"shared:{bad}")
+    assert "\n" not in str(caught.value)
+
+
+class TestNobodyElseGetsIn:
+    @pytest.fixture(autouse=True)
+    def folder(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+        monkeypatch.setattr("hal.shared_bus.SHARED_MEMORY", tmp_path)
+        return tmp_path / f"kurt2rt-can-{os.geteuid()}"
+
+    def test_folder_and_file_are_of_one_user(self, folder: Path) -> None:
+        bus = SharedBus("x")
+        assert [path.stat().st_mode & 0o777 for path in (folder, folder / "x")] == [0o700, 0o600]
+        bus.shutdown()
+
+    def test_an_open_folder_is_refused(self, folder: Path) -> None:
+        folder.mkdir(mode=0o755)
+        self.refused("is not a folder of this user alone")
+
+    def test_a_readable_file_is_refused(self, folder: Path) -> None:
+        folder.mkdir(mode=0o700)
+        (folder / "x").touch(mode=0o644)
+        self.refused("is not a file of this user alone")
+
+    @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
+    @pytest.mark.parametrize("what", ["folder", "file"])
+    def test_what_belongs_to_somebody_else_is_refused(self, folder: Path, what: str) -> None:
+        folder.mkdir(mode=0o700)
+        (folder / "x").touch(mode=0o600)
+        os.chown(folder if what == "folder" else folder / "x", 12345, 12345)
+        self.refused(f"is not a {what} of this user alone")
+
+    def test_links_are_refused(self, folder: Path, tmp_path: Path) -> None:
+        elsewhere = tmp_path / "elsewhere"
+        elsewhere.mkdir(mode=0o700)
+        folder.symlink_to(elsewhere)
+        self.refused("Not a directory")
+        folder.unlink()
+        folder.mkdir(mode=0o700)
+        (folder / "x").symlink_to(elsewhere / "x")
+        self.refused("symbolic links")
+
+    def test_a_pipe_is_refused_at_once(self, folder: Path) -> None:
+        folder.mkdir(mode=0o700)
+        os.mkfifo(folder / "x", 0o600)
+        self.refused("is not a file of this user alone")
+
+    @pytest.mark.parametrize("content", [b"kurt2rt shared CAN bus, layout 2", b"x", bytes(64)])
+    def test_a_file_of_another_version_is_refused_and_stays_as_it_is(self, folder: Path, content: bytes) -> None:
+        folder.mkdir(mode=0o700)
+        (folder / "x").touch(mode=0o600)
+        (folder / "x").write_bytes(content)
+        self.refused("is not a bus of this version; remove it when nobody uses it")
+        assert (folder / "x").read_bytes() == content
+
+    def test_a_machine_without_shared_memory_is_told(self, tmp_path: Path) -> None:
+        tmp_path.rmdir()
+        self.refused("No such file or directory")
+
+    def refused(self, complaint: str) -> None:
+        with pytest.raises(BusError, match=rf"bus 'shared:x': cannot be opened \(.*{complaint}.*\)"):
+            open_bus("shared:x")
