@@ -26,8 +26,8 @@ class WireEnd:
         return self._wire.now_s()
 
     def listen_to(self, frame_ids: frozenset[int]) -> None:
-        """Take only frames with these standard identifiers, and error frames, of those that end from now on."""
-        self._node.heard_ids = frame_ids
+        """Take only frames with these standard identifiers, and error frames."""
+        self._wire.listen_to(self._node, frame_ids)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
         """The frame that waits longest; None when there is none. Raises can.CanOperationError after shutdown."""
@@ -37,14 +37,15 @@ class WireEnd:
         return frame
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Queue a classic data or remote frame. Raises can.CanOperationError (queue full, shut down), ValueError."""
+        """Queue a frame of classic CAN. Raises can.CanOperationError when the queue is full or the end is shut down.
+
+        An error frame that somebody sends, as tests do, travels like a data frame of its identifier.
+        """
         self._check_open()
-        if msg.is_fd or msg.is_error_frame or msg.dlc > 8:
-            raise ValueError("a wire carries classic data and remote frames of at most 8 bytes")
         self._wire.put(self._node, msg)
 
     def shutdown(self) -> None:
-        """Unplug it when what it has queued is out; may be called twice."""
+        """Unplug it: what is on the wire is finished, what it has queued is gone; may be called twice."""
         if self._open:
             self._open = False
             self._wire.leave(self._node)

@@ -43,8 +43,8 @@ class WireNode:
         """While bus-off, when it starts anew, if it does."""
         self.state = ErrorState.ACTIVE
         self.leaving = False
-        """True when nobody reads it any more: it sends what it has queued and goes."""
-        self.heard_ids: frozenset[int] | None = None
+        """True when it is unplugged: it finishes what it has on the wire."""
+        self._wanted_ids: frozenset[int] | None = None
         self.heard: deque[can.Message] = deque()
         self.overrun = 0
         """Frames that found its buffer full."""
@@ -69,17 +69,22 @@ class WireNode:
             self.queue.append(queued)
 
     def put_back(self, queued: Queued) -> None:
-        """Queue a frame that was destroyed, ahead of its equals. A node without a reader gives it up."""
+        """Queue a frame that was destroyed, ahead of its equals."""
         if self.leaving:
-            self.queue.clear()
-        elif self._by_identifier:
+            return
+        if self._by_identifier:
             insort_left(self.queue, queued, key=_key)
         else:
             self.queue.insert(0, queued)
 
+    def listen_to(self, frame_ids: frozenset[int]) -> None:
+        """Keep only frames with these standard identifiers, and error frames, also of those that wait already."""
+        self._wanted_ids = frame_ids
+        self.heard = deque(frame for frame in self.heard if self._wants(frame))
+
     def hear(self, frame: can.Message, time_s: float, *, own: bool) -> None:
         """Take a copy of a carried frame, unless its reader does not want it."""
-        if self.heard_ids is not None and (frame.is_extended_id or frame.arbitration_id not in self.heard_ids):
+        if not self._wants(frame):
             return
         copy = frame.__deepcopy__(None)
         copy.is_rx = not own
@@ -106,9 +111,11 @@ class WireNode:
         self.waits_until_ns = self.hears_from_ns = joins_ns
         self._keep(restarted_frame(self.counters, time_ns / 1e9))
 
+    def _wants(self, frame: can.Message) -> bool:
+        wanted = self._wanted_ids
+        return wanted is None or (frame.arbitration_id in wanted and not frame.is_extended_id) or frame.is_error_frame
+
     def _keep(self, frame: can.Message) -> None:
-        if self.leaving:
-            return
         if len(self.heard) >= HEARD_FRAMES:
             self.overrun += 1
             return

@@ -79,10 +79,11 @@ class Wire:
             return node
 
     def leave(self, node: WireNode) -> None:
-        """Nobody reads this controller any more: it sends what it has queued, then it is gone."""
+        """Unplug a controller: what it has on the wire is finished, what it has queued is gone with it."""
         with self._lock:
+            self._follow_clock()
             node.leaving = True
-            node.heard.clear()
+            node.queue.clear()
             self._forget_gone()
 
     def put(self, node: WireNode, frame: can.Message) -> None:
@@ -96,6 +97,12 @@ class Wire:
         with self._lock:
             self._follow_clock()
             return node.heard.popleft() if node.heard else None
+
+    def listen_to(self, node: WireNode, frame_ids: frozenset[int]) -> None:
+        """Keep only frames with these standard identifiers, and error frames, for this node's reader."""
+        with self._lock:
+            self._follow_clock()
+            node.listen_to(frame_ids)
 
     def now_s(self) -> float:
         """The present on the clock that stamps the frames."""
@@ -220,7 +227,7 @@ class Wire:
 
     def _forget_gone(self) -> None:
         sending = [] if self._transmission is None else [node for node, _ in self._transmission.senders]
-        self._nodes = [node for node in self._nodes if not node.leaving or node.queue or node in sending]
+        self._nodes = [node for node in self._nodes if not node.leaving or node in sending]
 
     def _ns(self, bits: int) -> int:
         return round(bits * self._ns_per_bit)

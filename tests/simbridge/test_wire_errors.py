@@ -296,7 +296,7 @@ def test_a_state_is_told_as_linux_tells_it(transmit: int, receive: int, error_cl
     assert (message.dlc, message.is_rx) == (8, True)
 
 
-def test_an_end_that_is_shut_down_still_sends_what_it_was_told_and_then_is_gone() -> None:
+def test_an_end_that_is_unplugged_finishes_its_frame_and_takes_what_it_had_queued_along() -> None:
     wire = quiet_wire()
     leaving, listener = ends_on(wire, 2)
     leaving.send(frame(0x01, CONTROL))
@@ -305,16 +305,17 @@ def test_an_end_that_is_shut_down_still_sends_what_it_was_told_and_then_is_gone(
     leaving.shutdown()
     leaving.shutdown()
     wire.advance(0.01)
-    assert len(waiting(listener)) == 2
+    assert [message.data for message in waiting(listener)] == [bytes.fromhex(CONTROL)]
     listener.send(frame(0x09))
     wire.advance(0.02)
     assert confirmations(listener) == []  # nobody is left to answer it
 
 
-def test_an_end_that_is_shut_down_alone_gives_up() -> None:
+def test_an_end_that_is_unplugged_while_its_frame_is_destroyed_does_not_try_again() -> None:
     wire = quiet_wire()
     (leaving,) = ends_on(wire, 1)
     leaving.send(frame(0x01, CONTROL))
+    wire.advance(50 * US)
     leaving.shutdown()
     wire.advance(1.0)
     assert wire.counts.destroyed == 1

@@ -1,0 +1,82 @@
+"""An end of the wire behaves as every bus does, and keeps order between threads."""
+
+import threading
+from collections.abc import Iterator
+from typing import ClassVar
+
+import can
+import pytest
+
+from hal.bus import BusError, CanBus
+from simbridge.wire.end import WireEnd
+from simbridge.wire.settings import NodeSettings, SendingOrder
+from simbridge.wire.wire import Wire
+from tests.hal.bus_conformance import Behind, BusConformance, Join, joining
+from tests.simbridge.wires import ends_on, frame, others_frames, quiet_wire, settings
+
+DEEP = NodeSettings(order=SendingOrder.FIFO, queue_frames=256, restart_s=0.1)
+
+
+class TestWireEnd(BusConformance):
+    confirms: ClassVar[bool] = True
+    behind: ClassVar[Behind] = Behind.NEWEST_ARE_LOST
+    too_many_frames: ClassVar[int] = 4200
+
+    @pytest.fixture
+    def join(self) -> Iterator[Join]:
+        wire = self.wire = quiet_wire()
+        with joining(lambda: CanBus("wire", lambda _: WireEnd(wire, DEEP))) as join:
+            yield join
+
+    def carry(self) -> None:
+        self.wire.advance(self.wire.now_s() + 0.05)
+
+
+def test_a_queue_holds_as_many_frames_as_it_is_set_to_and_then_says_so() -> None:
+    small = NodeSettings(order=SendingOrder.FIFO, queue_frames=10, restart_s=None)
+    wire = quiet_wire()
+    bus = CanBus("wire", lambda _: WireEnd(wire, small))
+    (listener,) = ends_on(wire, 1)
+    port = bus.telemetry_port()
+    for _ in range(10):
+        port.send(frame(0x09))
+    with pytest.raises(BusError, match=r"bus wire: sending failed \(transmit queue is full\)"):
+        port.send(frame(0x09))
+    wire.advance(0.001)
+    port.send(frame(0x0A))
+    wire.advance(0.01)
+    assert [message.arbitration_id for message in others_frames(listener)] == [0x09] * 10 + [0x0A]
+
+
+def test_an_end_that_is_shut_down_says_so() -> None:
+    (end,) = ends_on(quiet_wire(), 1)
+    end.shutdown()
+    with pytest.raises(can.CanOperationError, match="this end of the wire is shut down"):
+        end.recv(0)
+    with pytest.raises(can.CanOperationError, match="this end of the wire is shut down"):
+        end.send(frame(0x09))
+
+
+def test_threads_that_send_at_once_lose_nothing_and_keep_their_order() -> None:
+    wire = Wire(settings(bit_rate_bit_s=1_000_000_000), seed=1)
+    deep = NodeSettings(order=SendingOrder.FIFO, queue_frames=1000, restart_s=None)
+    senders = ends_on(wire, 3, deep)
+    (listener,) = ends_on(wire, 1)
+    ticks = iter(range(1_000_000))
+    wire.follow(lambda: next(ticks) * 1e-6)  # each call is a microsecond later
+    numbers = range(800)
+
+    def send_all(end: WireEnd, frame_id: int) -> None:
+        for number in numbers:
+            end.send(frame(frame_id, f"{number:016x}"))
+
+    threads = [threading.Thread(target=send_all, args=(end, at)) for at, end in enumerate(senders)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    wire.follow(None)
+    wire.advance(10.0)
+    heard = others_frames(listener)
+    for at in range(len(senders)):
+        assert [int.from_bytes(each.data, "big") for each in heard if each.arbitration_id == at] == list(numbers)
