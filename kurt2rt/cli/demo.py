@@ -6,7 +6,7 @@ import anyio
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName
+from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName, WireName
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.report import render_curriculum
@@ -19,6 +19,7 @@ def demo(
     seed: Seed = 1,
     out: OutFolder = Path("results/demo"),
     robot_settings: RobotName = "kurt2",
+    wire: WireName = "none",
 ) -> None:
     """Teach a simulated robot from nothing, examine it without its teacher, show what came of it.
 
@@ -37,7 +38,7 @@ def demo(
 
     settings = load_robot(robot_settings)
     taught = load_task(task)
-    stage = SimulatedStage(settings)
+    stage = SimulatedStage(settings, wire)
     stage.require_worlds(taught.teaching.world, *taught.exam.worlds)
     out.mkdir(parents=True, exist_ok=True)
     knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"

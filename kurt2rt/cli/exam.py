@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import RobotName, Seed, TaskName
+from kurt2rt.cli.options import RobotName, Seed, TaskName, WireName
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.report import render_exams
@@ -25,6 +25,7 @@ def exam(
         typer.Option(help="World by name (config/worlds) or path; repeat for several. Default: those of the task."),
     ] = None,
     robot_settings: RobotName = "kurt2",
+    wire: WireName = "none",
 ) -> None:
     """Let the simulated robot drive without its teacher, and its teacher's policy for comparison.
 
@@ -38,7 +39,7 @@ def exam(
     settings = load_robot(robot_settings)
     taught = load_task(task)
     worlds = tuple(world) if world else taught.exam.worlds
-    stage = SimulatedStage(settings)
+    stage = SimulatedStage(settings, wire)
     stage.require_worlds(*worlds)
     events = read_lessons(knowledge, settings, taught)
 

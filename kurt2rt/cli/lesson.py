@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName
+from kurt2rt.cli.options import OutFolder, RobotName, Seed, TaskName, WireName
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.report import render_curriculum, render_seeds
@@ -35,6 +35,7 @@ def lesson(
     jobs: Annotated[int, typer.Option(min=1, help="Processes to use with --seeds.")] = os.cpu_count() or 1,
     out: OutFolder = Path("results/lesson"),
     robot_settings: RobotName = "kurt2",
+    wire: WireName = "none",
 ) -> None:
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
@@ -48,7 +49,7 @@ def lesson(
 
     settings = load_robot(robot_settings)
     taught = load_task(task)
-    stage = SimulatedStage(settings)
+    stage = SimulatedStage(settings, wire)
     stage.require_worlds(taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
     out.mkdir(parents=True, exist_ok=True)
     console = Console()

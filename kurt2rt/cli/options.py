@@ -12,4 +12,12 @@ RobotName = Annotated[
 Seed = Annotated[
     int, typer.Option(min=0, help="Decides start poses and all chance; the same seed gives the same run, bit for bit.")
 ]
+WireName = Annotated[
+    str,
+    typer.Option(
+        "--wire",
+        help="CAN wire between robot and notebook, by name (config/wires) or a path to a YAML file: what a frame takes "
+        "of time, and what goes wrong. none: no time, and nothing.",
+    ),
+]
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for what is made; created when absent.")]
