@@ -33,7 +33,7 @@ def open_robot(
         # Here, because a robot carries no simulator: the packages it needs are an extra.
         from kurt2rt.simulated import simulated_robot
 
-        with simulated_robot(settings, world, seed) as (simulated, ground):
+        with simulated_robot(settings, world, seed, tap=tap) as (simulated, ground):
             yield OpenedRobot(simulated, ground)
         return
     end = open_bus(bus)

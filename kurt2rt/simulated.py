@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
+from hal.tap import Tap
 from kurt2rt.experiments.arena import Position
 from kurt2rt.simulated_ground import SimulatedGround
 from simbridge.drawing import draw_world
@@ -64,6 +65,10 @@ class SimulatedArena:
         """One cycle of 10 ms."""
         self._line.cycle(self.simulation.step)
 
+    def look_on(self, tap: Tap | None) -> None:
+        """Somebody who sees what passes the notebook's end of the bus; None: nobody."""
+        self._line.notebook_end.tap = tap
+
     def rescue(self) -> None:
         """Set the robot down at the nearest start pose."""
         here = self.simulation.pose
@@ -113,13 +118,14 @@ class SimulatedStage:
 
 @contextmanager
 def simulated_robot(
-    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE
+    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
 ) -> Iterator[tuple[Kurt2, SimulatedGround]]:
     """The simulated robot in real time, its second guard awake, and the ground that it stands on.
 
-    Raises SettingsError, and on leaving whatever ended the simulation.
+    `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
     """
     arena = SimulatedArena(settings, world, seed, "run", wire)
+    arena.look_on(tap)
     try:
         with arena.live() as simulation:
             yield (

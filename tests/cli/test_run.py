@@ -8,13 +8,17 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+import can
 import pytest
 
+from hal.bus import CONTROL_ID
+from hal.codec import load_codec
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
 from kurt2rt.rla.rla import RlaCreated
 from tests.cli.helpers import CommandLine, Running, running
+from tests.cli.three_programs import brakes
 
 
 def actions_in(knowledge: Path) -> list[str]:
@@ -168,3 +172,37 @@ def test_a_reader_that_goes_away_does_not_stop_the_robot(tmp_path: Path) -> None
         said = robot.end(signal.SIGTERM)
     assert "Traceback" not in said.err
     assert actions_in(knowledge) == ["stand"]
+
+
+def test_what_passed_on_the_bus_is_kept_in_a_log_that_other_tools_read(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    words = ("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", "mine.knowledge", "--can-log", "drive.log")
+    said = kurt2rt(*words)
+    with can.LogReader(tmp_path / "drive.log") as reader:
+        frames = list(reader)
+    assert f"{len(frames)} frames are in drive.log" in said.out
+    sent = [frame.arbitration_id for frame in frames if not frame.is_rx]
+    assert len(sent) >= 30
+    assert set(sent) == {CONTROL_ID}
+    heard = {frame.arbitration_id for frame in frames if frame.is_rx}
+    assert {load_codec().message(name).frame_id for name in ("ADC00_03", "BDC00_03", "ENCODER", "BUMPERC")} <= heard
+    assert brakes(frames[-1])  # the robot's last word
+
+    said = kurt2rt(*words)
+    assert "frames are in drive-2.log" in said.out
+
+
+def test_a_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
+    assert "drive.doc: no known kind of CAN log; give a name" in kurt2rt.refused("run", "--can-log", "drive.doc")
+
+
+@pytest.mark.deep
+def test_a_log_that_cannot_be_written_is_told_of_and_the_robot_drives_on(tmp_path: Path) -> None:
+    words = ("run", "--teacher", "none", "--knowledge", "mine.knowledge", "--can-log", "drive.log")
+    with running(*words, folder=tmp_path) as robot:
+        robot.wait_for("late")
+        limit_files(robot.process, (tmp_path / "drive.log").stat().st_size)
+        line = robot.wait_for("CAN log drive.log: writing failed ([Errno 27] File too large), ")
+        assert "missed" in line
+        said = robot.end(signal.SIGTERM)
+    assert (said.exit_code, said.err) == (0, "")
+    assert "frames lost" in said.out.splitlines()[-2]
