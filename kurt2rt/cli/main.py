@@ -12,6 +12,7 @@ from hal.bus import BusError
 from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
 from kurt2rt.cli.bench import bench
+from kurt2rt.cli.commission import commission
 from kurt2rt.cli.demo import demo
 from kurt2rt.cli.doctor import doctor
 from kurt2rt.cli.exam import exam
@@ -83,6 +84,7 @@ app.command()(pair)
 app.command()(lesson)
 app.command()(exam)
 app.add_typer(knowledge, name="knowledge")
+app.command()(commission)
 app.command()(bench)
 app.command()(doctor)
 

@@ -39,6 +39,7 @@ def test_every_command_is_found() -> None:
             "export",
             "bench",
             "doctor",
+            "commission",
         )
     }
     assert "--seeds" in commands()["lesson",]

@@ -1,0 +1,205 @@
+"""`kurt2rt commission`."""
+
+import getpass
+import re
+import signal
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+import anyio
+import anyio.abc
+import typer
+from rich.console import Console
+
+from hal.bus import open_bus
+from hal.codec import load_codec
+from hal.kurt2 import Kurt2
+from hal.robot_settings import RobotSettings, load_robot
+from hal.settings import SettingsError
+from kurt2rt.cli.options import RobotName
+from kurt2rt.commission.bench import Bench
+from kurt2rt.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
+from kurt2rt.commission.listener import Listener
+from kurt2rt.commission.person import LeftError
+from kurt2rt.commission.progress import Progress, load_progress
+from kurt2rt.commission.report import print_report
+from kurt2rt.commission.robot_file import write_robot_file
+from kurt2rt.commission.step import Outcome, Step
+from kurt2rt.commission.typing_person import TypingPerson
+from kurt2rt.timing.timerfd import TimerfdClock
+
+_NAMES = ", ".join(step.name for step in STEPS)
+
+
+def commission(
+    bus: Annotated[
+        str,
+        typer.Argument(help="The robot's bus: a SocketCAN interface such as can0, or shared:NAME.", show_default=False),
+    ],
+    name: Annotated[str, typer.Option(help="What this robot is called: up to 40 of a-z, 0-9 and -.")] = "my-kurt2",
+    out: Annotated[
+        Path | None, typer.Option(help="The robot's settings file. Default: var/robots/NAME.yaml.", show_default=False)
+    ] = None,
+    robot_settings: RobotName = "kurt2",
+    only: Annotated[
+        str | None, typer.Option(help=f"Take these steps alone, passed or not: some of {_NAMES}.", show_default=False)
+    ] = None,
+    skip: Annotated[
+        str | None, typer.Option(help="Note these steps as skipped for good; the file can be written without them.")
+    ] = None,
+    anew: Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")] = False,
+    who: Annotated[
+        str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
+    ] = None,
+) -> None:
+    """Switch a real robot on for the first time: a checklist that walks you through.
+
+    It listens for the controller's identity and every frame, tries which speed
+    mode answers, each wheel's side and direction, the emergency stop and the
+    controller's own watchdog, finds each sensor's channel by your hand in front
+    of it and each bumper's bit, and fits the infra-red law by a ruler. At the
+    end it writes the robot's settings file.
+
+    You need a block that lifts all wheels, a ruler, a flat board, an hour, and
+    a hand near the switch that cuts the motors. No wheel turns before you typed
+    that the wheels are up, and then only after Enter, slowly, through the same
+    guard as ever. Ctrl-C brakes at any time.
+
+    Set the interface up first:
+
+        sudo ip link set can0 up type can bitrate 1000000
+        kurt2rt commission can0 --name my-kurt2
+
+    What was found is kept after each step: the same command goes on where you
+    left off, with the steps that have not passed. What failed tells what to
+    mend. The file is written when every step was taken or skipped; not while
+    identity, modes, wheels or stop fail. Then name it as robot: in the runtime
+    settings (a copy of config/runtime/default.yaml):
+
+        kurt2rt run --robot can0 --settings my-runtime.yaml
+
+    Ends with code 1 when a step of this session failed.
+    """
+    if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
+        raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
+    target = out or Path("var", "robots", f"{name}.yaml")
+    if target.suffix != ".yaml":
+        raise typer.BadParameter("a settings file ends in .yaml", param_hint="--out")
+    if target.exists() and not force:
+        raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
+    wanted, skipped = _named(only, "--only"), _named(skip, "--skip")
+    base = load_robot(robot_settings)
+    path = Path("var", "commission", f"{name}.json")
+    progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), anew)
+    chosen = [step for step in (wanted or steps_to_take(progress)) if step not in skipped]
+    console = Console()
+    _tell(console, f"{name} on {bus}; progress is kept in {path}; Ctrl-C brakes")
+    for step in STEPS:
+        record = progress.steps.get(step.name)
+        if step not in chosen and record is not None:
+            _tell(
+                console, f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
+            )
+    taken = anyio.run(_walk, bus, base, progress, path, chosen, skipped, who or _user(), console)
+    print_report(taken, STEPS, console)
+    _conclude(console, taken, base, target)
+    if any(taken.steps[step.name].outcome is Outcome.FAILED for step in chosen if step.name in taken.steps):
+        raise typer.Exit(1)
+
+
+async def _walk(
+    bus: str,
+    base: RobotSettings,
+    progress: Progress,
+    path: Path,
+    chosen: Sequence[Step],
+    skipped: Sequence[Step],
+    who: str,
+    console: Console,
+) -> Progress:
+    person = TypingPerson(sys.stdin, console)
+    listener = Listener(open_bus(bus), load_codec(base.can.database))
+    with TimerfdClock() as clock:
+        bench = Bench(base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, person, second_guard=True)
+        checklist = Checklist(bench, progress, path, who, _now)
+        async with anyio.create_task_group() as tasks:
+            await tasks.start(_leave_on_signal, tasks.cancel_scope)
+            with bench:  # inside of the scope: whatever ends it, the wheels are braked first
+                try:
+                    await checklist.walk(chosen, skipped)
+                except LeftError:
+                    _tell(console, "left; the same command goes on from here")
+            tasks.cancel_scope.cancel()
+        if tasks.cancel_scope.cancelled_caught:
+            _tell(console, "stopped: the wheels are braked; the same command goes on from here")
+        return checklist.progress
+
+
+async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
+    with anyio.open_signal_receiver(signal.SIGINT, signal.SIGTERM, signal.SIGHUP) as signals:
+        task_status.started()
+        async for _ in signals:
+            scope.cancel()
+
+
+def _conclude(console: Console, progress: Progress, base: RobotSettings, target: Path) -> None:
+    """Write the file, or tell why not."""
+    barred = barring(progress)
+    missing = open_steps(progress)
+    if barred:
+        failed = ", ".join(step.name for step in barred)
+        _tell(console, f"no settings file is written while these fail: {failed}; mend, then run the same command again")
+        return
+    if missing:
+        waiting = ", ".join(step.name for step in missing)
+        _tell(console, f"no settings file yet; steps not taken: {waiting}; go on with the same command, or --skip them")
+        return
+    try:
+        write_robot_file(target, base, progress, STEPS)
+    except SettingsError as error:
+        _tell(console, f"no settings file yet: {error}")
+        return
+    _tell(console, f"written: {target}")
+    _tell(console, f"use it: robot: {target} in a copy of config/runtime/default.yaml, then")
+    _tell(console, f"        kurt2rt run --robot {progress.bus} --settings THAT.yaml")
+
+
+def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
+    if anew:
+        return fresh
+    try:
+        kept = load_progress(path)
+    except FileNotFoundError:
+        return fresh
+    if kept.base != fresh.base:
+        raise SettingsError(
+            f"{path}: was begun with --robot-settings {kept.base}; go on with that, give another --name, or --anew"
+        )
+    return kept.model_copy(update={"bus": fresh.bus})
+
+
+def _named(names: str | None, option: str) -> list[Step]:
+    words = [] if names is None else [word.strip() for word in names.split(",") if word.strip()]
+    try:
+        return [step_named(word) for word in words]
+    except KeyError as error:
+        raise typer.BadParameter(f"no step {error.args[0]}; there are: {_NAMES}", param_hint=option) from error
+
+
+def _now() -> str:
+    return datetime.now(UTC).strftime("%Y-%m-%d %H:%M")
+
+
+def _user() -> str:
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):  # a user without a name, as in a container
+        return "somebody"
+
+
+def _tell(console: Console, text: str) -> None:
+    console.print(text, markup=False, highlight=False, soft_wrap=True)

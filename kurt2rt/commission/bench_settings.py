@@ -1,0 +1,43 @@
+"""The robot's settings while it is commissioned: slow, patient, and without what it does not have."""
+
+from collections.abc import Collection
+
+from hal.codec import load_codec
+from hal.robot_settings import RobotSettings, SpeedMode
+
+MAXIMUM_SPEED_M_S = 0.2
+ACCELERATION_M_S2 = 0.5
+PATIENCE_S = 0.5
+"""How long infra-red and bumpers may be silent: with the wheels in the air nobody drives by them, and a controller that
+sends them at another pace than the table says is what the checklist is there to find."""
+
+
+def bench_settings(robot: RobotSettings, mode: SpeedMode, heard_ids: Collection[int]) -> RobotSettings:
+    """What the guard is given for the wheels' tests in a speed mode; only boards that were heard count.
+
+    Without any board the table is left as it is, and the guard will not let the wheels turn.
+    """
+    codec = load_codec(robot.can.database)
+    known_ids = codec.by_id.keys() & set(heard_ids)
+    channels = {channel for frame_id in known_ids for channel in codec.by_id[frame_id].signals}
+    sensors = tuple(sensor for sensor in robot.infrared.sensors if sensor.channel in channels)
+    limits = robot.guard
+    guard = limits.model_copy(
+        update={
+            "maximum_speed_m_s": min(MAXIMUM_SPEED_M_S, limits.maximum_speed_m_s),
+            "acceleration_m_s2": min(ACCELERATION_M_S2, limits.acceleration_m_s2),
+            "stale_infrared_s": PATIENCE_S,
+            "stale_bumper_s": PATIENCE_S,
+            # Wheels that disobey, and boards that hang, are what the checklist looks for: it must see them at work.
+            "wheel_error_m_s": 3.0,
+            "frozen_infrared_s": 3600.0,
+        }
+    )
+    return robot.model_copy(
+        update={
+            "can": robot.can.model_copy(update={"speed_mode": mode}),
+            "guard": guard,
+            "infrared": robot.infrared.model_copy(update={"sensors": sensors or robot.infrared.sensors}),
+            "bumpers": robot.bumpers if codec.message("BUMPERC").frame_id in heard_ids else (),
+        }
+    )

@@ -1,0 +1,38 @@
+"""What a commissioning found out about a robot, as far as its settings say such things."""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field
+
+from hal.robot_settings import SpeedMode
+from hal.settings import Settings
+
+
+class LawFound(Settings):
+    """An infra-red law fitted to readings before a ruler."""
+
+    numerator_counts_m: float
+    offset_m: float
+    bias_counts: float
+    near_m: float
+    far_m: float
+    floor_counts: int
+    plateau_counts: int
+
+
+class Findings(Settings):
+    """Measured values; None or absent: not found out, the settings it began with hold."""
+
+    hardware_id: int | None = None
+    firmware: int | None = None
+    speed_mode: SpeedMode | None = None
+    full_speed_m_s: float | None = None
+    """100 % in SPEED mode, where that mode answered."""
+    controller_watchdog_s: Annotated[float, Field(gt=0)] | None = None
+    channels: Mapping[str, str] = Field(default={})
+    """Analog channel by sensor name."""
+    dead_sensors: tuple[str, ...] = ()
+    bumper_bits: Mapping[str, int] = Field(default={})
+    """Bit by bumper name."""
+    law: LawFound | None = None

@@ -1,0 +1,122 @@
+"""Fits the infra-red law, counts = numerator / (distance + offset) - bias, to readings before a ruler."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+LEAST_DISTANCES = 4
+_OFFSETS_M = np.linspace(0.005, 0.12, 231)
+_SIGMA_COUNTS, _SIGMA_SHARE = 2.5, 0.03
+"""What a reading may be off: a ruler held by hand (3 mm are 2 to 3 %), and the spread between sensors."""
+_OUTLIER_SIGMAS = 4.0
+_OUTLIERS_AT_MOST = 4
+"""One reading in so many may be an outlier."""
+_WORST_SCATTER = 2.0
+_BIASES = (0.0, 250.0)
+_NEAR_M, _FAR_M = 0.10, 0.60
+_NEAR_COUNTS, _FAR_COUNTS = (250.0, 1000.0), (0.0, 250.0)
+_LEAST_RATIO = 2.5
+
+
+class LawError(ValueError):
+    """The readings do not make a law. The message says in one line what is implausible."""
+
+
+class Reading(NamedTuple):
+    """Median counts of a sensor with a board at a distance from its face."""
+
+    sensor: str
+    distance_m: float
+    counts: float
+
+
+@dataclass(frozen=True, slots=True)
+class Law:
+    """The law between near and far."""
+
+    numerator_counts_m: float
+    offset_m: float
+    bias_counts: float
+
+    def counts_at(self, distance_m: float) -> float:
+        """Counts at a distance."""
+        return self.numerator_counts_m / (distance_m + self.offset_m) - self.bias_counts
+
+    def distance_m(self, counts: float) -> float:
+        """Distance that counts stand for."""
+        return self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A law and how far each reading lies from it."""
+
+    law: Law
+    residuals: tuple[float, ...]
+    """Counts, reading minus law, in the order of the readings."""
+    outliers: tuple[int, ...]
+    """Which readings were left out of the fit."""
+    scatter: float
+    """Root mean square of the residuals of those that were not, in units of what a reading may be off."""
+
+
+def fit_law(readings: Sequence[Reading]) -> Fit:
+    """Least squares; single readings that do not fit to the others are left out. Raises LawError."""
+    _require_range(readings)
+    kept = list(range(len(readings)))
+    fit = _fit(readings, kept)
+    while fit.scatter > 1.0 and len(readings) - len(kept) < len(readings) // _OUTLIERS_AT_MOST:
+        # The one whose absence mends most; the farthest from a fit that it bent itself need not be it.
+        without = {at: _fit(readings, [each for each in kept if each != at]) for at in kept}
+        worst = min(without, key=lambda at: without[at].scatter)
+        off = abs(without[worst].residuals[worst]) / _sigma(readings[worst].counts)
+        if off < _OUTLIER_SIGMAS:
+            break
+        kept.remove(worst)
+        fit = without[worst]
+    _require_plausible(fit)
+    return fit
+
+
+def _fit(readings: Sequence[Reading], kept: Sequence[int]) -> Fit:
+    """For each offset the law is a straight line in 1 / (distance + offset); the best offset is taken."""
+    distances = np.array([readings[at].distance_m for at in kept])
+    counts = np.array([readings[at].counts for at in kept])
+    weights = np.array([_sigma(value) ** -2 for value in counts])
+    x = 1.0 / (distances + _OFFSETS_M[:, None])
+    total = weights.sum()
+    mean_x, mean_counts = (x @ weights / total)[:, None], counts @ weights / total
+    slope = ((x - mean_x) * weights) @ (counts - mean_counts) / (((x - mean_x) ** 2) @ weights)
+    bias = slope * mean_x[:, 0] - mean_counts
+    # A law with a bias outside of its range is pulled to the edge, and its slope with it.
+    bias = np.clip(bias, *_BIASES)
+    slope = (x @ (weights * counts) + bias * (x @ weights)) / (x**2 @ weights)
+    cost = ((counts - (slope[:, None] * x - bias[:, None])) ** 2) @ weights
+    best = int(np.argmin(cost))
+    law = Law(float(slope[best]), float(_OFFSETS_M[best]), float(bias[best]))
+    residuals = tuple(each.counts - law.counts_at(each.distance_m) for each in readings)
+    scatter = float(np.sqrt(cost[best] / len(kept)))
+    return Fit(law, residuals, tuple(at for at in range(len(readings)) if at not in kept), scatter)
+
+
+def _sigma(counts: float) -> float:
+    return float(np.hypot(_SIGMA_COUNTS, _SIGMA_SHARE * counts))
+
+
+def _require_range(readings: Sequence[Reading]) -> None:
+    distances = {each.distance_m for each in readings}
+    if len(distances) < LEAST_DISTANCES or min(distances) > 0.15 or max(distances) < 0.4:
+        raise LawError(f"{LEAST_DISTANCES} distances at least, from 0.15 m or less to 0.40 m or more, are needed")
+
+
+def _require_plausible(fit: Fit) -> None:
+    near, far = fit.law.counts_at(_NEAR_M), fit.law.counts_at(_FAR_M)
+    if fit.scatter > _WORST_SCATTER:
+        raise LawError("the readings scatter too much around any law: was the board where it was asked for?")
+    for where, counts, (least, most) in (("0.10", near, _NEAR_COUNTS), ("0.60", far, _FAR_COUNTS)):
+        if not least <= counts <= most:
+            raise LawError(f"{counts:.0f} counts at {where} m, plausible are {least:.0f} to {most:.0f}")
+    if near < _LEAST_RATIO * far:
+        raise LawError(f"{near:.0f} counts at 0.10 m and {far:.0f} at 0.60 m: the counts hardly change with distance")

@@ -1,0 +1,74 @@
+"""Listens on an end of the bus of its own, to everything: the robot's driver hears only what it drives by."""
+
+import re
+
+import can
+
+from hal.bus import CONTROL_ID, CanBus
+from hal.codec import Codec, JunkFrameError, MessageCodec
+from hal.robot import HIGHEST_COUNTS
+from kurt2rt.commission.heard import EncoderFrame, Heard, Identity
+
+_DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
+"""ADC12 and ADC13 are motor currents."""
+
+
+class Listener:
+    """Decodes what one end of the bus hears. It sends nothing."""
+
+    def __init__(self, bus: CanBus, codec: Codec) -> None:
+        """Own an end of the bus."""
+        self._bus = bus
+        self._codec = codec
+        self.ids: set[int] = set()
+        """Identifiers of all frames heard so far."""
+
+    def hear(self, now_s: float, heard: Heard) -> None:
+        """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
+        messages = self._bus.drain()
+        bus_now_s = self._bus.now_s() if messages else None
+        for message in messages:
+            age_s = 0.0 if bus_now_s is None else max(0.0, bus_now_s - message.timestamp)
+            self._note(message, now_s - age_s, heard)
+
+    def close(self) -> None:
+        """Give the end back."""
+        self._bus.shutdown()
+
+    def _note(self, message: can.Message, at_s: float, heard: Heard) -> None:
+        if message.is_error_frame:
+            heard.junk["error frames of the bus"] += 1
+            return
+        if message.is_extended_id or message.is_remote_frame:
+            heard.junk["extended or remote frames"] += 1
+            return
+        frame_id = message.arbitration_id
+        self.ids.add(frame_id)
+        heard.arrivals_s.setdefault(frame_id, []).append(at_s)
+        if frame_id == CONTROL_ID:
+            heard.control += 1
+            return
+        codec = self._codec.by_id.get(frame_id)
+        if codec is None:
+            return
+        try:
+            self._decode(codec, message.data, at_s, heard)
+        except JunkFrameError as error:
+            heard.junk[str(error)] += 1
+
+    def _decode(self, codec: MessageCodec, data: bytes | bytearray, at_s: float, heard: Heard) -> None:
+        values = codec.unpack(data)
+        if codec.name == "ENCODER":
+            heard.encoder.append(EncoderFrame(at_s, *values))
+        elif codec.name == "BUMPERC":
+            heard.bumpers.append(values[0])
+        elif codec.name in ("INFO_1", "INFO_2"):
+            heard.identities.setdefault(codec.name, []).append(Identity(*values))
+        else:
+            for channel, counts in zip(codec.signals, values, strict=True):
+                if not _DISTANCE_CHANNEL.fullmatch(channel):
+                    continue
+                if counts > HIGHEST_COUNTS:
+                    heard.junk[f"{channel} above {HIGHEST_COUNTS} counts"] += 1
+                else:
+                    heard.channels.setdefault(channel, []).append(counts)

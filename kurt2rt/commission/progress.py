@@ -1,0 +1,67 @@
+"""How far a commissioning has come, in a file: it may take days, and nobody types all of it twice."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, ValidationError
+
+from hal.settings import Settings, SettingsError
+from kurt2rt.commission.findings import Findings
+from kurt2rt.commission.step import Outcome
+from kurt2rt.durable import sync_folder
+
+
+class StepRecord(Settings):
+    """How a step ended the last time it was taken."""
+
+    outcome: Outcome
+    at: str
+    """Date and time, UTC, to the minute."""
+    who: str
+    measured: tuple[str, ...] = ()
+    to_do: tuple[str, ...] = ()
+
+
+class Progress(Settings):
+    """One robot's commissioning."""
+
+    name: str
+    base: str
+    """Settings that it began with."""
+    bus: str
+    findings: Findings = Findings()
+    steps: Mapping[str, StepRecord] = Field(default={})
+    """By the step's name."""
+
+    def with_step(self, name: str, record: StepRecord, findings: Findings) -> Self:
+        """The same after a step was taken."""
+        return self.model_copy(update={"steps": {**self.steps, name: record}, "findings": findings})
+
+    def save(self, path: Path) -> None:
+        """Write durably, whole or not at all. Raises OSError."""
+        write_durably(path, self.model_dump_json(indent=2) + "\n")
+
+
+def load_progress(path: Path) -> Progress:
+    """Read what `save` wrote. Raises SettingsError that says what to do, FileNotFoundError."""
+    try:
+        return Progress.model_validate_json(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise
+    except (OSError, UnicodeDecodeError, ValidationError) as error:
+        first = " ".join(str(error).split())[:120]
+        raise SettingsError(f"{path}: cannot be used ({first}); begin anew with --anew") from error
+
+
+def write_durably(path: Path, text: str) -> None:
+    """A file that is there whole after a power cut, or as it was before. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_name(path.name + ".new")
+    with fresh.open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    fresh.replace(path)
+    sync_folder(path.parent)

@@ -1,0 +1,37 @@
+"""The report of a commissioning: a table of the steps, what is to be done, and the verdict."""
+
+from collections.abc import Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from kurt2rt.commission.progress import Progress
+from kurt2rt.commission.step import Outcome, Step
+
+_STYLES = {Outcome.PASSED: "green", Outcome.FAILED: "bold red", Outcome.SKIPPED: "yellow"}
+
+
+def passed(progress: Progress, steps: Sequence[Step]) -> bool:
+    """True when every step did."""
+    return all(step.name in progress.steps and progress.steps[step.name].outcome is Outcome.PASSED for step in steps)
+
+
+def print_report(progress: Progress, steps: Sequence[Step], console: Console) -> None:
+    """Table, what is to be done, verdict."""
+    table = Table("step", "outcome", "when (UTC)", "who", box=SIMPLE_HEAD)
+    to_do: list[str] = []
+    for step in steps:
+        record = progress.steps.get(step.name)
+        if record is None:
+            table.add_row(Text(step.name), Text("not taken"), "", "")
+            continue
+        outcome = Text(record.outcome, style=_STYLES[record.outcome])
+        table.add_row(Text(step.name), outcome, Text(record.at), Text(record.who))
+        to_do += [f"{step.name}: {each}" for each in record.to_do]
+    console.print(table)
+    for each in to_do:
+        console.print(Text(each), soft_wrap=True)
+    verdict = "PASSED" if passed(progress, steps) else "not passed"
+    console.print(Text(f"{progress.name}: {verdict}", style="bold"), soft_wrap=True)

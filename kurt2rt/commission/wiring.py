@@ -1,0 +1,134 @@
+"""From what was ordered, seen and counted to what has to be rewired."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+
+class Side(IntEnum):
+    """A side of the robot; its place in a Motion."""
+
+    LEFT = 0
+    RIGHT = 1
+
+    @property
+    def word(self) -> str:
+        """As a person says it."""
+        return self.name.lower()
+
+
+class Motion(NamedTuple):
+    """Which sides turn and which way: 1 forward, -1 back, 0 not."""
+
+    left: int
+    right: int
+
+    @property
+    def only(self) -> tuple[Side, int] | None:
+        """The one side that turns, and its sign; None when none or both do."""
+        if bool(self.left) == bool(self.right):
+            return None
+        return (Side.LEFT, self.left) if self.left else (Side.RIGHT, self.right)
+
+    def __str__(self) -> str:
+        ways = {1: "forward", -1: "back"}
+        if self.left == self.right:
+            return f"both {ways[self.left]}" if self.left else "none"
+        return ", ".join(
+            f"{side.word} {ways[sign]}" for side, sign in zip(Side, (self.left, self.right), strict=True) if sign
+        )
+
+
+STILL = Motion(0, 0)
+
+
+def one(side: Side, sign: int) -> Motion:
+    """Only this side turns."""
+    return Motion(sign, 0) if side is Side.LEFT else Motion(0, sign)
+
+
+class Trial(NamedTuple):
+    """One order, what a person saw of it and what the encoders counted."""
+
+    ordered: Motion
+    seen: Motion
+    counted: Motion
+
+
+def parse_seen(answer: str) -> Motion | None:
+    """What a person typed: none; left, right or both with forward or back; None when it cannot be understood.
+
+    Each word may be cut short.
+    """
+    words = answer.split()
+    if not words:
+        return None
+    who = [each for each in ("left", "right", "both", "none") if each.startswith(words[0])]
+    if who == ["none"] and len(words) == 1:
+        return STILL
+    if len(words) != 2:
+        return None
+    way = [sign for each, sign in (("forward", 1), ("back", -1), ("backward", -1)) if each.startswith(words[1])]
+    if len(who) != 1 or not way:
+        return None
+    return {"left": Motion(way[0], 0), "right": Motion(0, way[0]), "both": Motion(way[0], way[0])}.get(who[0])
+
+
+def what_to_rewire(trials: list[Trial]) -> list[str]:
+    """Instructions, motors before encoders; empty when all is as it should be. `trials`: each side, both ways."""
+    motors = [(trial.ordered, trial.seen) for trial in trials]
+    encoders = [(trial.seen, trial.counted) for trial in trials]
+    return _judge(motors, _MOTORS) + _judge(encoders, _ENCODERS)
+
+
+class _Words(NamedTuple):
+    swapped: str
+    reversed: str
+    dead: str
+    odd: str
+
+
+_MOTORS = _Words(
+    "The motors are exchanged: exchange the left and the right motor's plugs at the controller",
+    "The {side} motor turns the wrong way: exchange its two leads",
+    "The {side} motor does not turn: check its plug, its fuse and its supply",
+    "The {side} motor's order turns {what}: check the wiring of both motors",
+)
+_ENCODERS = _Words(
+    "The encoders are exchanged: exchange the left and the right encoder's plugs at the controller",
+    "The {side} encoder counts the wrong way: exchange its channels A and B",
+    "The {side} encoder counts nothing while its wheels turn: check its plug and its supply",
+    "While the {side} wheels turn, {what} is counted: check the wiring of both encoders",
+)
+
+
+def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
+    """From causes, each of one side, to effects."""
+    effects = {side: _effect_of(side, pairs) for side in Side}
+    swapped = all(effect is not None and effect[0] is not side for side, effect in effects.items())
+    found = [words.swapped] if swapped else []
+    for side in Side:
+        causes = [effect for cause, effect in pairs if cause.only is not None and cause.only[0] is side]
+        effect = effects[side]
+        if not causes:
+            continue
+        if all(each == STILL for each in causes):
+            found.append(words.dead.format(side=side.word))
+        elif effect is None or (effect[0] is not side and not swapped):
+            what = " and ".join(dict.fromkeys(str(each) for each in causes))
+            found.append(words.odd.format(side=side.word, what=what))
+        elif effect[1] < 0:
+            # The part that turned is the one to mend, wherever its plug is.
+            found.append(words.reversed.format(side=effect[0].word))
+    return found
+
+
+def _effect_of(side: Side, pairs: list[tuple[Motion, Motion]]) -> tuple[Side, int] | None:
+    """Which side answers to a side, and whether the same way (1) or the other (-1); None when no one side does."""
+    answers = set()
+    for cause, effect in pairs:
+        if cause.only is None or cause.only[0] is not side:
+            continue
+        if effect.only is None:
+            return None
+        answers.add((effect.only[0], effect.only[1] * cause.only[1]))
+    return answers.pop() if len(answers) == 1 else None

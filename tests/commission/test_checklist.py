@@ -1,0 +1,132 @@
+"""The checklist from end to end: a robot on a block, a person who does as he is asked, and what is kept of it."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.robot_settings import SpeedMode
+from hal.settings import SettingsError
+from kurt2rt.commission.bench_settings import MAXIMUM_SPEED_M_S
+from kurt2rt.commission.checklist import STEPS, barring, open_steps, steps_to_take
+from kurt2rt.commission.person import SKIP, Asked, Question, Tone
+from kurt2rt.commission.progress import Progress, load_progress
+from kurt2rt.commission.report import passed
+from kurt2rt.commission.step import Outcome
+from tests.commission.wired_end import Wiring
+from tests.commission.workshop import Session, Workshop, leaves_at
+
+
+async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        progress = await session.walk()
+    assert session.person.lines(Tone.BAD) == []
+    assert passed(progress, STEPS)
+    findings = progress.findings
+    assert findings.speed_mode is SpeedMode.SPEED_CM
+    assert findings.channels == {sensor.name: sensor.channel for sensor in workshop.true.infrared.sensors}
+    assert findings.bumper_bits == {bumper.name: bit for bit, bumper in enumerate(workshop.true.bumpers)}
+    assert findings.controller_watchdog_s == pytest.approx(0.2, abs=0.03)
+    assert findings.law is not None
+
+
+async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_path: Path) -> None:
+    moved: dict[Asked, float] = {}
+    asked_before = Asked.BEGIN
+
+    def note(question: Question) -> None:
+        """The fastest wheel since the question before, under what that one was about."""
+        nonlocal asked_before
+        fastest_m_s = max(map(abs, workshop.take_peaks()))
+        moved[asked_before] = max(moved.get(asked_before, 0.0), fastest_m_s)
+        asked_before = question.about
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, note)
+        await session.walk("identity", "modes", "stop", "bumpers")
+    assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {Asked.MOVE}
+    assert moved[Asked.MOVE] <= MAXIMUM_SPEED_M_S
+
+
+async def test_without_the_words_no_control_frame_is_sent_at_all(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.LIFTED else None)
+        await session.walk("identity", "modes", "wheels", "stop", "bumpers")
+        assert workshop.wiring.controls == 0
+    assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {Outcome.SKIPPED}
+    assert session.measured("modes") == ("the wheels were not confirmed off the ground",)
+    assert session.outcome("bumpers") is Outcome.PASSED
+
+
+async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
+    words = iter(["yes", "", "wheels  up "])
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, lambda question: next(words) if question.about is Asked.LIFTED else None)
+        await session.walk("lifted")
+    assert session.person.lines(Tone.BAD) == ["That was 'yes', not 'wheels up'.", "That was '', not 'wheels up'."]
+    assert session.outcome("lifted") is Outcome.PASSED
+
+
+async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_anew(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        first = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        await first.walk("identity", "modes", "wheels", "stop")
+        assert max(map(abs, workshop.robot.wheel_speeds)) == 0.0
+        kept = load_progress(first.path)
+        assert kept == first.progress
+        assert [step.name for step in steps_to_take(kept)] == ["wheels", "stop", "sensors", "bumpers", "infrared"]
+
+        second = Session(workshop, tmp_path)
+        second.progress = kept
+        await second.walk("wheels", "stop")
+    assert Asked.LIFTED in [question.about for question in second.person.asked]
+    assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [Outcome.PASSED] * 4
+
+
+async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        await Session(workshop, tmp_path, leaves_at(Asked.SEEN)).walk("modes", "wheels")
+        workshop.step()
+        assert workshop.robot.controller.orders == (0.0, 0.0, True, True)
+
+
+async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_path: Path) -> None:
+    def mend(question: Question) -> str | None:
+        if question.about is not Asked.AFTER_FAILURE:
+            return None
+        workshop.wiring.reversed_motors = ()
+        return "r"
+
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path, mend)
+        await session.walk("modes", "wheels")
+    assert session.person.lines(Tone.TO_DO) == ["The right motor turns the wrong way: exchange its two leads"]
+    assert session.outcome("wheels") is Outcome.PASSED
+    assert barring(session.progress) == []
+
+
+async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("bumpers")
+        again = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.BEGIN else None)
+        again.progress = session.progress
+        await again.walk("bumpers", "sensors")
+    assert again.outcome("bumpers") is Outcome.PASSED
+    assert again.outcome("sensors") is Outcome.SKIPPED
+
+
+async def test_skipped_steps_are_noted_and_do_not_wait_any_longer(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("identity", skipped=("sensors", "infrared"))
+    assert [step.name for step in open_steps(session.progress)] == ["modes", "wheels", "stop", "bumpers"]
+    assert not passed(session.progress, STEPS)
+
+
+def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "robot.json"
+    Progress(name="tested", base="kurt2", bus="can0").save(path)
+    path.write_text(path.read_text()[:20])
+    with pytest.raises(SettingsError, match=r"robot.json: cannot be used .*begin anew with --anew"):
+        load_progress(path)
