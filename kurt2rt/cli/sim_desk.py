@@ -74,7 +74,8 @@ class Keyboard:
         self.ended = False
         """True when no more can come."""
         # Daemon: reading a terminal cannot be interrupted, and must not keep the process alive.
-        threading.Thread(target=self._read, name="keyboard", daemon=True).start()
+        self.thread = threading.Thread(target=self._read, name="keyboard", daemon=True)
+        self.thread.start()
 
     def typed(self) -> Iterator[str]:
         """What came since the last look."""
