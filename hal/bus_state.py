@@ -1,6 +1,5 @@
 """What this machine's CAN controller says of itself: Linux's error frames (linux/can/error.h), read and counted."""
 
-from collections import Counter
 from enum import StrEnum
 
 import can
@@ -20,7 +19,6 @@ _CONTROLLER = 0x004
 _BUS_OFF = 0x040
 _RESTARTED = 0x100
 _COUNTERS = 0x200
-_CLASSES = 0x3FF
 _KINDS = (
     (0x020, "not acknowledged"),
     (0x088, "broken"),
@@ -28,6 +26,7 @@ _KINDS = (
     (0x001, "not sent in time"),
     (0x002, "lost arbitration"),
 )
+_OVERFLOWS = "overflow"  # frames that the controller lost because nobody fetched them in time
 # Status of the controller, data[1] of class CONTROLLER: a bit for receiving and one for sending, ACTIVE for both.
 _OVERFLOW = 0x03
 _STATES = ((0x30, ControllerState.PASSIVE), (0x0C, ControllerState.WARNING), (0x40, ControllerState.ACTIVE))
@@ -39,18 +38,22 @@ class BusState:
     def __init__(self, bus: str) -> None:
         """`bus`: its name, for what is said about it."""
         self._bus = bus
-        self._seen: Counter[int] = Counter()
+        # All kinds from the start: whoever shows them may do so from another thread.
+        self._kinds = {word: 0 for _, word in _KINDS} | {_OVERFLOWS: 0}
+        self.error_frames = 0
+        """Error frames so far."""
         self.controller = ControllerState.ACTIVE
         self.sending_errors = 0
         """The controller's own counter; from 96 on it warns, from 128 on it is passive, from 256 on it is off."""
         self.receiving_errors = 0
-        self.overflows = 0
-        """Times that the controller lost frames because nobody fetched them."""
 
     def note(self, frame: can.Message) -> None:
         """Read one error frame; cheap, for a broken cable makes thousands in a second."""
-        classes = frame.arbitration_id & _CLASSES
-        self._seen[classes] += 1
+        classes = frame.arbitration_id
+        self.error_frames += 1
+        for bits, kind in _KINDS:
+            if classes & bits:
+                self._kinds[kind] += 1
         data = frame.data
         if len(data) >= 8:
             # Kernels before 6.0 fill in the counters without the bit that says so.
@@ -74,15 +77,9 @@ class BusState:
         return self.controller is ControllerState.OFF
 
     @property
-    def error_frames(self) -> int:
-        """Error frames so far."""
-        return self._seen.total()
-
-    @property
     def kinds(self) -> dict[str, int]:
         """How many of the error frames were about what, in words; those that never came are left out."""
-        kinds = {word: sum(self._seen[seen] for seen in self._seen if seen & bits) for bits, word in _KINDS}
-        return {word: count for word, count in {**kinds, "overflow": self.overflows}.items() if count}
+        return {kind: count for kind, count in self._kinds.items() if count}
 
     @property
     def trouble(self) -> str:
@@ -102,7 +99,7 @@ class BusState:
 
     def _note_status(self, status: int) -> None:
         if status & _OVERFLOW:
-            self.overflows += 1
+            self._kinds[_OVERFLOWS] += 1
         for bits, state in _STATES:
             if status & bits:
                 self.controller = state

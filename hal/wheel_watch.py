@@ -85,8 +85,9 @@ class _Side:
 
     def follow(self, told_m_s: float, elapsed_s: float) -> None:
         """Go on for a while with this set point."""
-        self._low_m_s = min(told_m_s, self._slowest(self._low_m_s, told_m_s, elapsed_s))
-        self._high_m_s = max(told_m_s, self._slowest(self._high_m_s, told_m_s, elapsed_s))
+        low_m_s, high_m_s = self._low_m_s, self._high_m_s
+        self._low_m_s = told_m_s if told_m_s <= low_m_s else self._slowest(low_m_s, told_m_s, elapsed_s)
+        self._high_m_s = told_m_s if told_m_s >= high_m_s else self._slowest(high_m_s, told_m_s, elapsed_s)
 
     def off_s(self, speed_m_s: float, elapsed_s: float) -> float:
         """For how long it has been off the band, this speed included; at most `wheel_error_s`."""

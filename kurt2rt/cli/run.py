@@ -184,11 +184,7 @@ def _open(service: ServiceSettings, opened: OpenedRobot, listening: Callable[[Ch
     for name in sorted(OF_THIS_MACHINE):
         local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
 
-    def bus_trouble() -> str:
-        health = opened.robot.health
-        return health.bus_trouble if health.latched is not None else ""
-
-    return Openness(bus_trouble, opened.ground, listening)
+    return Openness(lambda: opened.robot.health.trouble, opened.ground, listening)
 
 
 def status_line(status: Status, health: Health) -> str:
@@ -218,8 +214,8 @@ def status_line(status: Status, health: Health) -> str:
         parts.append(status.trouble)
     if status.channel_trouble:
         parts.append(status.channel_trouble)
-    if health.latched is not None and health.bus_trouble:
-        parts.append(health.bus_trouble)
+    if health.trouble:
+        parts.append(health.trouble)
     if health.foreign_control:
-        parts.append(f"{health.foreign_control} CONTROL frames from somebody else on the bus: find and end it")
+        parts.append(f"{health.foreign_control} CONTROL frames of another sender so far")
     return " | ".join(parts)
