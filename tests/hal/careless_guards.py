@@ -1,0 +1,203 @@
+"""Guards that are not careful enough, each in one respect; the envelope has to notice every one of them."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from hal.bus import CanBus
+from hal.guard import BUS_BLOCKED, BUS_LOST, Guard
+from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot_settings import BumperEnd, BumperSettings, RobotSettings, SpeedMode
+from hal.watchdog import TICKS_CEASED
+
+MakeGuard = Callable[[RobotSettings, CanBus], Guard]
+
+
+def with_limits(**factors: float) -> MakeGuard:
+    """Believes its limits to be wider by these factors."""
+
+    def make(robot: RobotSettings, bus: CanBus) -> Guard:
+        wider = {name: getattr(robot.guard, name) * factor for name, factor in factors.items()}
+        return Guard(robot.model_copy(update={"guard": robot.guard.model_copy(update=wider)}), bus)
+
+    return make
+
+
+def with_can(**settings: Any) -> MakeGuard:
+    """Believes its bus to be another."""
+
+    def make(robot: RobotSettings, bus: CanBus) -> Guard:
+        return Guard(robot.model_copy(update={"can": robot.can.model_copy(update=settings)}), bus)
+
+    return make
+
+
+def with_bumpers(believed: Callable[[BumperSettings], BumperSettings]) -> MakeGuard:
+    """Believes its bumpers to be elsewhere."""
+
+    def make(robot: RobotSettings, bus: CanBus) -> Guard:
+        return Guard(robot.model_copy(update={"bumpers": tuple(map(believed, robot.bumpers))}), bus)
+
+    return make
+
+
+def at_the(end: BumperEnd) -> Callable[[BumperSettings], BumperSettings]:
+    return lambda bumper: bumper.model_copy(update={"end": end})
+
+
+class TakesNoneForZero(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        number = WheelSpeeds(*(speed if math.isfinite(speed) else 0.1 for speed in wanted))
+        return super().drive(number, senses, decided_at_s, now_s)
+
+
+class TakesNoTimeForFresh(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        ages = [0.0 if math.isnan(age) else age for age in (senses.infrared_age_s, senses.encoder_age_s)]
+        known = senses._replace(infrared_age_s=ages[0], encoder_age_s=ages[1])
+        return super().drive(wanted, known, decided_at_s, now_s)
+
+
+class TrustsTheFuture(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        return super().drive(wanted, senses._replace(time_s=min(now_s, senses.time_s)), min(now_s, decided_at_s), now_s)
+
+
+class NeverLooksBack(Guard):
+    """Overlooks that the clock ran backwards."""
+
+    latest_s = -math.inf
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        ahead_s = max(0.0, self.latest_s - now_s) if math.isfinite(now_s) else 0.0
+        self.latest_s = max(self.latest_s, now_s) if math.isfinite(now_s) else self.latest_s
+        shifted = senses._replace(time_s=senses.time_s + ahead_s)
+        return super().drive(wanted, shifted, decided_at_s + ahead_s, now_s + ahead_s)
+
+
+class Forgetful(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        self.release()
+        return super().drive(wanted, senses, decided_at_s, now_s)
+
+
+class BelievesTheLast(Guard):
+    def emergency_stop(self, reason: str) -> None:
+        self.release()
+        super().emergency_stop(reason)
+
+
+class StopsAtTheNextTick(Guard):
+    due: str | None = None
+
+    def emergency_stop(self, reason: str) -> None:
+        self.due = self.due or reason
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        if self.due is not None:
+            super().emergency_stop(self.due)
+            self.due = None
+        return super().drive(wanted, senses, decided_at_s, now_s)
+
+
+class IgnoresTheWatchdog(Guard):
+    def emergency_stop(self, reason: str) -> None:
+        if reason != TICKS_CEASED:
+            super().emergency_stop(reason)
+
+
+class ReleasesItself(Guard):
+    """Gets over a stop of its own, as if nothing had been."""
+
+    why = BUS_LOST
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        grant = super().drive(wanted, senses, decided_at_s, now_s)
+        if self.latched == self.why:
+            self.release()
+        return grant
+
+
+class OverlooksABlockedBus(ReleasesItself):
+    why = BUS_BLOCKED
+
+
+class NeverReleases(Guard):
+    def release(self) -> None:
+        pass
+
+
+class SaysTwice(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        super().drive(wanted, senses, decided_at_s, now_s)
+        return super().drive(wanted, senses, decided_at_s, now_s)
+
+
+class SaysOtherThanItDoes(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        grant = super().drive(wanted, senses, decided_at_s, now_s)
+        return grant if grant.latched else grant._replace(wheel_speeds=wanted)
+
+
+class GivesNoReasons(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        return super().drive(wanted, senses, decided_at_s, now_s)._replace(reasons=())
+
+
+class NeverMoves(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        return super().drive(WheelSpeeds(*(0.0 for _ in wanted)), senses, decided_at_s, now_s)
+
+
+class DrivesTheOtherWay(Guard):
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        return super().drive(WheelSpeeds(-wanted[0], -wanted[1]), senses, decided_at_s, now_s)
+
+
+class DrivesBackBeforeItRests(Guard):
+    """A wheel turns the other way without having come to rest."""
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        reverses = any(speed * was < 0.0 for speed, was in zip(wanted, self.was, strict=True))
+        if reverses and self.latched is None:
+            super().drive(WheelSpeeds(0.0, 0.0), senses, decided_at_s, now_s)
+        grant = super().drive(wanted, senses, decided_at_s, now_s)
+        self.was = grant.wheel_speeds
+        return grant
+
+    was = WheelSpeeds(0.0, 0.0)
+
+
+CARELESS: dict[str, tuple[MakeGuard, str]] = {
+    "too fast": (with_limits(maximum_speed_m_s=1.03), "faster than it may"),
+    "too lively": (with_limits(acceleration_m_s2=1.3), "further than the slew limits let it"),
+    "not slewed": (with_limits(acceleration_m_s2=1e9), "further than the slew limits let it"),
+    "slows down too hard": (with_limits(braking_m_s2=1.3), "further than the slew limits let it"),
+    "patient with infra-red": (with_limits(stale_infrared_s=1.0001), "drives on, but: infra-red stale"),
+    "patient with encoders": (with_limits(stale_encoder_s=1.0001), "drives on, but: encoder stale"),
+    "patient with bumpers": (with_limits(stale_bumper_s=1.0001), "drives on, but: bumper stale"),
+    "patient with commands": (with_limits(command_age_s=1.0001), "drives on, but: command too old"),
+    "far too patient with commands": (with_limits(command_age_s=3.0), "a command older than 20 ms"),
+    "jumps after a late tick": (with_can(cycle_s=0.1), "further than the slew limits let it"),
+    "in another mode": (with_can(speed_mode=SpeedMode.SPEED), "a frame is no set point of the robot's mode"),
+    "no bumper in front": (with_bumpers(at_the(BumperEnd.REAR)), "forward against a bumper"),
+    "no bumper behind": (with_bumpers(at_the(BumperEnd.FRONT)), "backward against a bumper"),
+    "takes none for zero": (TakesNoneForZero, "drives on, but: not a number"),
+    "takes no time for fresh": (TakesNoTimeForFresh, "drives on, but: encoder stale"),
+    "trusts the future": (TrustsTheFuture, "drives on, but: clock ran backwards"),
+    "never looks back": (NeverLooksBack, "drives on, but: clock ran backwards"),
+    "forgetful": (Forgetful, "latched, and no brake goes out"),
+    "believes the last": (BelievesTheLast, "it is latched for another reason"),
+    "stops at the next tick": (StopsAtTheNextTick, "a stop does not send a brake at once"),
+    "ignores the watchdog": (IgnoresTheWatchdog, "a stop does not send a brake at once"),
+    "gets over a lost bus": (ReleasesItself, "it is latched for another reason"),
+    "gets over a blocked bus": (OverlooksABlockedBus, "it is latched for another reason"),
+    "never releases": (NeverReleases, "it does not say that it is latched"),
+    "says it twice": (SaysTwice, "not one frame a tick"),
+    "says other than it does": (SaysOtherThanItDoes, "it grants something else than it sends"),
+    "gives no reasons": (GivesNoReasons, "it does otherwise and says not why"),
+    "never moves": (NeverMoves, "it holds back what it may grant"),
+    "drives the other way": (DrivesTheOtherWay, "away from what is wanted"),
+    "drives back before it rests": (DrivesBackBeforeItRests, "not one frame a tick"),
+}
+"""What is careless about each, and a rule that it breaks."""

@@ -1,0 +1,107 @@
+"""Whatever a teacher wants and the sensors say, the motion envelope holds.
+
+Counted are ticks: a stream is a hundred of them, against a guard of its own. The fast suite plays 10^6 ticks (10^4
+streams), the deep one 10^8 (10^6 streams). Every four hundred streams have a robot of their own: one of the three speed
+modes, and in most cases other limits, another cycle and other bumpers.
+"""
+
+import numpy as np
+import pytest
+
+from hal import guard as words
+from hal.robot_settings import SpeedMode
+from hal.watchdog import TICKS_CEASED
+from kurt2rt.timing.quiet_gc import quiet_gc
+from tests.hal.careless_guards import CARELESS
+from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
+from tests.hal.playing import SIGNAL, Played, play
+from tests.hal.shrinking import shrunk, told
+from tests.hal.streams import TICKS_PER_STREAM, Streams, draw_streams
+
+STREAMS_PER_SEED = 400
+TICKS_PER_SEED = STREAMS_PER_SEED * TICKS_PER_STREAM
+FAST_SEEDS = np.arange(25)
+DEEP_SEEDS = np.arange(100, 2600)
+
+
+def hold_the_envelope(seed: int) -> None:
+    """Play the streams of a seed. What fails is named by its seed and told in as few ticks as will do."""
+    streams = draw_streams(seed, STREAMS_PER_SEED)
+    found = violations(streams, play(streams))
+    if found:
+        least = shrunk(streams, found[0])
+        pytest.fail(f"seed {seed}, {found[0]}; {len(found)} in all. The least that breaks it:\n{told(least)}")
+
+
+@pytest.mark.parametrize("seeds", np.split(FAST_SEEDS, 5), ids=lambda seeds: f"from seed {seeds[0]}")
+def test_the_envelope_holds_for_a_million_ticks(seeds: list[int]) -> None:
+    with quiet_gc():
+        for seed in seeds:
+            hold_the_envelope(int(seed))
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("seeds", np.split(DEEP_SEEDS, 100), ids=lambda seeds: f"from seed {seeds[0]}")
+def test_the_envelope_holds_for_a_hundred_million_ticks(seeds: list[int]) -> None:
+    with quiet_gc():
+        for seed in seeds:
+            hold_the_envelope(int(seed))
+
+
+def test_the_ticks_are_as_many_as_is_said() -> None:
+    assert len(FAST_SEEDS) * TICKS_PER_SEED == 10**6
+    assert len(DEEP_SEEDS) * TICKS_PER_SEED == 10**8
+
+
+@pytest.fixture(scope="module")
+def some() -> list[tuple[Streams, Played]]:
+    return [(streams, play(streams)) for streams in (draw_streams(seed, 50) for seed in range(12))]
+
+
+def test_the_envelope_holds_for_some(some: list[tuple[Streams, Played]]) -> None:
+    assert [found for streams, played in some for found in violations(streams, played)] == []
+
+
+def test_every_reason_is_met_and_most_ticks_drive(some: list[tuple[Streams, Played]]) -> None:
+    met: dict[str, int] = {}
+    for _, played in some:
+        for number, count in zip(*np.unique(played.reasons, return_counts=True), strict=True):
+            for reason in played.reasons_of[number]:
+                met[reason] = met.get(reason, 0) + int(count)
+    latches = {words.BUS_LOST, words.BUS_BLOCKED, TICKS_CEASED, SIGNAL}
+    assert {reason for reason, count in met.items() if count >= 50} >= {*STANDS_FOR, *APPROACHES_FOR, *latches}
+    moves = [(played.granted_left_m_s != 0.0) | (played.granted_right_m_s != 0.0) for _, played in some]
+    assert np.mean(moves) > 0.4
+
+
+def test_robots_differ(some: list[tuple[Streams, Played]]) -> None:
+    robots = [streams.robot for streams, _ in some]
+    assert {robot.can.speed_mode for robot in robots} == set(SpeedMode)
+    assert len({robot.guard.maximum_speed_m_s for robot in robots}) > 3
+    assert any(not robot.bumpers for robot in (draw_streams(seed, 1).robot for seed in range(100)))
+
+
+def test_a_seed_is_a_run(some: list[tuple[Streams, Played]]) -> None:
+    again = play(draw_streams(0, 50))
+    assert again.payloads.tobytes() == some[0][1].payloads.tobytes()
+
+
+@pytest.mark.parametrize("careless", CARELESS)
+def test_a_careless_guard_is_found_out(careless: str, some: list[tuple[Streams, Played]]) -> None:
+    make_guard, rule = CARELESS[careless]
+    assert any(found.rule == rule for streams, _ in some for found in violations(streams, play(streams, make_guard))), (
+        f"a guard that is careless ({careless}) breaks no rule: {rule}"
+    )
+
+
+def test_what_fails_is_told_in_a_few_ticks(some: list[tuple[Streams, Played]]) -> None:
+    make_guard, rule = CARELESS["trusts the future"]
+    breaks = [(streams, found) for streams, _ in some for found in violations(streams, play(streams, make_guard))]
+    streams, found = max((each for each in breaks if each[1].rule == rule), key=lambda each: each[1].tick)
+    assert found.tick > 10
+    least = shrunk(streams, found, make_guard)
+    assert least.shape[1] <= 2
+    assert found.rule in {left.rule for left in violations(least, play(least, make_guard))}
+    text = told(least, make_guard)
+    assert f"tick {least.shape[1] - 1}: " in text
+    assert "left_m_s" in text
