@@ -16,6 +16,7 @@ from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.tasks.settings import TaskSettings, load_task
+from simbridge.wire.settings import WireSettings
 from simbridge.world_settings import WorldSettings, load_world
 
 SCHEMAS: dict[str, type[Settings]] = {
@@ -24,6 +25,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "situations": SituationDefinition,
     "repertoires": RepertoireSettings,
     "worlds": WorldSettings,
+    "wires": WireSettings,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
 REPERTOIRE = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
