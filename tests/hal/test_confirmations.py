@@ -1,0 +1,134 @@
+"""What the guard knows of its own frames on a bus that confirms: how many it sent that the bus has not carried."""
+
+from collections import deque
+
+import can
+import pytest
+
+from hal.bus import CONTROL_ID, BusError, CanBus, FramePort
+from hal.control import encode_brake
+from tests.hal.bus_conformance import BUS_OFF, RESTARTED
+from tests.hal.helpers import cycle
+
+
+class HeldEnd:
+    """An end (hal.bus_end.BusEnd) whose controller sends only what it is told to."""
+
+    confirms = True
+
+    def __init__(self) -> None:
+        self.lost = 0
+        self.held: deque[can.Message] = deque()
+        self.arrived: deque[can.Message] = deque()
+        self.at_once: CanBus | None = None
+        self.is_full = False
+
+    def now_s(self) -> float | None:
+        return None
+
+    def listen_to(self, frame_ids: frozenset[int]) -> None:
+        if CONTROL_ID not in frame_ids:
+            raise ValueError("confirmations would be filtered out")
+
+    def recv(self, timeout: float | None) -> can.Message | None:
+        assert timeout == 0
+        return self.arrived.popleft() if self.arrived else None
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        assert timeout == 0
+        if self.is_full:
+            raise can.CanOperationError("the transmit queue is full")
+        self.held.append(can.Message(arbitration_id=msg.arbitration_id, is_extended_id=False, is_rx=False))
+        if self.at_once is not None:
+            self.carry()
+            self.at_once.drain()
+
+    def carry(self, frames: int = 1) -> None:
+        for _ in range(frames):
+            self.arrived.append(self.held.popleft())
+
+    def shutdown(self) -> None:
+        self.held.clear()
+
+
+@pytest.fixture
+def end() -> HeldEnd:
+    return HeldEnd()
+
+
+@pytest.fixture
+def bus(end: HeldEnd) -> CanBus:
+    return CanBus("held", lambda _: end)
+
+
+@pytest.fixture
+def port(bus: CanBus) -> FramePort:
+    return bus.control_port()
+
+
+def test_frames_wait_until_the_bus_has_carried_them(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    for _ in range(3):
+        port.send(encode_brake())
+    assert port.unconfirmed == 3
+    end.carry(2)
+    assert port.unconfirmed == 3  # as far as the last drain knows
+    assert bus.drain() == []
+    assert port.unconfirmed == 1
+
+
+def test_other_frames_neither_wait_nor_confirm(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    port.send(encode_brake())
+    bus.telemetry_port().send(cycle()[0])
+    end.held.rotate()
+    end.carry()
+    assert bus.drain() == []
+    assert port.unconfirmed == 1
+
+
+def test_a_frame_that_the_bus_did_not_take_is_not_waited_for(end: HeldEnd, port: FramePort) -> None:
+    end.is_full = True
+    with pytest.raises(BusError, match=r"bus held: sending failed \(the transmit queue is full\)"):
+        port.send(encode_brake())
+    assert port.unconfirmed == 0
+
+
+def test_a_frame_that_is_back_before_sending_returns_counts(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    end.at_once = bus  # the loop drains while the watchdog's thread sends
+    port.send(encode_brake())
+    assert port.unconfirmed == 0
+
+
+@pytest.mark.parametrize("report", [BUS_OFF, RESTARTED])
+def test_what_a_controller_forgot_is_not_waited_for(
+    end: HeldEnd, bus: CanBus, port: FramePort, report: can.Message
+) -> None:
+    port.send(encode_brake())
+    port.send(encode_brake())
+    end.arrived.append(report)
+    assert bus.drain() == [report]
+    assert port.unconfirmed == 0
+    end.carry(2)  # it had not forgotten after all
+    bus.drain()
+    port.send(encode_brake())
+    assert port.unconfirmed == 1
+
+
+def test_confirmations_that_were_lost_are_not_waited_for(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    port.send(encode_brake())
+    end.lost = 5
+    assert bus.drain() == []
+    assert (port.unconfirmed, bus.lost) == (0, 5)
+    port.send(encode_brake())
+    bus.drain()
+    assert port.unconfirmed == 1
+
+
+def test_a_bus_that_was_opened_anew_begins_at_none(bus: CanBus, port: FramePort) -> None:
+    port.send(encode_brake())
+    bus.reopen()
+    assert port.unconfirmed == 0
+
+
+def test_a_filter_always_lets_confirmations_through(bus: CanBus) -> None:
+    bus.listen_to({0x09})
+    bus.reopen()

@@ -1,0 +1,206 @@
+"""The kernel's CAN behaves as every bus does; and what only the kernel does: echoes, filters, links that go down.
+
+A frame that was sent is on its way: under load the kernel hands it to its listeners some milliseconds later.
+"""
+
+import select
+import subprocess
+from collections.abc import Iterator
+
+import can
+import pytest
+
+from hal.bus import BusError, CanBus, open_bus
+from hal.control import encode_brake
+from hal.frame import Frame
+from tests.hal.bus_conformance import (
+    BUS_OFF,
+    EXTENDED,
+    REMOTE,
+    RESTARTED,
+    Behind,
+    Ends,
+    ErrorFrameConformance,
+    Join,
+    identity,
+    joining,
+)
+from tests.hal.helpers import cycle, send
+
+pytestmark = pytest.mark.hil
+
+
+MARK = can.Message(arbitration_id=0x1FFF_FFFF, is_extended_id=True, data=b"the last")
+
+
+def take(bus: CanBus, count: int) -> list[can.Message]:
+    """So many frames, waited for."""
+    end = bus._bus_end
+    assert isinstance(end, can.BusABC)
+    frames = bus.drain()
+    while len(frames) < count:
+        select.select([end], [], [], 20.0)
+        frames += bus.drain()
+    return frames
+
+
+def link(*words: str) -> None:
+    subprocess.run(["ip", "link", *words], check=True, capture_output=True)
+
+
+@pytest.fixture
+def ends(vcan0: str) -> Iterator[Ends]:
+    with joining(lambda: open_bus(vcan0)) as join:
+        yield join(), join()
+
+
+@pytest.fixture
+def passing_interface() -> Iterator[str]:
+    """An interface that a test may delete."""
+    name = "vcan77"
+    link("add", "dev", name, "type", "vcan")
+    link("set", name, "up")
+    yield name
+    subprocess.run(["ip", "link", "del", name], check=False, capture_output=True)
+
+
+@pytest.fixture
+def link_goes_down_and_up(vcan0: str) -> Iterator[str]:
+    yield vcan0
+    link("set", vcan0, "up")
+
+
+class TestSocketCan(ErrorFrameConformance):
+    confirms = True
+    behind = Behind.NEWEST_ARE_LOST
+
+    @pytest.fixture
+    def join(self, vcan0: str) -> Iterator[Join]:
+        mark = [{"can_id": MARK.arbitration_id, "can_mask": 0x1FFF_FFFF, "extended": True}]
+        with (
+            joining(lambda: open_bus(vcan0)) as join,
+            can.Bus("vcan0", "socketcan", can_filters=mark, receive_own_messages=True, ignore_config=True) as marker,
+        ):
+            self.marker = marker
+            yield join
+
+    @pytest.fixture
+    def ends(self, join: Join) -> Ends:
+        return join(), join()
+
+    def heard(self, end: CanBus) -> list[can.Message]:
+        self.marker.send(MARK)
+        assert self.marker.recv(20.0) is not None
+        return [frame for frame in super().heard(end) if frame.arbitration_id != MARK.arbitration_id]
+
+
+@pytest.mark.parametrize("sent", [*cycle(), Frame(0x7FF, b""), EXTENDED, REMOTE, BUS_OFF, RESTARTED])
+def test_python_can_hears_and_says_the_same_frames(ends: Ends, vcan0: str, sent: can.Message) -> None:
+    robot_end, far_end = ends
+    with can.Bus(interface="socketcan", channel=vcan0, ignore_config=True) as foreign:
+        send(far_end, [sent])
+        heard = foreign.recv(20.0)
+        assert heard is not None
+        assert identity(heard) == identity(sent)
+        take(robot_end, 1)
+        foreign.send(sent)
+        assert [identity(frame) for frame in take(robot_end, 1)] == [identity(sent)]
+
+
+def test_tools_of_python_can_listen_and_wait_at_our_end(ends: Ends) -> None:
+    robot_end, far_end = ends
+    end = robot_end._bus_end
+    assert isinstance(end, can.BusABC)
+    reader = can.BufferedReader()
+    with can.Notifier(end, [reader], timeout=0.01):
+        send(far_end, cycle()[:1])
+        message = reader.get_message(timeout=20.0)
+    assert message is not None
+    assert bytes(message.data) == cycle()[0].data
+    assert end.recv(0.001) is None
+
+
+def test_a_waiting_frame_is_as_old_as_its_wait(ends: Ends) -> None:
+    robot_end, far_end = ends
+    send(far_end, cycle()[:1])
+    sent_at_s = far_end.now_s()
+    assert sent_at_s is not None
+    while (now_s := robot_end.now_s()) is not None and now_s < sent_at_s + 0.005:
+        pass
+    (frame,) = take(robot_end, 1)
+    assert frame.timestamp < sent_at_s + 0.005  # when the kernel got it, not when it was fetched
+
+
+def test_a_link_that_goes_down_is_told_until_it_is_up_and_reopened(ends: Ends, link_goes_down_and_up: str) -> None:
+    robot_end, far_end = ends
+    name = link_goes_down_and_up
+    robot_end.listen_to({0x09})
+    link("set", name, "down")
+    for _ in range(3):
+        with pytest.raises(BusError, match=f"receiving failed .*the interface is down: ip link set {name} up"):
+            robot_end.drain()
+        with pytest.raises(BusError, match=f"sending failed .*the interface is down: ip link set {name} up"):
+            send(robot_end, cycle())
+        with pytest.raises(BusError, match=f"bus '{name}': the interface is down; ip link set {name} up"):
+            open_bus(name)
+    with pytest.raises(BusError, match="the interface is down; ip link set"):
+        robot_end.reopen()
+    with pytest.raises(BusError, match="is shut down; open it again"):
+        robot_end.drain()
+    link("set", name, "up")
+    robot_end.reopen()
+    assert robot_end.drain() == []
+    far_end.reopen()
+    send(far_end, [Frame(0x08, b""), Frame(0x09, b"x")])
+    assert [frame.arbitration_id for frame in take(robot_end, 1)] == [0x09]
+
+
+def test_a_link_that_was_down_for_a_moment_is_told(ends: Ends, link_goes_down_and_up: str) -> None:
+    robot_end, _ = ends
+    link("set", link_goes_down_and_up, "down")
+    link("set", link_goes_down_and_up, "up")
+    with pytest.raises(BusError, match="the interface is down"):
+        robot_end.drain()
+
+
+def test_a_link_down_that_sending_has_noticed_is_told_by_receiving(ends: Ends, link_goes_down_and_up: str) -> None:
+    robot_end, _ = ends
+    control = robot_end.control_port()
+    link("set", link_goes_down_and_up, "down")
+    for _ in range(2):
+        with pytest.raises(BusError, match="sending failed"):
+            control.send(encode_brake())
+    assert control.unconfirmed == 0  # it never left
+    link("set", link_goes_down_and_up, "up")
+    control.send(encode_brake())  # a brake is tried all the same
+    with pytest.raises(BusError, match="receiving failed"):
+        robot_end.drain()
+
+
+def test_an_adapter_that_is_unplugged_is_told_until_it_is_plugged_in_again(passing_interface: str) -> None:
+    robot_end = open_bus(passing_interface)
+    link("del", passing_interface)
+    for _ in range(3):
+        with pytest.raises(BusError, match=r"receiving failed .*the interface is"):
+            robot_end.drain()
+        with pytest.raises(BusError, match=r"sending failed .*the interface is gone"):
+            send(robot_end, cycle())
+    with pytest.raises(BusError, match=f"bus '{passing_interface}': no such network interface; plug in the adapter"):
+        robot_end.reopen()
+    link("add", "dev", passing_interface, "type", "vcan")
+    link("set", passing_interface, "up")
+    robot_end.reopen()
+    far_end = open_bus(passing_interface)
+    send(far_end, cycle())
+    assert len(take(robot_end, len(cycle()))) == len(cycle())
+    far_end.shutdown()
+    robot_end.shutdown()
+
+
+def test_filters_are_the_kernels(ends: Ends) -> None:
+    robot_end, far_end = ends
+    robot_end.listen_to({0x09})
+    send(far_end, (Frame(0x0A, b"") for _ in range(6000)))  # more than wait for a listener
+    send(far_end, [Frame(0x09, b"x")])
+    assert [frame.arbitration_id for frame in take(robot_end, 1)] == [0x09]
+    assert robot_end.lost == 0
