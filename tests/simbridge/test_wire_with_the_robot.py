@@ -104,7 +104,7 @@ def test_a_tick_at_the_very_beginning_of_the_cycle_hears_of_the_cycle_before(tmp
     with driving(str(path)) as drive:
         drive.until(0.5)
         assert drive.senses.encoder_age_s == pytest.approx(0.009, abs=0.0003)
-        assert drive.grant.reasons == ()
+        assert not drive.grant.reasons
         assert drive.grant.wheel_speeds == TURN
 
 
@@ -141,7 +141,7 @@ def test_noise_that_takes_the_controllers_off_the_bus_stops_it_until_it_is_relea
         drive.arena.robot.release()
         drive.until(3.0)
         assert drive.grant.wheel_speeds == TURN
-        assert drive.grant.reasons == ()
+        assert not drive.grant.reasons
 
 
 def test_in_real_time_the_wire_goes_by_the_clock() -> None:
