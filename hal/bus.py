@@ -175,7 +175,7 @@ class FramePort:
         if (frame_id == CONTROL_ID and not frame.is_extended_id) is not self._is_control:
             carries = "only CONTROL" if self._is_control else "all but CONTROL, which the guard sends"
             raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} refused, this port carries {carries}")
-        if len(frame.data) > _LONGEST_FRAME or frame.is_fd:
+        if len(frame.data) > _LONGEST_FRAME or frame.dlc > _LONGEST_FRAME or frame.is_fd:
             raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} is not of classic CAN")
         self._bus._send(frame, is_control=self._is_control)
 

@@ -159,6 +159,7 @@ class BusConformance:
         [
             can.Message(arbitration_id=0x09, is_extended_id=False, data=bytes(9)),
             can.Message(arbitration_id=0x09, is_extended_id=False, is_fd=True, data=bytes(8)),
+            can.Message(arbitration_id=0x09, is_extended_id=False, is_remote_frame=True, dlc=9),
         ],
     )
     def test_what_is_not_classic_can_is_refused(self, ends: Ends, sent: can.Message) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import can
 import pytest
 
-from hal.bus import BusError, CanBus, open_bus
+from hal.bus import BusError, CanBus, FramePort, open_bus
 from hal.control import encode_brake
 from hal.frame import Frame
 from tests.hal.bus_conformance import (
@@ -35,13 +35,17 @@ MARK = can.Message(arbitration_id=0x1FFF_FFFF, is_extended_id=True, data=b"the l
 
 def take(bus: CanBus, count: int) -> list[can.Message]:
     """So many frames, waited for."""
-    end = bus._bus_end
-    assert isinstance(end, can.BusABC)
     frames = bus.drain()
     while len(frames) < count:
-        select.select([end], [], [], 20.0)
+        await_something(bus)
         frames += bus.drain()
     return frames
+
+
+def await_something(bus: CanBus) -> None:
+    end = bus._bus_end
+    assert isinstance(end, can.BusABC)
+    assert select.select([end], [], [], 20.0)[0]
 
 
 def link(*words: str) -> None:
@@ -204,3 +208,39 @@ def test_filters_are_the_kernels(ends: Ends) -> None:
     send(far_end, [Frame(0x09, b"x")])
     assert [frame.arbitration_id for frame in take(robot_end, 1)] == [0x09]
     assert robot_end.lost == 0
+
+
+def test_a_full_transmit_queue_is_told_at_once_and_no_frame_of_it_is_taken_for_carried(passing_interface: str) -> None:
+    # One frame at once, the next ones hardly ever: a bus that does not acknowledge.
+    queue("add", passing_interface, "tbf", "rate", "8bit", "burst", "16", "limit", "160")
+    robot_end = open_bus(passing_interface)
+    control = robot_end.control_port()
+    with pytest.raises(BusError, match=r"sending failed \(the transmit queue is full .*\); check adapter, cable"):
+        send_until_full(control)
+    held = control.unconfirmed
+    assert held >= 2
+    assert robot_end.drain() == []
+    assert held - control.unconfirmed <= 1
+    robot_end.shutdown()
+
+
+def test_own_control_is_confirmed_when_it_was_carried_and_not_before(passing_interface: str) -> None:
+    queue("add", passing_interface, "netem", "delay", "100ms")
+    robot_end = open_bus(passing_interface)
+    control = robot_end.control_port()
+    control.send(encode_brake())
+    assert robot_end.drain() == []
+    assert control.unconfirmed == 1
+    await_something(robot_end)
+    assert robot_end.drain() == []
+    assert control.unconfirmed == 0
+    robot_end.shutdown()
+
+
+def queue(verb: str, interface: str, *words: str) -> None:
+    subprocess.run(["tc", "qdisc", verb, "dev", interface, "root", *words], check=True, capture_output=True)
+
+
+def send_until_full(port: FramePort) -> None:
+    for _ in range(1000):
+        port.send(encode_brake())
