@@ -1,0 +1,98 @@
+"""A robot that drives over vcan0, tick by tick, with the simulated one at the far end."""
+
+import subprocess
+import time
+from types import TracebackType
+from typing import Self
+
+from hal.bus import open_bus
+from hal.health import Health
+from hal.kurt2 import Kurt2
+from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot_settings import load_robot
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.steady_bus import SteadyBus
+from tests.simbridge.rig import room
+
+FORWARD = WheelSpeeds(0.3, 0.3)
+_MOST_TICKS = 500
+_PAUSE_S = 0.001
+
+
+class Drive:
+    """Runtime and robot in lockstep, 10 ms a tick by their own clock; the kernel carries and stamps what they say."""
+
+    def __init__(self, bus: str) -> None:
+        settings = load_robot()
+        self._cycle_s = settings.can.cycle_s
+        self._far_end = open_bus(bus)
+        self.kurt2 = Kurt2(settings, open_bus(bus))
+        self.simulated = SimulatedRobot(settings, room(), SteadyBus(self._far_end, lambda: self.now_s), seed=3)
+        self.senses = Senses(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
+        self.grant = Grant(FORWARD, (), False)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.kurt2.close()
+        self._far_end.shutdown()
+
+    @property
+    def now_s(self) -> float:
+        """Time of the robot and of the runtime."""
+        return self.simulated.time_s
+
+    @property
+    def health(self) -> Health:
+        """What the runtime says of its robot."""
+        return self.kurt2.health
+
+    def tick(self, wanted: WheelSpeeds = FORWARD) -> Grant:
+        """The robot's cycle, then the runtime's."""
+        # Where ticks follow each other without a pause, the kernel's own thread that delivers frames waits its turn.
+        time.sleep(_PAUSE_S)
+        self.simulated.step()
+        now_s = self.now_s
+        self.senses = self.kurt2.sense(now_s)
+        self.grant = self.kurt2.drive(wanted, now_s, now_s)
+        return self.grant
+
+    def ticks(self, count: int, wanted: WheelSpeeds = FORWARD) -> Grant:
+        """So many of them; the last one's grant."""
+        for _ in range(count):
+            self.tick(wanted)
+        return self.grant
+
+    def until_it_drives(self) -> None:
+        """On until the wheels are granted and obey what is wanted.
+
+        A machine that was held up for a moment lets readings grow old: the robot stands, and begins anew.
+        """
+        for _ in range(_MOST_TICKS):
+            if self.tick().wheel_speeds == FORWARD and self.simulated.wheel_speeds.left_m_s > 0.25:
+                return
+        raise AssertionError(f"it does not drive: {self.grant}, {self.health}")
+
+    def until_fresh(self) -> None:
+        """On until readings of this very cycle come again."""
+        for _ in range(_MOST_TICKS):
+            self.tick()
+            if self.senses.infrared_age_s < self._cycle_s:
+                return
+        raise AssertionError(f"no readings come: {self.senses}, {self.health}")
+
+    def until_it_stands(self) -> None:
+        """On until the wheels stand still."""
+        for _ in range(_MOST_TICKS):
+            self.tick()
+            if self.simulated.wheel_speeds == (0.0, 0.0):
+                return
+        raise AssertionError(f"it does not stand: {self.simulated.wheel_speeds}, {self.health}")
+
+
+def cansend(frame: str) -> None:
+    """Put a frame on vcan0, as a person at a terminal would."""
+    subprocess.run(["cansend", "vcan0", frame], check=True, capture_output=True, text=True)

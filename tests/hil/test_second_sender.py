@@ -1,0 +1,52 @@
+"""Somebody else sends CONTROL: the robot stops in the same tick and says so."""
+
+import pytest
+
+from hal.bus import open_bus
+from hal.control import encode_brake
+from hal.guard import FOREIGN_CONTROL
+from tests.hil.drive import Drive, cansend
+
+pytestmark = pytest.mark.hil
+
+FORWARD_30_CM_S = "001#0002001E001E0001"
+STOP = "001#000001 03FF 0103FF".replace(" ", "")
+STOPPED = ((0.0, 0.0), (FOREIGN_CONTROL,), True)
+
+
+@pytest.mark.parametrize("frame", [FORWARD_30_CM_S, STOP, "001#"], ids=["drive", "stop", "empty"])
+def test_any_control_of_somebody_else_stops_the_robot_in_the_same_tick(drive: Drive, frame: str) -> None:
+    cansend(frame)
+    assert drive.tick() == STOPPED
+    assert drive.health.foreign_control == 1
+    assert "somebody else sends CONTROL" in drive.health.trouble
+
+
+def test_the_robot_obeys_a_stop_that_a_person_sends(drive: Drive) -> None:
+    cansend(STOP)
+    drive.until_it_stands()
+    assert drive.grant == STOPPED
+
+
+def test_after_a_resume_it_stops_again_if_the_other_goes_on(drive: Drive) -> None:
+    cansend(FORWARD_30_CM_S)
+    drive.tick()
+    drive.kurt2.release()
+    drive.until_it_drives()
+    cansend(FORWARD_30_CM_S)
+    assert drive.tick() == STOPPED
+    assert drive.health.foreign_control == 2
+
+
+def test_the_other_may_be_in_the_same_program(drive: Drive, vcan0: str) -> None:
+    other = open_bus(vcan0)
+    other.control_port().send(encode_brake())
+    assert drive.tick() == STOPPED
+    other.shutdown()
+
+
+def test_what_is_not_control_is_not_taken_for_it(drive: Drive) -> None:
+    cansend("00000001#0002001E001E0001")
+    cansend("011#0002001E001E0001")
+    drive.tick()
+    assert (drive.health.foreign_control, drive.health.latched) == (0, None)
