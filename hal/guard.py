@@ -148,11 +148,12 @@ class Guard:
             return CLOCK_RAN_BACKWARDS
         if not decided_ago_s <= self._command_age_s:
             return COMMAND_TOO_OLD
-        if not sensed_ago_s + senses.infrared_age_s <= self._stale_infrared_s:
+        # Nor is a frame from after the senses a fresh one.
+        if not sensed_ago_s <= sensed_ago_s + senses.infrared_age_s <= self._stale_infrared_s:
             return INFRARED_STALE
-        if not sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
+        if not sensed_ago_s <= sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
             return ENCODER_STALE
-        if not sensed_ago_s + senses.bumper_age_s <= self._stale_bumper_s:
+        if not sensed_ago_s <= sensed_ago_s + senses.bumper_age_s <= self._stale_bumper_s:
             return BUMPER_STALE
         return None
 

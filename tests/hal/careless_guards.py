@@ -58,6 +58,16 @@ class TakesNoTimeForFresh(Guard):
         return super().drive(wanted, known, decided_at_s, now_s)
 
 
+class TakesAnyAgeBelowForFresh(Guard):
+    """Takes frames for fresh that came, by their times, after the senses."""
+
+    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+        ages = senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s
+        infrared, encoder, bumper = (0.0 if age < 0.0 else age for age in ages)
+        aged = senses._replace(infrared_age_s=infrared, encoder_age_s=encoder, bumper_age_s=bumper)
+        return super().drive(wanted, aged, decided_at_s, now_s)
+
+
 class TrustsTheFuture(Guard):
     def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
         return super().drive(wanted, senses._replace(time_s=min(now_s, senses.time_s)), min(now_s, decided_at_s), now_s)
@@ -184,6 +194,7 @@ CARELESS: dict[str, tuple[MakeGuard, str]] = {
     "no bumper behind": (with_bumpers(at_the(BumperEnd.FRONT)), "backward against a bumper"),
     "takes none for zero": (TakesNoneForZero, "drives on, but: not a number"),
     "takes no time for fresh": (TakesNoTimeForFresh, "drives on, but: encoder stale"),
+    "takes any age below for fresh": (TakesAnyAgeBelowForFresh, "drives on, but: infra-red stale"),
     "trusts the future": (TrustsTheFuture, "drives on, but: clock ran backwards"),
     "never looks back": (NeverLooksBack, "drives on, but: clock ran backwards"),
     "forgetful": (Forgetful, "latched, and no brake goes out"),

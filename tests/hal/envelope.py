@@ -303,8 +303,7 @@ def _reasons_to_stand(streams: Streams, last_s: Floats, tick: int, slack_s: floa
     }
     for word, (ages_s, limit_s) in frames.items():
         age_s = ages_s[:, tick]
-        reasons[word] = ~(sensed_ago_s + age_s <= limit_s + slack_s)
-        # AGES reasons["clock ran backwards"] |= ~(age_s >= -slack_s)
+        reasons[word] = ~((sensed_ago_s + age_s <= limit_s + slack_s) & (age_s >= -slack_s))
     return reasons
 
 
