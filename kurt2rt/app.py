@@ -11,6 +11,7 @@ from hal.tap import Tap
 from kurt2rt.channel.ground import Ground
 
 SIMULATED = "sim"
+NO_WIRE = "none"
 
 
 class OpenedRobot(NamedTuple):
@@ -22,18 +23,18 @@ class OpenedRobot(NamedTuple):
 
 @contextmanager
 def open_robot(
-    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None
+    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
 ) -> Iterator[OpenedRobot]:
     """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
 
-    `tap` looks on at the runtime's end of the bus.
+    `tap` looks on at the runtime's end of the bus. `wire` is the simulated robot's (config/wires).
     Raises BusError, SettingsError, and on leaving whatever ended the simulation.
     """
     if bus == SIMULATED:
         # Here, because a robot carries no simulator: the packages it needs are an extra.
         from kurt2rt.simulated import simulated_robot
 
-        with simulated_robot(settings, world, seed, tap=tap) as (simulated, ground):
+        with simulated_robot(settings, world, seed, wire, tap) as (simulated, ground):
             yield OpenedRobot(simulated, ground)
         return
     end = open_bus(bus)

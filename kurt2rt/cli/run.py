@@ -12,10 +12,11 @@ from rich.console import Console
 
 from hal.health import Health
 from hal.robot_settings import load_robot
-from kurt2rt.app import SIMULATED, OpenedRobot, open_robot
+from kurt2rt.app import NO_WIRE, SIMULATED, OpenedRobot, open_robot
 from kurt2rt.channel.channel import Channel
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing
 from kurt2rt.cli.companions import Companions
+from kurt2rt.cli.options import WireName
 from kurt2rt.cli.printer import Printer
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.can_log import open_can_log
@@ -75,6 +76,7 @@ def run(
         float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Decides the simulated robot's start and noise.")] = 1,
+    wire: WireName = NO_WIRE,
 ) -> None:
     """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
 
@@ -110,6 +112,8 @@ def run(
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
     if auto and robot != SIMULATED:
         raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--auto")
+    if wire != NO_WIRE and robot != SIMULATED:
+        raise typer.BadParameter("only the simulated robot in this program has a simulated wire", param_hint="--wire")
     if (page or auto) and teacher == "none":
         raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
     service = _changed(load_service(settings), knowledge, world, port)
@@ -134,7 +138,7 @@ def run(
                 say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
 
         log = None if can_log is None else ending.enter_context(open_can_log(can_log, robot))
-        opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed, log))
+        opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed, log, wire))
 
         def line(status: Status) -> str:
             trouble = "" if log is None else log.trouble
