@@ -6,8 +6,6 @@ from queue import Empty, Full, SimpleQueue
 import can
 from can.interfaces.virtual import VirtualBus, channels_lock
 
-from hal.bus_frame import is_heard
-
 QUEUE_FRAMES = 4096
 """Frames that wait for a listener before the next sender fails."""
 
@@ -49,7 +47,10 @@ class InProcessBus(VirtualBus):
         try:
             while True:
                 frame = self.queue.get_nowait()
-                if is_heard(frame, heard):
+                # hal.bus_frame.is_heard, written out: a simulated tick drains twice.
+                if heard is None or (frame.arbitration_id in heard and not frame.is_extended_id):
+                    return frame
+                if frame.is_error_frame:
                     return frame
         except Empty:
             return None

@@ -35,6 +35,7 @@ _KEPT_BYTES = KEPT_FRAMES * _RECORD_BYTES
 _GIVE_BACK_BYTES = 16 * mmap.ALLOCATIONGRANULARITY
 _OPENING_TRIES = 20
 _LOOK_EVERY = 128  # of the looks that find nothing also sees whether the file still has its name
+_PASSED_AT_ONCE = 4096  # records that a look may pass over: a flood of what is not heard must not hold up a tick
 _POLL_S = 0.001
 
 
@@ -126,7 +127,7 @@ class SharedBus(can.BusABC):
         return self._file
 
     def _next(self) -> can.Message | None:
-        while True:
+        for _ in range(_PASSED_AT_ONCE):
             at = self._at
             if at == len(self._block):
                 if not self._read_on():
@@ -146,6 +147,7 @@ class SharedBus(can.BusABC):
                 frame.timestamp = stamp_s
                 frame.channel = self.channel
                 return frame
+        return None
 
     def _read_on(self) -> bool:
         """Read what follows; False when there is nothing."""

@@ -166,6 +166,15 @@ def test_old_frames_do_not_pile_up(name: str, ends: Ends) -> None:
     assert status.st_blocks * 512 < 1.5 * KEPT_FRAMES * RECORD_BYTES
 
 
+def test_a_flood_of_what_is_not_heard_does_not_hold_up_a_look(ends: Ends) -> None:
+    robot_end, far_end = ends
+    robot_end.listen_to({0x11})
+    send(far_end, (Frame(0x10, payload(number)) for number in range(5000)))
+    send(far_end, [Frame(0x11, b"")])
+    assert robot_end.drain() == []
+    assert [frame.arbitration_id for frame in robot_end.drain()] == [0x11]
+
+
 def test_what_no_end_has_written_is_passed_over_and_counted(name: str) -> None:
     bus, other = SharedBus(name), SharedBus(name)
     other.send(Frame(0x10, payload(0)))
