@@ -3,6 +3,7 @@ from collections.abc import Iterator
 import pytest
 
 from hal.bus import CanBus
+from tests.hal.desk_bus import Ride
 from tests.hal.helpers import bus_pair
 
 
@@ -13,3 +14,13 @@ def ends() -> Iterator[tuple[CanBus, CanBus]]:
     yield robot_end, far_end
     robot_end.shutdown()
     far_end.shutdown()
+
+
+@pytest.fixture
+def ride() -> Iterator[Ride]:
+    """A robot on a bus that lies in the test's hand, driving at 0.3 m/s."""
+    ride = Ride()
+    ride.drive_for(1.0)
+    ride.sent()
+    yield ride
+    ride.close()

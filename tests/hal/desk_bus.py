@@ -1,0 +1,104 @@
+"""A bus whose clock and traffic lie in the test's hand, and a robot that drives on it."""
+
+import copy
+import itertools
+
+import can
+
+from hal.bus import CanBus, open_bus
+from hal.control import Control
+from hal.in_process_bus import InProcessBus
+from hal.kurt2 import Kurt2
+from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from tests.hal.helpers import ROBOT, TICK_S, controls, cycle, ticks
+
+_numbers = itertools.count()
+
+
+class DeskBus(InProcessBus):
+    """One end that stamps frames and confirms its own, as the kernel's does; the others on its bus are as ever."""
+
+    confirms = True
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.time_s = 1000.0
+        """What its clock shows."""
+        self.carries = True
+        """False: what is sent waits, as on a bus where nobody acknowledges."""
+        self._waiting: list[can.Message] = []
+
+    def now_s(self) -> float | None:
+        return self.time_s
+
+    def arrive(self, *frames: can.Message, ago_s: float = 0.0) -> None:
+        """Frames of others come, stamped with a time that long ago."""
+        for frame in frames:
+            self._put(frame, is_rx=True, stamp_s=self.time_s - ago_s)
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
+        self._waiting.append(msg)
+        if self.carries:
+            self.carry()
+
+    def carry(self) -> None:
+        """What waits goes over the bus, and is confirmed."""
+        waiting, self._waiting = self._waiting, []
+        for frame in waiting:
+            super().send(frame)
+            self._put(frame, is_rx=False, stamp_s=self.time_s)
+
+    def _put(self, frame: can.Message, *, is_rx: bool, stamp_s: float) -> None:
+        frame = copy.copy(frame)
+        frame.is_rx, frame.timestamp = is_rx, stamp_s
+        self.queue.put(frame)
+
+
+class Ride:
+    """A robot on the desk whose wheels do as they are told and whose sensors live, until a test says otherwise."""
+
+    def __init__(self) -> None:
+        name = f"desk-{next(_numbers)}"
+        self.desk = DeskBus(name)
+        self.robot_end = CanBus("can0", lambda _: self.desk)
+        self.kurt2 = Kurt2(ROBOT, self.robot_end)
+        self._far_end = open_bus(f"virtual:{name}")
+        self.now_s = 50.0
+        self.granted = STANDSTILL
+        self._counts = itertools.cycle((200, 201))
+
+    def frames(self) -> list[can.Message]:
+        """What the controller sends in a cycle."""
+        left_m_s, right_m_s = self.granted
+        return [*cycle(next(self._counts), ticks(left_m_s), ticks(right_m_s))]
+
+    def sleep(self, seconds: float) -> None:
+        """Time passes and the runtime does nothing."""
+        self.now_s += seconds
+        self.desk.time_s += seconds
+
+    def tick(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+        """A cycle of the controller, and a tick of the runtime that wants these speeds."""
+        self.desk.arrive(*self.frames())
+        self.sleep(TICK_S)
+        return self.decide(left_m_s, right_m_s)
+
+    def decide(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+        """A tick of the runtime with what waits on the bus."""
+        self.kurt2.sense(self.now_s)
+        grant = self.kurt2.drive(WheelSpeeds(left_m_s, right_m_s), self.now_s, self.now_s)
+        self.granted = grant.wheel_speeds
+        return grant
+
+    def drive_for(self, seconds: float, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+        for _ in range(round(seconds / TICK_S)):
+            grant = self.tick(left_m_s, right_m_s)
+        return grant
+
+    def sent(self) -> list[Control]:
+        """What the controller was told since the last look."""
+        return controls(self._far_end)
+
+    def close(self) -> None:
+        self.kurt2.close()
+        self._far_end.shutdown()

@@ -1,0 +1,286 @@
+"""What stops the robot by itself, before anything is decided, until a teacher says resume."""
+
+import can
+import pytest
+
+from hal.bus import CanBus
+from hal.bus_state import ControllerState
+from hal.control import Mode, RawControl, RawSide, SpeedControl, encode_brake
+from hal.frame import Frame
+from hal.guard import BUS_BLOCKED, BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY
+from hal.kurt2 import Kurt2
+from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from tests.hal.desk_bus import Ride
+from tests.hal.helpers import CODEC, INFRARED_FRAMES, ROBOT, TICK_S, cycle, error_frame, send, ticks
+
+BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
+OFF, RESTARTED = error_frame(0x040), error_frame(0x100)
+FORWARD = Frame(0x01, bytes.fromhex("0002001E001E0001"))
+
+
+def stopped(reason: str) -> Grant:
+    return Grant(STANDSTILL, (reason,), latched=True)
+
+
+# Another sender of CONTROL
+
+
+@pytest.mark.parametrize("frame", [FORWARD, encode_brake(), Frame(0x01, b"")], ids=["drive", "stop", "junk"])
+def test_another_sender_of_control_stops_the_robot_in_the_same_tick(ride: Ride, frame: Frame) -> None:
+    ride.desk.arrive(frame)
+    ride.kurt2.sense(ride.now_s)
+    assert ride.sent() == [BRAKE]  # before anybody has decided anything
+    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    health = ride.kurt2.health
+    assert (health.foreign_control, health.latched) == (1, FOREIGN_CONTROL)
+    assert health.trouble == "bus can0: somebody else sends CONTROL; find and end it"
+
+
+def test_it_stops_again_after_a_resume_while_the_other_goes_on(ride: Ride) -> None:
+    ride.desk.arrive(FORWARD, FORWARD)
+    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    ride.kurt2.release()
+    assert ride.kurt2.health.trouble == ""
+    ride.desk.arrive(FORWARD)
+    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    ride.kurt2.release()
+    assert not ride.tick().latched
+    assert ride.kurt2.health.foreign_control == 3
+
+
+def test_its_own_frames_are_no_alarm_and_extended_or_remote_ones_are_no_control(ride: Ride) -> None:
+    ride.drive_for(0.1)
+    extended = can.Message(arbitration_id=0x01, is_extended_id=True, data=bytes(8))
+    remote = can.Message(arbitration_id=0x01, is_extended_id=False, is_remote_frame=True)
+    ride.desk.arrive(extended, remote)
+    assert not ride.tick().latched
+    assert ride.kurt2.health.foreign_control == 0
+
+
+def test_what_stopped_it_first_is_what_is_told(ride: Ride) -> None:
+    ride.kurt2.emergency_stop("teacher")
+    ride.desk.arrive(FORWARD)
+    assert ride.tick() == stopped("teacher")
+    assert (ride.kurt2.health.foreign_control, ride.kurt2.health.trouble) == (1, "")
+
+
+# A bus that does not carry
+
+
+def test_a_blocked_bus_gets_no_set_point_put_behind_others_but_brakes(ride: Ride) -> None:
+    ride.desk.carries = False
+    assert not ride.tick().latched
+    assert not ride.tick().latched
+    assert ride.tick() == stopped(BUS_BLOCKED)
+    ride.drive_for(0.1)
+    health = ride.kurt2.health
+    assert health.latched == BUS_BLOCKED
+    assert health.trouble == "bus can0: frames are not carried; switch the robot on, check cable and bit rate"
+    assert health.send_failures == 0
+    ride.desk.carry()
+    set_points = [SpeedControl(Mode.SPEED_CM, 30, 30)] * 2
+    assert ride.sent() == set_points + [BRAKE] * 11
+
+
+def test_a_bus_that_carries_again_stays_stopped_until_released(ride: Ride) -> None:
+    ride.desk.carries = False
+    ride.drive_for(0.05)
+    ride.desk.carry()
+    ride.desk.carries = True
+    assert ride.drive_for(0.05) == stopped(BUS_BLOCKED)
+    ride.kurt2.release()
+    assert ride.kurt2.health.trouble == ""
+    assert not ride.drive_for(0.05).latched
+
+
+def test_released_too_early_it_is_blocked_as_before(ride: Ride) -> None:
+    ride.desk.carries = False
+    ride.drive_for(0.05)
+    ride.kurt2.release()
+    assert ride.tick() == stopped(BUS_BLOCKED)
+
+
+def test_one_frame_late_is_no_alarm(ride: Ride) -> None:
+    ride.desk.carries = False
+    for _ in range(50):
+        assert not ride.tick().latched
+        ride.desk.carry()
+
+
+# What the adapter says
+
+
+def test_bus_off_stops_and_says_how_to_come_back(ride: Ride) -> None:
+    ride.desk.arrive(OFF)
+    ride.kurt2.sense(ride.now_s)
+    assert ride.sent() == [BRAKE]
+    assert ride.decide() == stopped(BUS_OFF)
+    health = ride.kurt2.health
+    assert (health.latched, health.controller, health.error_frames) == (BUS_OFF, ControllerState.OFF, 1)
+    assert "ip link set can0 type can restart" in health.trouble
+
+
+def test_who_resumes_while_the_bus_is_off_gains_nothing(ride: Ride) -> None:
+    ride.desk.arrive(OFF)
+    ride.decide()
+    ride.kurt2.release()
+    assert ride.decide() == stopped(BUS_OFF)
+
+
+@pytest.mark.parametrize("sign", [RESTARTED, *cycle()[:1]], ids=["restarted", "a frame"])
+def test_the_trouble_ends_with_a_sign_of_life_and_the_stop_with_a_resume(ride: Ride, sign: Frame) -> None:
+    ride.desk.arrive(OFF)
+    ride.decide()
+    ride.desk.arrive(sign)
+    assert ride.decide() == stopped(BUS_OFF)
+    assert (ride.kurt2.health.controller, ride.kurt2.health.trouble) == (ControllerState.ACTIVE, "")
+    ride.kurt2.release()
+    assert not ride.drive_for(0.05).latched
+
+
+def test_frames_that_waited_from_before_do_not_hide_bus_off(ride: Ride) -> None:
+    ride.desk.arrive(OFF, *ride.frames())
+    ride.decide()
+    assert ride.kurt2.health.controller is ControllerState.OFF
+
+
+def test_off_and_back_between_two_ticks_is_a_stop_all_the_same(ride: Ride) -> None:
+    ride.desk.arrive(OFF, RESTARTED, *ride.frames())
+    assert ride.decide() == stopped(BUS_OFF)
+    assert ride.kurt2.health.controller is ControllerState.ACTIVE
+
+
+@pytest.mark.parametrize("status", [0x04, 0x08, 0x10, 0x20])
+def test_an_adapter_that_warns_or_is_passive_drives_on_and_is_shown(ride: Ride, status: int) -> None:
+    ride.desk.arrive(error_frame(0x204, status=status, sending=130, receiving=1))
+    assert ride.drive_for(0.5) == Grant(WheelSpeeds(0.3, 0.3), (), latched=False)
+    assert "130 errors sending and 1 receiving" in ride.kurt2.health.trouble
+    ride.desk.arrive(error_frame(0x204, status=0x40))
+    ride.tick()
+    assert ride.kurt2.health.trouble == ""
+
+
+def test_a_flood_of_error_frames_is_counted_and_driven_through(ride: Ride) -> None:
+    for _ in range(10):
+        ride.desk.arrive(*[error_frame(0x288, sending=n % 96) for n in range(200)])
+        assert not ride.tick().latched
+    health = ride.kurt2.health
+    assert (health.error_frames, health.junk, health.trouble) == (2000, 0, "")
+
+
+def test_an_error_frame_is_no_reading(ride: Ride) -> None:
+    before = ride.kurt2.sense(ride.now_s)
+    frame = error_frame(CODEC.message("ENCODER").frame_id, status=0x10, sending=99, receiving=99)
+    ride.desk.arrive(frame)
+    ride.sleep(TICK_S)
+    senses = ride.kurt2.sense(ride.now_s)
+    assert senses.encoder_left_ticks == senses.encoder_right_ticks == 0
+    assert senses.encoder_age_s == pytest.approx(before.encoder_age_s + TICK_S)
+
+
+def test_a_lost_bus_is_told_before_other_troubles(ride: Ride) -> None:
+    ride.desk.shutdown()
+    assert ride.decide() == stopped(BUS_LOST)
+    assert "receiving failed" in ride.kurt2.health.trouble
+
+
+# Wheels
+
+
+def test_wheels_that_do_not_follow_stop_the_robot(ride: Ride) -> None:
+    encoder = CODEC.message("ENCODER")
+    grants = []
+    for _ in range(25):
+        frames = [frame for frame in ride.frames() if frame.arbitration_id != encoder.frame_id]
+        ride.desk.arrive(*frames, encoder.pack(ticks(0.3), 0))
+        ride.sleep(TICK_S)
+        grants.append(ride.decide())
+    assert 19 <= [grant.latched for grant in grants].index(True) <= 21
+    assert grants[-1] == stopped(WHEELS_DISOBEY)
+    trouble = ride.kurt2.health.trouble
+    assert trouble == "right wheels were told 0.30 m/s and turn at 0.00; check motors, encoders and their cables"
+
+
+# Infra-red boards
+
+
+def frozen_but(ride: Ride, *alive: str) -> list[can.Message]:
+    """A cycle in which the infra-red frames of these names change and the others do not."""
+    still = [CODEC.message(name).pack(333, 333, 333, 333) for name in INFRARED_FRAMES if name not in alive]
+    repeated = {frame.arbitration_id for frame in still}
+    return [*still, *(frame for frame in ride.frames() if frame.arbitration_id not in repeated)]
+
+
+@pytest.mark.parametrize(
+    ("alive", "board"),
+    [
+        ((), "first controller (ADC*)"),
+        (("BDC00_03",), "first controller (ADC*)"),
+        (("ADC08_11",), "second controller (BDC*)"),
+    ],
+)
+def test_a_board_that_repeats_itself_for_a_second_stops_the_robot(
+    ride: Ride, alive: tuple[str, ...], board: str
+) -> None:
+    grants = []
+    for _ in range(105):
+        ride.desk.arrive(*frozen_but(ride, *alive))
+        ride.sleep(TICK_S)
+        grants.append(ride.decide())
+    assert 100 <= [grant.latched for grant in grants].index(True) <= 102
+    assert grants[-1] == stopped(INFRARED_FROZEN)
+    assert (
+        ride.kurt2.health.trouble
+        == f"the distance sensors of the {board} repeated themselves for 1 s; switch the robot off and on"
+    )
+
+
+def test_one_sensor_of_each_board_that_lives_is_enough(ride: Ride) -> None:
+    for _ in range(300):
+        ride.desk.arrive(*frozen_but(ride, "ADC08_11", "BDC04_07"))
+        ride.sleep(TICK_S)
+        assert not ride.decide().latched
+
+
+def test_channels_without_a_distance_sensor_do_not_keep_a_board_alive(ride: Ride) -> None:
+    message = CODEC.message("ADC08_11")
+    for n in range(105):
+        frames = [frame for frame in frozen_but(ride, "BDC00_03") if frame.arbitration_id != message.frame_id]
+        ride.desk.arrive(*frames, message.pack(333, 333, n, n))  # 10 and 11 carry something else
+        ride.sleep(TICK_S)
+        grant = ride.decide()
+    assert grant == stopped(INFRARED_FROZEN)
+
+
+def test_a_robot_that_stands_may_wait_on_a_still_board_and_drives_a_second_with_it(ride: Ride) -> None:
+    for wanted_m_s, seconds in ((0.0, 3.0), (0.3, 0.95), (0.0, 0.1), (0.3, 0.95)):
+        for _ in range(round(seconds / TICK_S)):
+            ride.desk.arrive(*frozen_but(ride))
+            ride.sleep(TICK_S)
+            assert not ride.decide(wanted_m_s, wanted_m_s).latched
+
+
+def test_after_a_resume_a_frozen_board_stops_it_a_second_later(ride: Ride) -> None:
+    latched = []
+    for _ in range(220):
+        ride.desk.arrive(*frozen_but(ride))
+        ride.sleep(TICK_S)
+        latched.append(ride.decide().latched)
+        if latched[-1]:
+            ride.kurt2.release()
+    first, second = (tick for tick, it in enumerate(latched) if it)
+    assert 100 <= second - first <= 103
+
+
+def test_a_robot_with_sensors_on_one_controller_only_has_one_board(ends: tuple[CanBus, CanBus]) -> None:
+    sensors = tuple(sensor for sensor in ROBOT.infrared.sensors if sensor.channel.startswith("ADC"))
+    infrared = ROBOT.infrared.model_copy(update={"sensors": sensors})
+    robot = Kurt2(ROBOT.model_copy(update={"infrared": infrared}), ends[0])
+    granted = STANDSTILL
+    for tick in range(300):
+        now_s = 10.0 + tick * TICK_S
+        send(ends[1], cycle(200 + tick % 2, ticks(granted.left_m_s), ticks(granted.right_m_s)))
+        robot.sense(now_s)
+        granted = robot.drive(WheelSpeeds(0.3, 0.3), now_s, now_s).wheel_speeds
+    assert granted == (0.3, 0.3)
+    robot.close()
