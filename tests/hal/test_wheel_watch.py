@@ -123,7 +123,8 @@ def test_ticks_that_were_missed_are_no_disobedience(orders: list[tuple[float, fl
                 wheels.turn(left_m_s, right_m_s)
                 counted.append(wheels.take_ticks())
             now_s += cycles * TICK_S
-            assert watch.disobedience(*map(sum, zip(*counted, strict=True)), cycles, now_s) == ""
+            left, right = (sum(side) for side in zip(*counted, strict=True))
+            assert watch.disobedience(left, right, cycles, now_s) == ""
 
 
 @pytest.mark.parametrize("mode", SpeedMode)
