@@ -27,11 +27,14 @@ class BusEnd(Protocol):
         ...
 
     def recv(self, timeout: float | None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. It is called with 0."""
+        """The frame that waits longest; None when there is none. It is called with 0.
+
+        An end whose bus went away fails each time from then on, so that its silence is not taken for a quiet bus.
+        """
         ...
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Put a frame on its way. It is called with 0."""
+        """Put a frame on its way, whatever happened before. It is called with 0."""
         ...
 
     def shutdown(self) -> None:

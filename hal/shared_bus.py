@@ -127,7 +127,8 @@ class SharedBus(can.BusABC):
         return self._file
 
     def _next(self) -> can.Message | None:
-        for _ in range(_PASSED_AT_ONCE):
+        passed_over = 0
+        while passed_over < _PASSED_AT_ONCE:
             at = self._at
             if at == len(self._block):
                 if not self._read_on():
@@ -140,13 +141,13 @@ class SharedBus(can.BusABC):
                 continue
             self._at = at + _RECORD_BYTES
             self._position += _RECORD_BYTES
-            if sender == self._sender:
-                continue
-            frame = frame_of(flagged_id, length, payload)
-            if is_heard(frame, self._heard):
-                frame.timestamp = stamp_s
-                frame.channel = self.channel
-                return frame
+            if sender != self._sender:
+                frame = frame_of(flagged_id, length, payload)
+                if is_heard(frame, self._heard):
+                    frame.timestamp = stamp_s
+                    frame.channel = self.channel
+                    return frame
+            passed_over += 1
         return None
 
     def _read_on(self) -> bool:

@@ -127,6 +127,24 @@ def test_a_killed_writer_leaves_no_trace_and_the_others_go_on(name: str) -> None
     assert not file_of(name).exists()  # the lock of a killed process is gone as well
 
 
+@pytest.mark.deep
+def test_writers_may_be_killed_again_and_again(name: str) -> None:
+    bus = SharedBus(name)
+    with writing(name, 0x11):
+        for round_ in range(15):
+            listener = Listener(bus)
+            with writing(name, 0x10) as victim:
+                listener.take_until_from(0x10)
+                for _ in range(37 * round_ % 101):  # somewhere else in its work each time
+                    listener.take()
+                victim.kill()
+                victim.wait()
+            listener.take_waiting()
+            assert [listener.take() for _ in range(100)] == [0x11] * 100
+    assert bus.damaged == 0
+    bus.shutdown()
+
+
 def test_a_stopped_writer_stops_nobody_else(name: str) -> None:
     bus, other = SharedBus(name), SharedBus(name)
     listener = Listener(bus)
