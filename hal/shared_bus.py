@@ -74,6 +74,7 @@ class SharedBus(can.BusABC):
         self._at = 0
         self._suspect = -1
         self._empty_looks = 0
+        self._is_removed = False
         super().__init__(channel=name)
 
     def now_s(self) -> float | None:
@@ -159,7 +160,9 @@ class SharedBus(can.BusABC):
         if self._block:
             return True
         self._empty_looks += 1
-        if self._empty_looks % _LOOK_EVERY == 0 and os.fstat(file).st_nlink == 0:
+        if self._empty_looks % _LOOK_EVERY == 0:
+            self._is_removed = os.fstat(file).st_nlink == 0
+        if self._is_removed:
             raise can.CanOperationError(f"{self._path} was removed; others meet at a new one")
         return False
 

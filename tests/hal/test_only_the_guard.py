@@ -16,6 +16,14 @@ KINDS_OF_BUS = {
     "hal/shared_bus.py",
     "hal/socketcan_bus.py",
 }
+WAYS_OUT = {
+    # Ends that reach beyond this process are opened by hal.bus alone; a simulation may build upon those within it.
+    "SharedBus": {"hal/bus.py", "hal/shared_bus.py"},
+    "SocketCanBus": {"hal/bus.py", "hal/socketcan_bus.py"},
+    "SocketcanBus": {"hal/socketcan_bus.py"},
+    "CAN_RAW": {"kurt2rt/doctor/can_bus.py"},  # which closes it at once
+    "CAN_BCM": set(),
+}
 INSIDES = {"_bus_end", "_open_bus_end"}
 ALLOWED = {
     "control_port": {"hal/bus.py", "hal/guard.py"},
@@ -64,6 +72,11 @@ def test_the_raw_bus_stays_inside_its_module() -> None:
         assert not used, f"{file} touches {sorted(used)} of python-can's bus; use hal.bus.CanBus"
 
 
+def test_no_other_way_leads_out_of_this_process() -> None:
+    found = mentions(set(WAYS_OUT))
+    assert {name: found.get(name, set()) for name in WAYS_OUT} == WAYS_OUT
+
+
 @pytest.mark.parametrize(
     ("source", "name"),
     [
@@ -73,6 +86,8 @@ def test_the_raw_bus_stays_inside_its_module() -> None:
         ("getattr(bus, 'control_port')()", "control_port"),
         ("import can.interfaces.virtual", "interfaces"),
         ("from can.interface import Bus", "Bus"),
+        ("from hal.shared_bus import SharedBus as Way", "SharedBus"),
+        ("socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)", "CAN_RAW"),
     ],
 )
 def test_the_search_would_find_it(source: str, name: str) -> None:

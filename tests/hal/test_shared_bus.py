@@ -248,6 +248,8 @@ def test_an_end_whose_file_was_removed_says_so_and_meets_the_others_at_the_new_o
     newcomer = SharedBus(name)
     with pytest.raises(BusError, match=r"receiving failed .*was removed; others meet at a new one"):
         drain_often(robot_end)
+    with pytest.raises(BusError, match="was removed"):
+        robot_end.drain()
     robot_end.reopen()
     newcomer.send(cycle()[0])
     assert len(robot_end.drain()) == 1
