@@ -18,8 +18,8 @@ KINDS_OF_BUS = {
 }
 WAYS_OUT = {
     # Ends that reach beyond this process are opened by hal.bus alone; a simulation may build upon those within it.
-    "SharedBus": {"hal/bus.py", "hal/shared_bus.py"},
-    "SocketCanBus": {"hal/bus.py", "hal/socketcan_bus.py"},
+    "SharedBus": {"hal/bus.py"},
+    "SocketCanBus": {"hal/bus.py"},
     "SocketcanBus": {"hal/socketcan_bus.py"},
     "CAN_RAW": {"kurt2rt/doctor/can_bus.py"},  # which closes it at once
     "CAN_BCM": set(),
