@@ -48,7 +48,8 @@ class WireNode:
         self.heard: deque[can.Message] = deque()
         self.overrun = 0
         """Frames that found its buffer full."""
-        self._by_identifier = settings.order is SendingOrder.IDENTIFIER
+        self._by_identifier = settings.order is not SendingOrder.FIFO
+        self._newest_only = settings.order is SendingOrder.MAILBOX
 
     @property
     def off(self) -> bool:
@@ -60,17 +61,20 @@ class WireNode:
         if self.off:
             # As Linux does: the interface has no carrier, and what is sent then is lost without a word.
             return
-        if len(self.queue) >= self.settings.queue_frames:
-            raise can.CanOperationError("transmit queue is full")
         queued = Queued.of(frame)
-        if self._by_identifier:
+        older = self._waiting_with(queued.key) if self._newest_only else None
+        if older is not None:
+            self.queue[older] = queued
+        elif len(self.queue) >= self.settings.queue_frames:
+            raise can.CanOperationError("transmit queue is full")
+        elif self._by_identifier:
             insort_right(self.queue, queued, key=_key)
         else:
             self.queue.append(queued)
 
     def put_back(self, queued: Queued) -> None:
         """Queue a frame that was destroyed, ahead of its equals."""
-        if self.leaving:
+        if self.leaving or (self._newest_only and self._waiting_with(queued.key) is not None):
             return
         if self._by_identifier:
             insort_left(self.queue, queued, key=_key)
@@ -110,6 +114,9 @@ class WireNode:
         self.restarts_at_ns = None
         self.waits_until_ns = self.hears_from_ns = joins_ns
         self._keep(restarted_frame(self.counters, time_ns / 1e9))
+
+    def _waiting_with(self, key: int) -> int | None:
+        return next((at for at, queued in enumerate(self.queue) if queued.key == key), None)
 
     def _wants(self, frame: can.Message) -> bool:
         wanted = self._wanted_ids

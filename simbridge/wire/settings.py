@@ -15,7 +15,12 @@ class SendingOrder(StrEnum):
     """Which of its frames a node offers to the wire first."""
 
     FIFO = "fifo"
+    """As it was told, which is what SocketCAN does."""
     IDENTIFIER = "identifier"
+    """The best identifier first."""
+    MAILBOX = "mailbox"
+    """The best identifier first, one frame of each: a newer one takes the place of one that waits, as in the message
+    objects of the robot's controllers."""
 
 
 class NodeSettings(Settings):

@@ -13,6 +13,7 @@ from simbridge.wire.wire import Wire
 from tests.simbridge.wires import (
     BY_IDENTIFIER,
     FIFO,
+    MAILBOX,
     US,
     Bursts,
     confirmations,
@@ -86,6 +87,16 @@ def test_a_node_puts_a_destroyed_frame_back_where_it_was() -> None:
             sender.send(frame(0x09, f"{number:016x}"))
         wire.advance(0.01)
         assert [message.data[7] for message in waiting(listener)] == [0, 1, 2]
+
+
+def test_a_destroyed_frame_gives_way_to_a_newer_one_in_its_mailbox() -> None:
+    wire = noisy_wire((50, 60))
+    sender, listener = ends_on(wire, 2, MAILBOX)
+    sender.send(frame(0x09, f"{1:016x}"))
+    wire.advance(30 * US)
+    sender.send(frame(0x09, f"{2:016x}"))
+    wire.advance(0.01)
+    assert [message.data[7] for message in waiting(listener)] == [2]
 
 
 def test_lasting_noise_takes_a_sender_off_the_bus_and_it_says_so() -> None:

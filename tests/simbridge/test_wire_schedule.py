@@ -5,6 +5,7 @@ from simbridge.wire.wire import Wire
 from tests.simbridge.wires import (
     BY_IDENTIFIER,
     FIFO,
+    MAILBOX,
     US,
     confirmations,
     ends_on,
@@ -141,6 +142,18 @@ def test_a_node_that_sends_its_best_first_holds_nothing_up() -> None:
     sender, listener, rival = ends_on(wire, 3, BY_IDENTIFIER)
     rival.send(frame(0x10))
     assert order_of(sender, wire, listener) == [0x01, 0x0A, 0x10, 0x18]
+
+
+def test_a_mailbox_keeps_the_newest_of_each_identifier_and_is_never_full() -> None:
+    wire = quiet_wire()
+    sender, listener = ends_on(wire, 2, MAILBOX)
+    sender.send(frame(0x09, f"{0:016x}"))
+    wire.advance(1 * US)  # that one is on the wire
+    for number in range(1, 200):
+        sender.send(frame(0x09, f"{number:016x}"))
+        sender.send(frame(0x05, f"{number:016x}"))
+    wire.advance(0.01)
+    assert [(each.arbitration_id, each.data[7]) for each in waiting(listener)] == [(0x09, 0), (0x05, 199), (0x09, 199)]
 
 
 def test_frames_of_one_identifier_stay_in_order_whichever_way_a_node_sends() -> None:

@@ -10,7 +10,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.bus_state import ControllerState
-from hal.guard import BUS_OFF, ENCODER_STALE
+from hal.guard import BUS_BLOCKED, BUS_OFF, ENCODER_STALE
 from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from kurt2rt.experiments.exam import examine
 from kurt2rt.simulated import SimulatedArena
@@ -66,7 +66,7 @@ def driving(wire: str, seed: int = 1) -> Iterator[Drive]:
         yield Drive(arena)
 
 
-async def policy_drives(wire: str, seed: int, seconds: float = 4.0) -> str:
+async def policy_drives(wire: str, seed: int, seconds: float = 3.0) -> str:
     task = load_task("wall_following")
     task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
     with closing(SimulatedArena(ROBOT, "a", seed, "exam", wire)) as arena:
@@ -77,10 +77,9 @@ async def policy_drives(wire: str, seed: int, seconds: float = 4.0) -> str:
 
 async def test_a_good_wire_changes_nothing_to_the_last_bit() -> None:
     """All telemetry of a cycle is there before the tick, and CONTROL before the next cycle, as with no wire at all."""
-    for seed in range(2):
-        without = await policy_drives("none", seed)
-        assert await policy_drives("ideal", seed) == without
-        assert await policy_drives("one_megabit", seed) == without
+    without = await policy_drives("none", 1)
+    assert await policy_drives("ideal", 1) == without
+    assert await policy_drives("one_megabit", 1) == without
 
 
 async def test_the_same_seed_gives_the_same_run_over_a_bad_wire() -> None:
@@ -90,12 +89,12 @@ async def test_the_same_seed_gives_the_same_run_over_a_bad_wire() -> None:
 
 
 def test_the_senses_are_as_old_as_the_wire_and_the_ticks_phase_make_them() -> None:
-    """ENCODER is the last but one of eight or nine frames, each about 0.12 ms; the tick comes 5 ms after the cycle."""
+    """The tick comes 5 ms after the cycle. Ahead of ENCODER go three frames of distances, each of about 0.12 ms."""
     with driving("one_megabit") as drive:
         for tick in range(1, 50):
             drive.until(tick * TICK_S)
-            assert 0.0035 < drive.senses.bumper_age_s < drive.senses.encoder_age_s < 0.0043
-            assert drive.senses.encoder_age_s < drive.senses.infrared_age_s < 0.005
+            assert 0.0041 < drive.senses.bumper_age_s < drive.senses.encoder_age_s < 0.0046
+            assert 0.0047 < drive.senses.infrared_age_s < 0.0049
 
 
 def test_a_tick_at_the_very_beginning_of_the_cycle_hears_of_the_cycle_before(tmp_path: Path) -> None:
@@ -103,14 +102,14 @@ def test_a_tick_at_the_very_beginning_of_the_cycle_hears_of_the_cycle_before(tmp
     path.write_text(path.read_text(encoding="utf-8").replace("notebook_phase_s: 0.005", "notebook_phase_s: 0.0"))
     with driving(str(path)) as drive:
         drive.until(0.5)
-        assert drive.senses.encoder_age_s == pytest.approx(0.009, abs=0.0003)
+        assert drive.senses.encoder_age_s == pytest.approx(0.0094, abs=0.0001)
         assert not drive.grant.reasons
         assert drive.grant.wheel_speeds == TURN
 
 
 def test_a_robot_that_misses_every_tenth_frame_turns_on() -> None:
     with driving("lossy") as drive:
-        grants = drive.until(20.0)
+        grants = drive.until(10.0)
     moving = sum(grant.wheel_speeds == TURN for grant in grants)
     assert moving > 0.95 * len(grants)
     assert not any(grant.latched for grant in grants)
@@ -142,6 +141,20 @@ def test_noise_that_takes_the_controllers_off_the_bus_stops_it_until_it_is_relea
         drive.until(3.0)
         assert drive.grant.wheel_speeds == TURN
         assert not drive.grant.reasons
+
+
+def test_a_robot_that_goes_off_the_bus_alone_leaves_control_unanswered_and_the_guard_sees_it(tmp_path: Path) -> None:
+    """A millisecond of noise while the robot sends, over before the notebook does."""
+    with driving(wire_with(tmp_path, noise={"bursts_s": [[1.0, 1.001]]})) as drive:
+        drive.until(1.04)
+        assert drive.grant.reasons == (BUS_BLOCKED,)
+        assert drive.controller() is ControllerState.PASSIVE
+        drive.until(2.0)  # the robot is back, and hears what waited: two old set points, then brakes
+        assert drive.controller() is ControllerState.ACTIVE
+        assert drive.arena.simulation.wheel_speeds == (0.0, 0.0)
+        drive.arena.robot.release()
+        drive.until(3.0)
+        assert drive.grant.wheel_speeds == TURN
 
 
 def test_in_real_time_the_wire_goes_by_the_clock() -> None:

@@ -10,6 +10,7 @@ from simbridge.wire.wire import Wire
 US = 1e-6
 FIFO = NodeSettings(order=SendingOrder.FIFO, queue_frames=64, restart_s=0.1)
 BY_IDENTIFIER = NodeSettings(order=SendingOrder.IDENTIFIER, queue_frames=64, restart_s=None)
+MAILBOX = NodeSettings(order=SendingOrder.MAILBOX, queue_frames=64, restart_s=None)
 ONE_MEGABIT = 1_000_000
 
 Shares = tuple[tuple[int, float], ...]
