@@ -40,7 +40,7 @@ class ErrorCounters:
 
     def send_failed(self, *, unheard: bool) -> None:
         """A frame of its own was destroyed, or `unheard`: nobody acknowledged it, which takes no node off the bus."""
-        if not (unheard and self.transmit >= PASSIVE_LIMIT):
+        if not (unheard and self.state is ErrorState.PASSIVE):
             self.transmit += _SEND_ERROR
 
     def receive_failed(self) -> None:

@@ -8,7 +8,7 @@ import can
 
 from simbridge.wire.bits import INTERFRAME_BITS, bits_before_ack, bits_to_difference
 from simbridge.wire.disturbance import Disturbance, Loss
-from simbridge.wire.error_counters import PASSIVE_LIMIT
+from simbridge.wire.error_counters import ErrorState
 from simbridge.wire.node import Queued, WireNode
 from simbridge.wire.settings import NodeSettings, WireSettings
 
@@ -206,7 +206,7 @@ class Wire:
             self._deliver(done)
         for node, _ in done.senders:
             node.note_state(done.end_ns)
-            if node.counters.transmit >= PASSIVE_LIMIT:
+            if node.state is ErrorState.PASSIVE:
                 node.waits_until_ns = self._free_ns + self._ns(SUSPEND_BITS)
             if node.leaving:
                 self._forget_gone()
