@@ -55,7 +55,7 @@ def test_the_ticks_are_as_many_as_is_said() -> None:
 
 @pytest.fixture(scope="module")
 def some() -> list[tuple[Streams, Played]]:
-    return [(streams, play(streams)) for streams in (draw_streams(seed, 50) for seed in range(12))]
+    return [(streams, play(streams)) for streams in (draw_streams(seed, 40, 60) for seed in range(16))]
 
 
 def test_the_envelope_holds_for_some(some: list[tuple[Streams, Played]]) -> None:
@@ -82,7 +82,7 @@ def test_robots_differ(some: list[tuple[Streams, Played]]) -> None:
 
 
 def test_a_seed_is_a_run(some: list[tuple[Streams, Played]]) -> None:
-    again = play(draw_streams(0, 50))
+    again = play(draw_streams(0, 40, 60))
     assert again.payloads.tobytes() == some[0][1].payloads.tobytes()
 
 
@@ -96,7 +96,7 @@ def test_a_careless_guard_is_found_out(careless: str, some: list[tuple[Streams, 
 
 def test_what_fails_is_told_in_a_few_ticks(some: list[tuple[Streams, Played]]) -> None:
     make_guard, rule = CARELESS["trusts the future"]
-    breaks = [(streams, found) for streams, _ in some for found in violations(streams, play(streams, make_guard))]
+    breaks = [(streams, found) for streams, _ in some[:4] for found in violations(streams, play(streams, make_guard))]
     streams, found = max((each for each in breaks if each[1].rule == rule), key=lambda each: each[1].tick)
     assert found.tick > 10
     least = shrunk(streams, found, make_guard)

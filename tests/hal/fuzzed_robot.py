@@ -1,0 +1,91 @@
+"""A whole robot in simulated time, with somebody on its bus who sends what he likes."""
+
+import itertools
+import math
+import os
+import random
+from types import TracebackType
+from typing import Self
+
+from behaviors.policies.build import build_policy
+from behaviors.repertoire import load_repertoire
+from hal.bus import open_bus
+from hal.bus_end import BusEnd
+from hal.in_process_bus import InProcessBus
+from hal.kurt2 import Kurt2
+from hal.shared_bus import SharedBus
+from kurt2rt.experiments.exam import NothingIsTaught
+from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world_settings import load_world
+from tests.hal.fuzz_frames import FuzzFrames
+from tests.hal.helpers import ROBOT, TICK_S
+from tests.hal.onlooker import Onlooker
+
+_numbers = itertools.count()
+
+
+class FuzzedRobot:
+    """The runtime drives by the teacher's policy; stopped, it is released before long."""
+
+    def __init__(self, kind: str, seed: int) -> None:
+        """`kind` of the bus: virtual or shared."""
+        name = f"can-fuzz-{os.getpid()}-{next(_numbers)}"
+        spec = f"{kind}:{name}"
+        self._stranger: BusEnd = InProcessBus(name) if kind == "virtual" else SharedBus(name)
+        self._stranger.listen_to(frozenset())
+        self._controller_bus = open_bus(spec)
+        robot_bus = open_bus(spec)
+        self.onlooker = robot_bus.tap = Onlooker()
+        self.kurt2 = Kurt2(ROBOT, robot_bus)
+        self.simulation = SimulatedRobot(ROBOT, load_world("a", ROBOT), self._controller_bus, seed)
+        self.bad_frames = 0
+        self._spells = FuzzFrames(seed, fd=kind == "virtual").spells()
+        self._chance = random.Random(seed)
+        task = load_task("wall_following")
+        level = PolicyLevel(
+            build_policy(task.policy, ROBOT.infrared),
+            load_repertoire(task.repertoire, ROBOT),
+            round(task.learning.minimum_action_s / TICK_S),
+        )
+        clock = LockstepClock(self._step)
+        runtime = build_runtime(self.kurt2, ROBOT, task, [], NothingIsTaught(), clock, level_override=level)
+        self._scheduler = runtime.scheduler
+
+    async def drive(self, bad_frames: int) -> None:
+        """Drive until so many bad frames have been sent; raises whatever comes out of a tick or of the onlooker."""
+        until = self.bad_frames + bad_frames
+        while self.bad_frames < until:
+            await self._scheduler.run(100, self._judge)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.kurt2.close()
+        self._controller_bus.shutdown()
+        self._stranger.shutdown()
+
+    def _step(self) -> None:
+        self.simulation.step()
+        frames = next(self._spells)
+        for frame in frames:
+            self._stranger.send(frame, 0)
+        self.bad_frames += len(frames)
+        while self._stranger.recv(0) is not None:  # nobody else's queue may fill up
+            pass
+        if self._chance.random() < 0.3:
+            self.kurt2.release()
+
+    def _judge(self, record: TickRecord) -> None:
+        self.onlooker.judge(record.now_s, record.grant)
+        assert all(0 <= counts <= 1023 for counts in record.senses.infrared_counts)
+        orders = self.simulation.controller.orders
+        assert math.isfinite(orders.left_m_s)
+        assert math.isfinite(orders.right_m_s)
