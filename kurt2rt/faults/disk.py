@@ -1,0 +1,157 @@
+"""A disk that fails under the journal, in step with simulated time."""
+
+import sqlite3
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Self
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.faults.place import Disturbance, SimulatedTime
+from kurt2rt.knowledge.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.error import explained
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import open_knowledge, read_lessons
+from kurt2rt.knowledge.writer import JournalWriter, RetryDelays, utc_now
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.tasks.settings import TaskSettings
+
+_LOOK_S = 0.0002
+_PATIENCE_S = 20.0
+"""Real time that the writer's thread may take to do what it is about."""
+
+
+class DiskOutOfStepError(RuntimeError):
+    """The writer's thread did not do in time what it has to."""
+
+
+class _DisturbedJournal(Journal):
+    """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
+
+    disturbance: Disturbance
+    simulated: SimulatedTime
+    waits_until_s: float | None = None
+    """Simulated time until which a write waits; None while none does."""
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        """Write, with what the fault does to it. Raises KnowledgeError."""
+        now_s = self.simulated.now_s()
+        if not self.disturbance.acts(now_s):
+            return super().append(entries)
+        match self.disturbance.kind:
+            case "off" | "intermittent":
+                raise explained(_sqlite_error("disk I/O error", sqlite3.SQLITE_IOERR), self.path)
+            case "garbage":
+                raise explained(_sqlite_error("database disk image is malformed", sqlite3.SQLITE_CORRUPT), self.path)
+            case "stuck":
+                self._wait(self.disturbance.end_s)
+            case "slow":
+                self._wait(min(now_s + self.disturbance.delay_s, self.disturbance.end_s))
+            case "delayed":
+                receipts = super().append(entries)
+                self._wait(min(now_s + self.disturbance.delay_s, self.disturbance.end_s))
+                return receipts
+            case "wrong":
+                pass  # the file itself was taken away
+        return super().append(entries)
+
+    def _wait(self, until_s: float) -> None:
+        self.waits_until_s = until_s
+        while self.simulated.now_s() < until_s:
+            time.sleep(_LOOK_S)
+        self.waits_until_s = None
+
+
+class FailingDisk:
+    """A knowledge file and its writer, which the drill keeps in step; a LessonKeeper.
+
+    off and intermittent: an error. stuck: a write does not come back. garbage: the file is damaged. wrong: another
+    file is there. slow: each write takes long. delayed: each is done at once and comes back late.
+    """
+
+    def __init__(
+        self,
+        simulated: SimulatedTime,
+        disturbance: Disturbance,
+        path: Path,
+        settings: RobotSettings,
+        task: TaskSettings,
+    ) -> None:
+        self.submitted: list[str] = []
+        """Command ids of the lessons handed over."""
+        self.acknowledged: list[str] = []
+        """Of those said to be durable."""
+        self._simulated = simulated
+        self._disturbance = disturbance
+        self._path, self._settings, self._task = path, settings, task
+        with open_knowledge(path, settings, task) as new:
+            binding = new.binding
+        self._journal = _DisturbedJournal.open(path, binding)
+        self._journal.disturbance = disturbance
+        self._journal.simulated = simulated
+        self._writer = JournalWriter(self._journal, utc_now, RetryDelays(first_s=0.001, longest_s=0.001))
+        if disturbance.kind == "wrong":
+            away = path.with_name(f"{path.name}.away")
+            simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
+            simulated.at(disturbance.end_s, lambda: _put_back(away, path))
+
+    @property
+    def trouble(self) -> str | None:
+        """As the writer says it."""
+        return self._writer.trouble
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Keep a lesson."""
+        self.submitted.append(event.origin.command_id)
+        self._writer.submit(event)
+
+    def keep_in_step(self) -> None:
+        """Wait in real time until the thread has done all that it can do at this moment. Raises DiskOutOfStepError."""
+        give_up_s = time.monotonic() + _PATIENCE_S
+        while not self._in_step():
+            if time.monotonic() > give_up_s:
+                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.trouble}")
+            time.sleep(_LOOK_S)
+        self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
+
+    def close(self) -> None:
+        """Write what is left and close the file. Raises KnowledgeError."""
+        self._writer.close()
+
+    def what_it_lost(self) -> str:
+        """What is wrong with the closed file, in a line; empty when it holds all lessons, once, and in order."""
+        kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
+        if kept != self.submitted:
+            return f"{len(self.submitted)} lessons were taught, the file holds {len(kept)}: {kept}"
+        return ""
+
+    def _in_step(self) -> bool:
+        now_s = self._simulated.now_s()
+        waits_until_s = self._journal.waits_until_s
+        if waits_until_s is not None:
+            return now_s < waits_until_s
+        if self._writer.unwritten == 0:
+            return self._writer.trouble is None
+        fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
+        return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _exchange(path: Path, away: Path) -> None:
+    path.rename(away)
+    path.write_bytes(b"")
+
+
+def _put_back(away: Path, path: Path) -> None:
+    away.rename(path)
+
+
+def _sqlite_error(text: str, code: int) -> sqlite3.DatabaseError:
+    error = sqlite3.OperationalError(text)
+    error.sqlite_errorcode = code
+    return error

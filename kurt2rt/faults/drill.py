@@ -1,0 +1,252 @@
+"""A drill: the robot drives, something fails for a while, and is well again."""
+
+import random
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.faults.clocks import DisturbedClock, DrillClock
+from kurt2rt.faults.disk import FailingDisk
+from kurt2rt.faults.envelope import Envelope
+from kurt2rt.faults.hand_link import HandLink
+from kurt2rt.faults.levels import DisturbedLevel
+from kurt2rt.faults.outcome import Outcome, Standstill
+from kurt2rt.faults.place import Place, Stage
+from kurt2rt.faults.recorder import FailingRecorder
+from kurt2rt.faults.table import FaultCase, FaultTable
+from kurt2rt.faults.witness import Witness
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import ReplaceAction, Resume, Stop, Teach
+from kurt2rt.tick import LessonKeeper, TickRecord
+from kurt2rt.timing.clock import Clock
+
+SERVICE_ENDS = "the service ends"
+"""The word with which the service stops the robot when its loop ends, for whatever reason."""
+_TEACHER = "ann"
+_LESSON_EVERY_S = 0.25
+
+
+class DidNotDriveError(RuntimeError):
+    """The robot stood before anything failed, so that nothing can be seen."""
+
+
+class _Memory:
+    """Keeps lessons in memory (kurt2rt.tick.LessonKeeper)."""
+
+    trouble: str | None = None
+
+    def __init__(self) -> None:
+        self.events: list[TeachingEvent] = []
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Keep one."""
+        self.events.append(event)
+
+
+class _Drill:
+    """One drill in its place."""
+
+    def __init__(
+        self,
+        place: Place,
+        case: FaultCase,
+        table: FaultTable,
+        settings: RobotSettings,
+        task: TaskSettings,
+        chance: random.Random,
+        keeper: LessonKeeper,
+    ) -> None:
+        self._place = place
+        self._case = case
+        self._table = table
+        self._settings = settings
+        self._task = task
+        self._keeper = keeper
+        self._time = place.time
+        schedule = table.schedule
+        self._begin_s, self._end_s = place.disturbance.begin_s, place.disturbance.end_s
+        self._word_at_s = self._end_s + schedule.settles_s
+        self._over_at_s = self._word_at_s + (0.0 if case.must.ends_by == "itself" else schedule.drives_again_s)
+        self.witness = Witness(
+            place, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
+        )
+        self.latched_in_the_end: str | None = None
+        self._answers = 0
+        # The ticks' phase against the controller's cycle.
+        self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
+        self._level = DisturbedLevel(self._time, place.disturbance) if case.target == "tick" else None
+        self._runtime = self._build(())
+        if self._level is not None:
+            self._level.behind = self._runtime.level
+        self.link: HandLink | None = None
+        if case.target == "teacher_link":
+            self.link = HandLink(self._time, place.disturbance, self._runtime, chance)
+            self.link.press()
+            self.link.start()
+        self.recorder: FailingRecorder | None = None
+        if case.target == "recorder":
+            self.recorder = FailingRecorder(self._time, place.disturbance)
+            place.look_on(self.recorder.tap)
+        self._plan()
+
+    async def run(self) -> None:
+        """All of it."""
+        await self._serve()
+        if self._time.now_s() < self._word_at_s:  # the service has ended before its time
+            self._time.run_until(self._word_at_s)
+            self._note_the_end()
+            self._start_anew()
+            await self._serve()
+
+    def outcome(self, seed: int, problems: tuple[str, ...]) -> Outcome:
+        """What it came to."""
+        witness, begin_s, end_s = self.witness, self._begin_s, self._end_s
+        stands = witness.stands(begin_s, end_s)
+        standstills = [Standstill(each.from_s - begin_s, witness.words_from(each.from_s)) for each in stands]
+        health = self._place.robot.health
+        counted = {
+            "junk frames": health.junk,
+            "unintelligible commands": witness.envelope.unintelligible,
+            "missed ticks": self._runtime.ledger.missed_ticks,
+            "refused messages": 0 if self.link is None else self.link.refused,
+            "lost frames": 0 if self.recorder is None else self.recorder.lost,
+        }
+        return Outcome(
+            target=self._case.target,
+            kind=self._case.kind,
+            seed=seed,
+            first=standstills[0] if stands else None,
+            last=standstills[-1] if stands and stands[-1].to_s >= end_s else None,
+            went_on=bool(stands) and stands[0].to_s < end_s,
+            longest_stand_s=max((each.to_s - each.from_s for each in stands), default=0.0),
+            latched=self.latched_in_the_end,
+            latched_after_s=None if witness.latched is None else witness.latched[0] - begin_s,
+            drove_by_itself=any(end_s < at_s <= self._word_at_s for at_s in witness.drove_at_s),
+            drove_when_told=any(at_s > self._word_at_s for at_s in witness.drove_at_s),
+            oldest_age_s=witness.envelope.oldest_age_s,
+            old_frames=witness.envelope.old_frames,
+            frames=witness.envelope.frames,
+            counted=counted,
+            problems=(*witness.envelope.violations, *problems),
+        )
+
+    def _build(self, events: tuple[TeachingEvent, ...]) -> Runtime:
+        clock: Clock = DrillClock(self._time)
+        if self._case.target == "clock":
+            clock = DisturbedClock(self._time, self._place.disturbance)
+        return build_runtime(
+            self.witness,
+            self._settings,
+            self._task,
+            events,
+            self._keeper,
+            clock,
+            level_override=self._level,
+            attended=self._case.target == "teacher_link",
+        )
+
+    def _plan(self) -> None:
+        at, must = self._time.at, self._case.must
+        at(self._begin_s, self._require_driving)
+        at(self._word_at_s, self._note_the_end)
+        match must.ends_by:
+            case "resume":
+                at(self._word_at_s, self._say_resume)
+            case "press":
+                assert self.link is not None
+                at(self._word_at_s, self.link.press)
+        if must.stop_said_after_s is not None:
+            at(self._begin_s + must.stop_said_after_s, lambda: self._runtime.inbox.put(Stop("stop", _TEACHER)))
+        if self._case.target == "disk":
+            for number in range(int((self._end_s - self._begin_s) / _LESSON_EVERY_S)):
+                at(self._begin_s + number * _LESSON_EVERY_S, self._lesson(number))
+
+    def _lesson(self, number: int) -> Callable[[], None]:
+        # It changes nothing: what the robot does then is for the disk's sake alone.
+        lesson = ReplaceAction(f"lesson-{number}", _TEACHER, 1, self._table.action)
+        return lambda: self._runtime.inbox.put(lesson)
+
+    def _require_driving(self) -> None:
+        if self.witness.stands(self._begin_s - self._settings.can.cycle_s, self._begin_s):
+            raise DidNotDriveError(f"{self._case}: the robot stands before anything fails; look at action and task")
+
+    def _note_the_end(self) -> None:
+        self.latched_in_the_end = self._place.robot.health.latched
+
+    def _say_resume(self) -> None:
+        self._runtime.inbox.put(Resume("resume", _TEACHER))
+
+    async def _serve(self) -> None:
+        """As kurt2rt.service does: whatever ends the loop, the wheels stand before anything else ends."""
+        try:
+            await self._runtime.scheduler.run(None, self._after_tick)
+        except DidNotDriveError:
+            raise
+        except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the service
+            self._place.robot.emergency_stop(SERVICE_ENDS)
+            self.ended_by = repr(error)
+
+    def _start_anew(self) -> None:
+        """What a supervisor does, and a teacher afterwards."""
+        events = tuple(self._keeper.events) if isinstance(self._keeper, _Memory) else ()
+        self.witness.look_at(self._place.start_anew())
+        self._level = None
+        self._runtime = self._build(events)
+        self._runtime.school.stop("the robot program was started")
+        self._say_resume()
+
+    def _after_tick(self, record: TickRecord) -> None:
+        now_s = self._time.now_s()
+        self.witness.note(record)
+        if isinstance(self._keeper, FailingDisk):
+            self._keeper.keep_in_step()
+        if self.link is not None:
+            self.link.see(record.tick)
+        elif record.decision.asking and not self._begin_s <= now_s < self._word_at_s:
+            self._answers += 1
+            self._runtime.inbox.put(Teach(f"answer-{self._answers}", _TEACHER, self._table.action))
+        if now_s >= self._over_at_s:
+            self._runtime.scheduler.end()
+
+
+async def drill(
+    stage: Stage,
+    case: FaultCase,
+    table: FaultTable,
+    settings: RobotSettings,
+    task: TaskSettings,
+    *,
+    seed: int,
+    folder: Path,
+) -> Outcome:
+    """Try one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
+    schedule = table.schedule
+    place = stage.open(
+        case.target,
+        case.kind,
+        begin_s=schedule.begins_at_s,
+        end_s=schedule.begins_at_s + schedule.lasts_s,
+        period_s=case.must.period_s,
+        delay_s=case.must.delay_s,
+        seed=seed,
+    )
+    chance = random.Random(f"drill {case} {seed}")
+    problems: tuple[str, ...] = ()
+    with ExitStack() as stack:
+        stack.callback(place.close)
+        keeper: LessonKeeper = _Memory()
+        disk: FailingDisk | None = None
+        if case.target == "disk":
+            disk = FailingDisk(place.time, place.disturbance, folder / "drill.knowledge", settings, task)
+            keeper = disk
+            stack.callback(disk.close)
+        running = _Drill(place, case, table, settings, task, chance, keeper)
+        await running.run()
+        if disk is not None:
+            disk.close()
+            lost = disk.what_it_lost()
+            problems = (lost,) if lost else ()
+        return running.outcome(seed, problems)

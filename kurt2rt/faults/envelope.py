@@ -1,0 +1,138 @@
+"""The motion envelope, judged from frames alone: an independent second opinion on the guard.
+
+It shares no code with the guard nor with the codec that the guard writes frames by, so that neither can hide an error
+of the other's.
+"""
+
+import struct
+from typing import NamedTuple
+
+from kurt2rt.faults.table import EnvelopeSettings
+
+_SPEED_CM, _RAW = 2, 0
+_SET_POINT = struct.Struct(">HhhH")
+_BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
+"""RAW, both sides: brake, no drive (reference 1.3)."""
+_ROUNDING = 1e-6
+
+
+class Told(NamedTuple):
+    """What a CONTROL frame tells the wheels."""
+
+    left_m_s: float
+    right_m_s: float
+    brake: bool
+
+    @property
+    def standing(self) -> bool:
+        """Whether both sides are told to stand."""
+        return self.left_m_s == 0.0 and self.right_m_s == 0.0
+
+
+_BRAKE = Told(0.0, 0.0, brake=True)
+
+
+def told_by(payload: bytes) -> Told | None:
+    """What a payload says; None for one that the robot does not understand or that this guard never says."""
+    if payload == _BRAKE_PAYLOAD:
+        return _BRAKE
+    if len(payload) != _SET_POINT.size:
+        return None
+    mode, left_cm_s, right_cm_s, _ = _SET_POINT.unpack(payload)
+    return Told(left_cm_s / 100.0, right_cm_s / 100.0, brake=False) if mode == _SPEED_CM else None
+
+
+class _Put(NamedTuple):
+    at_s: float
+    age_s: float
+    told: Told | None
+
+
+class Envelope:
+    """Follows all frames of one driver; `violations` says in words what was beyond the limits."""
+
+    def __init__(self, limits: EnvelopeSettings, slew_share: float = 1.0) -> None:
+        """`slew_share`: so many times the slew limits are allowed."""
+        self.violations: list[str] = []
+        self.frames = 0
+        """Handed to the bus."""
+        self.oldest_age_s = 0.0
+        """Of the commands that moved the robot, when they were put on the bus."""
+        self.old_frames = 0
+        """Set points that were older than that when they arrived at the robot."""
+        self.unintelligible = 0
+        """Frames that arrived garbled; the robot does not obey them."""
+        self._limits = limits
+        self._slew_share = slew_share
+        self._puts: dict[int, _Put] = {}
+        self._last_put: _Put | None = None
+        self._last_arrived: _Put | None = None
+
+    def put(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
+        """The driver hands a frame to its bus; `age_s`: since its decision began."""
+        self.frames += 1
+        told = told_by(payload)
+        put = self._puts[number] = _Put(at_s, age_s, told)
+        if told is None:
+            self._violate(at_s, f"no set point and no brake: {payload.hex(' ')}")
+            return
+        if not told.standing:
+            self.oldest_age_s = max(self.oldest_age_s, age_s)
+            if not age_s <= self._limits.command_age_s + _ROUNDING:
+                self._violate(at_s, f"a command {age_s * 1000:.1f} ms old")
+        if latched and not told.brake:
+            self._violate(at_s, "no brake though the robot is to stay stopped")
+        self._require_slow(at_s, told)
+        if self._last_put is not None and self._last_put.told is not None:
+            longest_s = self._limits.longest_step_s
+            elapsed_s = longest_s if self._last_put.told.brake else at_s - self._last_put.at_s
+            self._require_smooth(at_s, self._last_put.told, told, min(elapsed_s, longest_s))
+        self._last_put = put
+
+    def arrived(self, number: int, at_s: float, payload: bytes) -> Told | None:
+        """A frame arrives at the robot; returns what it tells, None where it is not understood."""
+        told = told_by(payload)
+        if told is None:
+            self.unintelligible += 1
+            return None
+        put = self._puts[number]
+        if not told.standing and put.age_s + at_s - put.at_s > self._limits.command_age_s + _ROUNDING:
+            self.old_frames += 1
+        self._require_slow(at_s, told)
+        if self._last_arrived is not None and self._last_arrived.told is not None:
+            # By the times at which they were made: what was held up may come in a heap.
+            elapsed_s = put.at_s - self._last_arrived.at_s
+            if self._last_arrived.told.brake:
+                elapsed_s = max(elapsed_s, self._limits.longest_step_s)
+            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s)
+        self._last_arrived = put
+        return told
+
+    def _require_slow(self, at_s: float, told: Told) -> None:
+        fastest_m_s = max(abs(told.left_m_s), abs(told.right_m_s))
+        if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
+            self._violate(at_s, f"{fastest_m_s:.2f} m/s")
+
+    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float) -> None:
+        limits = self._limits
+        for side, old_m_s, new_m_s in (
+            ("left", before.left_m_s, told.left_m_s),
+            ("right", before.right_m_s, told.right_m_s),
+        ):
+            if new_m_s == 0.0:
+                continue  # to stand is allowed at once
+            if old_m_s * new_m_s < 0.0:
+                self._violate(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
+                continue
+            gained_m_s = abs(new_m_s) - abs(old_m_s)
+            limit_m_s2 = limits.acceleration_m_s2 if gained_m_s > 0 else limits.braking_m_s2
+            allowed_m_s = self._slew_share * limit_m_s2 * elapsed_s + limits.resolution_m_s
+            if abs(gained_m_s) > allowed_m_s + _ROUNDING:
+                self._violate(
+                    at_s,
+                    f"{side} from {old_m_s:.2f} to {new_m_s:.2f} m/s in {elapsed_s * 1000:.0f} ms, "
+                    f"allowed are {allowed_m_s:.3f} m/s",
+                )
+
+    def _violate(self, at_s: float, what: str) -> None:
+        self.violations.append(f"at {at_s:.3f} s: {what}")

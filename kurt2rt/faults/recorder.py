@@ -1,0 +1,95 @@
+"""A CAN log whose writer fails, in step with simulated time."""
+
+import threading
+import time
+from collections.abc import Sequence
+
+import can
+
+from hal.tap import Tap
+from kurt2rt.faults.place import Disturbance, SimulatedTime
+from kurt2rt.recording.can_log import CanLog
+
+_PERIOD_S = 0.1
+_LOOK_S = 0.0002
+_ROOM_FRAMES = 500
+
+
+class _FailingWriter:
+    """Where the log puts its frames (kurt2rt.recording.frame_writer.FrameWriter)."""
+
+    def __init__(self, simulated: SimulatedTime, disturbance: Disturbance) -> None:
+        self.waits_until_s: float | None = None
+        self.kept = 0
+        self._simulated = simulated
+        self._disturbance = disturbance
+
+    def write(self, frames: Sequence[can.Message]) -> None:
+        """Frames, with what the fault does to it. Raises OSError and worse."""
+        now_s = self._simulated.now_s()
+        if self._disturbance.acts(now_s):
+            match self._disturbance.kind:
+                case "off" | "intermittent":
+                    raise OSError("Input/output error")
+                case "garbage":
+                    raise AttributeError("'NoneType' object has no attribute 'write'")
+                case "wrong":
+                    for frame in frames:
+                        frame.arbitration_id, frame.data = 0, bytearray(8)
+                case "stuck":
+                    self._wait(self._disturbance.end_s)
+                case "slow" | "delayed":
+                    self._wait(now_s + self._disturbance.delay_s)
+        self.kept += len(frames)
+
+    def close(self) -> None:
+        """No more comes."""
+
+    def _wait(self, until_s: float) -> None:
+        self.waits_until_s = until_s
+        while self._simulated.now_s() < until_s:
+            time.sleep(_LOOK_S)
+        self.waits_until_s = None
+
+
+class FailingRecorder:
+    """The log, and its thread kept in step: it writes every 0.1 s of simulated time unless it still hangs.
+
+    off, garbage and intermittent: errors. stuck: a write does not come back, and there is room for half a second.
+    wrong: the writer changes the frames that it gets. slow and delayed: each write takes long.
+    """
+
+    def __init__(self, simulated: SimulatedTime, disturbance: Disturbance) -> None:
+        self._writer = _FailingWriter(simulated, disturbance)
+        self._simulated = simulated
+        self._log = CanLog(self._writer, "a drill's", "sim", _ROOM_FRAMES)
+        self._noted = 0
+        self._thread: threading.Thread | None = None
+        simulated.every(_PERIOD_S, _PERIOD_S, self._write)
+
+    @property
+    def tap(self) -> Tap:
+        """What looks on at the bus."""
+        return self._log
+
+    @property
+    def lost(self) -> int:
+        """Frames that are not in the file, as the log counts them."""
+        return self._log.lost
+
+    def _write(self) -> None:
+        self._keep_in_step()
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._log.write_waiting, name="drill's recorder", daemon=True)
+            self._thread.start()
+            self._keep_in_step()
+
+    def _keep_in_step(self) -> None:
+        """Wait in real time until the writer is done, or hangs until later."""
+        while self._thread is not None:
+            waits_until_s = self._writer.waits_until_s
+            if waits_until_s is not None and self._simulated.now_s() < waits_until_s:
+                return
+            self._thread.join(_LOOK_S)
+            if not self._thread.is_alive():
+                self._thread = None

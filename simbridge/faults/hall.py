@@ -1,0 +1,16 @@
+"""The place where faults are tried: a long straight wall on the left, and room on the other side."""
+
+from simbridge.world_settings import StartPoseSettings, WorldSettings
+
+_LENGTH_M, _WIDTH_M = 10.0, 4.0
+_WALL_AT_M = 0.22
+_HALF_WIDTH_M = 0.165
+
+HALL = WorldSettings(
+    name="hall",
+    size_m=(_LENGTH_M, _WIDTH_M),
+    infrared_rays=1,
+    outline=((0.0, 0.0), (_LENGTH_M, 0.0), (_LENGTH_M, _WIDTH_M), (0.0, _WIDTH_M), (0.0, 0.0)),
+    start_poses=(StartPoseSettings(x_m=1.5, y_m=_WIDTH_M - _HALF_WIDTH_M - _WALL_AT_M, heading_deg=0.0),),
+)
+"""One situation all along, so that whoever stands there does it because of the fault."""
