@@ -107,4 +107,6 @@ class _Side:
         change_m_s = (told_m_s - speed_m_s) * elapsed_s / (self._loop_s + elapsed_s)
         speeds_up = speed_m_s * change_m_s >= 0.0
         most_m_s = (self._acceleration_m_s2 if speeds_up else self._braking_m_s2) * elapsed_s
-        return speed_m_s + max(-most_m_s, min(most_m_s, change_m_s))
+        slowest_m_s = speed_m_s + max(-most_m_s, min(most_m_s, change_m_s))
+        # Braking is quicker than speeding up: a step that began with the one must not end as the other.
+        return slowest_m_s if slowest_m_s * speed_m_s >= 0.0 else 0.0
