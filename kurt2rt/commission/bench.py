@@ -174,7 +174,9 @@ class Bench:
         """The robot, opened for this mode, braked, its senses fresh."""
         if self._robot is None or self._mode is not mode:
             self._close_robot()
-            robot = self._robot = self._open_robot(bench_settings(self.settings, mode, self._listener.ids))
+            ear = self._listener
+            settings = bench_settings(self.settings, mode, ear.channels, has_bumpers=ear.has_bumpers)
+            robot = self._robot = self._open_robot(settings)
             self._mode = mode
             robot.emergency_stop(WAITS)
             if self._second_guard:

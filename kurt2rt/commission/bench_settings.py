@@ -2,7 +2,6 @@
 
 from collections.abc import Collection
 
-from hal.codec import load_codec
 from hal.robot_settings import RobotSettings, SpeedMode
 
 MAXIMUM_SPEED_M_S = 0.2
@@ -12,14 +11,13 @@ PATIENCE_S = 0.5
 sends them at another pace than the table says is what the checklist is there to find."""
 
 
-def bench_settings(robot: RobotSettings, mode: SpeedMode, heard_ids: Collection[int]) -> RobotSettings:
-    """What the guard is given for the wheels' tests in a speed mode; only boards that were heard count.
+def bench_settings(
+    robot: RobotSettings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
+) -> RobotSettings:
+    """What the guard is given for the wheels' tests in a speed mode; only analog channels that were heard count.
 
-    Without any board the table is left as it is, and the guard will not let the wheels turn.
+    Without any channel the table is left as it is, and the guard will not let the wheels turn.
     """
-    codec = load_codec(robot.can.database)
-    known_ids = codec.by_id.keys() & set(heard_ids)
-    channels = {channel for frame_id in known_ids for channel in codec.by_id[frame_id].signals}
     sensors = tuple(sensor for sensor in robot.infrared.sensors if sensor.channel in channels)
     limits = robot.guard
     guard = limits.model_copy(
@@ -38,6 +36,6 @@ def bench_settings(robot: RobotSettings, mode: SpeedMode, heard_ids: Collection[
             "can": robot.can.model_copy(update={"speed_mode": mode}),
             "guard": guard,
             "infrared": robot.infrared.model_copy(update={"sensors": sensors or robot.infrared.sensors}),
-            "bumpers": robot.bumpers if codec.message("BUMPERC").frame_id in heard_ids else (),
+            "bumpers": robot.bumpers if has_bumpers else (),
         }
     )

@@ -106,9 +106,17 @@ def _sigma(counts: float) -> float:
 
 
 def _require_range(readings: Sequence[Reading]) -> None:
-    distances = {each.distance_m for each in readings}
-    if len(distances) < LEAST_DISTANCES or min(distances) > 0.15 or max(distances) < 0.4:
+    distances = [each.distance_m for each in readings]
+    if len(set(distances)) < LEAST_DISTANCES or min(distances) > 0.15 or max(distances) < 0.4:
         raise LawError(f"{LEAST_DISTANCES} distances at least, from 0.15 m or less to 0.40 m or more, are needed")
+    near, far = (
+        np.median([each.counts for each in readings if each.distance_m == end(distances)]) for end in (min, max)
+    )
+    if near < _LEAST_RATIO * far:
+        raise LawError(
+            f"{near:.0f} counts at {min(distances):.2f} m and {far:.0f} at {max(distances):.2f} m: they hardly fall "
+            "with distance, so the sensor does not see the board, or the channel is another sensor's"
+        )
 
 
 def _require_plausible(fit: Fit) -> None:
@@ -118,5 +126,3 @@ def _require_plausible(fit: Fit) -> None:
     for where, counts, (least, most) in (("0.10", near, _NEAR_COUNTS), ("0.60", far, _FAR_COUNTS)):
         if not least <= counts <= most:
             raise LawError(f"{counts:.0f} counts at {where} m, plausible are {least:.0f} to {most:.0f}")
-    if near < _LEAST_RATIO * far:
-        raise LawError(f"{near:.0f} counts at 0.10 m and {far:.0f} at 0.60 m: the counts hardly change with distance")

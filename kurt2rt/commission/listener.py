@@ -20,8 +20,10 @@ class Listener:
         """Own an end of the bus."""
         self._bus = bus
         self._codec = codec
-        self.ids: set[int] = set()
-        """Identifiers of all frames heard so far."""
+        self.channels: set[str] = set()
+        """Analog channels heard so far."""
+        self.has_bumpers = False
+        """True when BUMPERC was heard so far."""
 
     def hear(self, now_s: float, heard: Heard) -> None:
         """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
@@ -43,7 +45,6 @@ class Listener:
             heard.junk["extended or remote frames"] += 1
             return
         frame_id = message.arbitration_id
-        self.ids.add(frame_id)
         heard.arrivals_s.setdefault(frame_id, []).append(at_s)
         if frame_id == CONTROL_ID:
             heard.control += 1
@@ -62,6 +63,7 @@ class Listener:
             heard.encoder.append(EncoderFrame(at_s, *values))
         elif codec.name == "BUMPERC":
             heard.bumpers.append(values[0])
+            self.has_bumpers = True
         elif codec.name in ("INFO_1", "INFO_2"):
             heard.identities.setdefault(codec.name, []).append(Identity(*values))
         else:
@@ -72,3 +74,4 @@ class Listener:
                     heard.junk[f"{channel} above {HIGHEST_COUNTS} counts"] += 1
                 else:
                     heard.channels.setdefault(channel, []).append(counts)
+                    self.channels.add(channel)

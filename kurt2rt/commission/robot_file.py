@@ -1,12 +1,14 @@
 """The robot's settings file at the end of a commissioning: complete, valid, and saying what was measured when."""
 
-import tempfile
+import json
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
+from pydantic import ValidationError
 
 from hal.robot_settings import BumperSettings, RobotSettings, SpeedMode, load_robot
 from hal.settings import SettingsError
@@ -21,7 +23,7 @@ def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSet
     content = base.model_dump(mode="json")
     content["name"] = name
     if findings.speed_mode is not None:
-        content["can"]["speed_mode"] = findings.speed_mode
+        content["can"]["speed_mode"] = findings.speed_mode.value
     if findings.speed_mode is SpeedMode.SPEED and findings.full_speed_m_s is not None:
         content["motors"]["full_speed_m_s"] = findings.full_speed_m_s
     if findings.controller_watchdog_s is not None:
@@ -35,10 +37,13 @@ def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSet
         # What is nearer than the law reaches keeps its shape.
         content["infrared"]["fold_back_counts_per_m"] = round(base.infrared.fold_back_counts_per_m * scale, 1)
     content["bumpers"] = [each.model_dump(mode="json") for each in _bumpers(base.bumpers, findings)]
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, f"{name}.yaml")
-        path.write_text(_render(content, {}), encoding="utf-8")
-        return load_robot(str(path))
+    try:
+        # Through JSON, as the loader of settings does it.
+        return RobotSettings.model_validate_json(json.dumps(content))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(map(str, first["loc"]))
+        raise SettingsError(f"what was found makes no robot: {key}: {first['msg']}; repeat that step") from error
 
 
 def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Step]) -> str:
@@ -172,4 +177,5 @@ def _scalar(value: Any) -> str:
         return "[" + ", ".join(_scalar(each) for each in value) + "]"
     if isinstance(value, float):
         return np.format_float_positional(value, trim="0")
-    return yaml.safe_dump(value, default_flow_style=True, width=1000).splitlines()[0]
+    # As an item of a list, so that YAML quotes what would end an item.
+    return yaml.safe_dump([value], default_flow_style=True, width=math.inf, allow_unicode=True).strip()[1:-1]

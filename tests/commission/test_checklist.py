@@ -43,7 +43,8 @@ async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_p
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, note)
-        await session.walk("identity", "modes", "stop", "bumpers")
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("identity", "stop", "bumpers")
     assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {Asked.MOVE}
     assert moved[Asked.MOVE] <= MAXIMUM_SPEED_M_S
 
@@ -85,7 +86,9 @@ async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_a
 
 async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path: Path) -> None:
     with Workshop() as workshop:
-        await Session(workshop, tmp_path, leaves_at(Asked.SEEN)).walk("modes", "wheels")
+        session = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        session.knows(speed_mode=SpeedMode.SPEED)
+        await session.walk("wheels")
         workshop.step()
         assert workshop.robot.controller.orders == (0.0, 0.0, True, True)
 
@@ -99,7 +102,8 @@ async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_
 
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path, mend)
-        await session.walk("modes", "wheels")
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
     assert session.person.lines(Tone.TO_DO) == ["The right motor turns the wrong way: exchange its two leads"]
     assert session.outcome("wheels") is Outcome.PASSED
     assert barring(session.progress) == []

@@ -9,8 +9,9 @@ from typing import Self
 
 from hal.bus import CanBus, open_bus
 from hal.codec import load_codec
+from hal.control import Mode, SpeedControl, control_frame
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings, load_robot
+from hal.robot_settings import RobotSettings, SensorSettings, load_robot
 from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.checklist import STEPS, Checklist, step_named
 from kurt2rt.commission.lifted import WORDS
@@ -27,7 +28,6 @@ from tests.commission.wired_end import WiredEnd, Wiring
 BASE = load_robot()
 TODAY = "2026-11-21 15:00"
 _SIDE_M = 6.0
-_HAND_RADIUS_M = 0.05
 _PARKED_M = (0.5, 0.5)
 
 _numbers = itertools.count()
@@ -38,13 +38,18 @@ Instead = Callable[[Question], str | None]
 class Workshop:
     """Robot, room, hand and wheels as they really are. `true`: what the robot is; the checklist is given BASE."""
 
-    def __init__(self, true: RobotSettings = BASE, wiring: Wiring | None = None, seed: int = 1) -> None:
+    def __init__(
+        self, true: RobotSettings = BASE, wiring: Wiring | None = None, seed: int = 1, hand_radius_m: float = 0.05
+    ) -> None:
         self.true = true
         self.wiring = wiring or Wiring()
         self.spec = f"virtual:commission-test-{next(_numbers)}"
         self.robot_end = CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
-        self.robot = SimulatedRobot(true, _room(), self.robot_end, seed)
+        self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
+        self.stranger: CanBus | None = None
+        """Somebody else, who sends CONTROL as soon as a wheel turns."""
         self._hand_m = _PARKED_M
+        self._hand_radius_m = hand_radius_m
         self._peaks = [0.0, 0.0]
 
     def __enter__(self) -> Self:
@@ -55,6 +60,10 @@ class Workshop:
 
     def step(self) -> None:
         self.robot.step()
+        if self.stranger is not None and any(self.robot.wheel_speeds):
+            self.stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
+            self.stranger.shutdown()
+            self.stranger = None
         for side, speed_m_s in enumerate(self.robot.wheel_speeds):
             if abs(speed_m_s) > abs(self._peaks[side]):
                 self._peaks[side] = speed_m_s
@@ -67,11 +76,22 @@ class Workshop:
 
     def hold_before(self, sensor: str, distance_m: float) -> None:
         """A hand, or the end of a board, so far from a sensor's face."""
-        place = next(each for each in self.true.infrared.sensors if each.name == sensor)
+        self._hold(self._place(sensor), distance_m)
+
+    def hold_between(self, sensor: str, neighbour: str, distance_m: float) -> None:
+        """Before both."""
+        one, other = self._place(sensor), self._place(neighbour)
+        middle = {"x_m": (one.x_m + other.x_m) / 2, "y_m": (one.y_m + other.y_m) / 2}
+        self._hold(one.model_copy(update=middle), distance_m)
+
+    def _place(self, sensor: str) -> SensorSettings:
+        return next(each for each in BASE.infrared.sensors if each.name == sensor)
+
+    def _hold(self, place: SensorSettings, distance_m: float) -> None:
         pose = self.robot.pose
         heading_rad = pose.heading_rad + math.radians(place.heading_deg)
         cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-        away_m = distance_m + _HAND_RADIUS_M
+        away_m = distance_m + self._hand_radius_m
         self._move_hand(
             pose.x_m + place.x_m * cos - place.y_m * sin + away_m * math.cos(heading_rad),
             pose.y_m + place.x_m * sin + place.y_m * cos + away_m * math.sin(heading_rad),
@@ -103,6 +123,7 @@ class SimulatedPerson:
     async def answer(self, question: Question) -> str:
         tried = [each for each in self.asked if (each.about, each.subject) == (question.about, question.subject)]
         self.asked.append(question)
+        assert len(self.asked) < 200, f"nobody gets past: {question.text}"
         instead = self._instead(question)
         if instead is not None:
             return instead
@@ -148,6 +169,11 @@ class Session:
         self.path = folder / "robot.json"
         self.progress = Progress(name="tested", base="kurt2", bus="virtual:bench")
 
+    def knows(self, **findings: object) -> None:
+        """What an earlier session found out."""
+        found = self.progress.findings.model_copy(update=findings)
+        self.progress = self.progress.model_copy(update={"findings": found})
+
     async def walk(self, *names: str, skipped: Sequence[str] = ()) -> Progress:
         """Take the named steps, all when none is named; returns how far it came."""
         chosen: list[Step] = [step_named(name) for name in names] or list(STEPS)
@@ -182,6 +208,14 @@ class Session:
         return self.progress.steps[step].measured
 
 
+def with_channels(**channels: str) -> RobotSettings:
+    """BASE with some sensors on other channels."""
+    sensors = tuple(
+        each.model_copy(update={"channel": channels.get(each.name, each.channel)}) for each in BASE.infrared.sensors
+    )
+    return BASE.model_copy(update={"infrared": BASE.infrared.model_copy(update={"sensors": sensors})})
+
+
 def leaves_at(about: Asked) -> Instead:
     """A person who goes home at a question."""
     return lambda question: LEAVE if question.about is about else None
@@ -195,7 +229,7 @@ def _in_words(left_m_s: float, right_m_s: float) -> str:
     return f"{side} {'forward' if next(iter(ways.values())) > 0 else 'back'}"
 
 
-def _room() -> WorldSettings:
+def _room(hand_radius_m: float) -> WorldSettings:
     side_m = _SIDE_M
     return WorldSettings(
         name="workshop",
@@ -203,7 +237,7 @@ def _room() -> WorldSettings:
         infrared_rays=1,
         outline=((0.0, 0.0), (side_m, 0.0), (side_m, side_m), (0.0, side_m), (0.0, 0.0)),
         round_obstacles=(
-            RoundObstacleSettings(name="hand", x_m=_PARKED_M[0], y_m=_PARKED_M[1], radius_m=_HAND_RADIUS_M),
+            RoundObstacleSettings(name="hand", x_m=_PARKED_M[0], y_m=_PARKED_M[1], radius_m=hand_radius_m),
         ),
         start_poses=(StartPoseSettings(x_m=side_m / 2, y_m=side_m / 2, heading_deg=0.0),),
     )
