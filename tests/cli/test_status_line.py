@@ -1,0 +1,59 @@
+"""The line that the program prints once a second tells what is wrong with the robot and what to do."""
+
+from dataclasses import replace
+
+import pytest
+
+from hal.bus_state import ControllerState
+from hal.guard import BUS_LOST, FOREIGN_CONTROL
+from hal.health import Health
+from kurt2rt.cli.run import status_line
+from kurt2rt.rounds import Status
+from tests.channel.desk import Desk
+
+WELL = Health(
+    frames=700,
+    junk=0,
+    error_frames=0,
+    foreign_control=0,
+    send_failures=0,
+    receive_failures=0,
+    bus_trouble="",
+    controller=ControllerState.ACTIVE,
+    controller_trouble="",
+    alarm="",
+    latched=None,
+)
+PASSIVE = replace(WELL, controller=ControllerState.PASSIVE, controller_trouble="bus can0: error-passive, 130 errors")
+LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=BUS_LOST)
+
+
+@pytest.fixture(scope="module")
+def status() -> Status:
+    desk = Desk()
+    return Status(desk.record, desk.runtime, 0, None, "")
+
+
+def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
+    assert WELL.trouble == ""
+    assert status_line(status, WELL).split(" | ")[-1].startswith("missed")
+
+
+def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: Status) -> None:
+    assert status_line(status, PASSIVE).endswith(" | bus can0: error-passive, 130 errors")
+
+
+def test_a_lost_bus_is_told_until_somebody_says_resume(status: Status) -> None:
+    assert status_line(status, LOST).endswith(" | bus can0: receiving failed")
+    assert "receiving failed" not in status_line(status, replace(LOST, latched=None))
+
+
+def test_what_stopped_the_robot_is_told_with_it(status: Status) -> None:
+    stopped = replace(WELL, alarm="somebody else sends CONTROL", foreign_control=2, latched=FOREIGN_CONTROL)
+    line = status_line(status, stopped)
+    assert line.endswith(" | somebody else sends CONTROL | 2 CONTROL frames of another sender so far")
+
+
+def test_the_controllers_own_trouble_comes_before_what_follows_from_it() -> None:
+    off = replace(LOST, controller=ControllerState.OFF, controller_trouble="bus can0: bus-off")
+    assert off.trouble == "bus can0: bus-off"
