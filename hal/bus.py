@@ -166,6 +166,10 @@ class FramePort:
         """
         return self._bus._sent_controls - self._bus._carried_controls
 
+    def forget_unconfirmed(self) -> None:
+        """Count from none again: what was sent may have been lost without a word, and is then never confirmed."""
+        self._bus._carried_controls = self._bus._sent_controls
+
     def send(self, frame: can.Message) -> None:
         """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""
         frame_id = frame.arbitration_id

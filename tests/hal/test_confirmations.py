@@ -123,6 +123,33 @@ def test_confirmations_that_were_lost_are_not_waited_for(end: HeldEnd, bus: CanB
     assert port.unconfirmed == 1
 
 
+def test_what_was_lost_without_a_word_can_be_forgotten(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    port.send(encode_brake())
+    port.send(encode_brake())
+    end.held.clear()
+    port.forget_unconfirmed()
+    assert port.unconfirmed == 0
+    port.send(encode_brake())
+    assert port.unconfirmed == 1
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 0
+
+
+def test_what_was_forgotten_and_comes_after_all_confirms_nothing_newer_for_good(
+    end: HeldEnd, bus: CanBus, port: FramePort
+) -> None:
+    port.send(encode_brake())
+    port.forget_unconfirmed()
+    for _ in range(3):
+        port.send(encode_brake())
+    end.carry(4)
+    bus.drain()
+    assert port.unconfirmed == 0
+    port.send(encode_brake())
+    assert port.unconfirmed == 1
+
+
 def test_a_bus_that_was_opened_anew_begins_at_none(bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
     bus.reopen()
