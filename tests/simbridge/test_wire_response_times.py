@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from math import ceil
 
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -91,12 +92,25 @@ def longest_waits_us(wire: Wire, streams: list[Stream], payloads: st.DataObject)
     return longest
 
 
-@settings(max_examples=40, deadline=None)
-@given(schedulable(), st.data())
-def test_no_frame_waits_longer_than_the_analysis_allows(streams: list[Stream], payloads: st.DataObject) -> None:
+def check_waits(streams: list[Stream], payloads: st.DataObject) -> None:
     longest_us = longest_waits_us(quiet_wire(), streams, payloads)
     for stream in streams:
         assert longest_us[stream.frame_id] <= worst_response_us(stream, streams)
+
+
+@settings(max_examples=40, deadline=None)
+@given(schedulable(), st.data())
+def test_no_frame_waits_longer_than_the_analysis_allows(streams: list[Stream], payloads: st.DataObject) -> None:
+    check_waits(streams, payloads)
+
+
+@pytest.mark.deep
+@settings(max_examples=3000, deadline=None)
+@given(schedulable(), st.data())
+def test_no_frame_of_very_many_waits_longer_than_the_analysis_allows(
+    streams: list[Stream], payloads: st.DataObject
+) -> None:
+    check_waits(streams, payloads)
 
 
 def test_the_bound_is_met_where_everything_comes_at_once_and_is_stuffed_to_the_full() -> None:

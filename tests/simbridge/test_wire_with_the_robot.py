@@ -66,12 +66,14 @@ def driving(wire: str, seed: int = 1) -> Iterator[Drive]:
         yield Drive(arena)
 
 
-async def policy_drives(wire: str, seed: int, seconds: float = 3.0) -> str:
+async def policy_drives(wire: str, seed: int, seconds: float = 3.0, world: str = "a") -> str:
+    """Let the teacher's policy drive, which must not stop for the bus; the state that it ends in."""
     task = load_task("wall_following")
     task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
-    with closing(SimulatedArena(ROBOT, "a", seed, "exam", wire)) as arena:
-        await examine(arena, ROBOT, task, "a", [], seed=seed, on_progress=lambda _: None, by_teacher=True)
+    with closing(SimulatedArena(ROBOT, world, seed, "exam", wire)) as arena:
+        result = await examine(arena, ROBOT, task, world, [], seed=seed, on_progress=lambda _: None, by_teacher=True)
         assert arena.robot.health.latched is None
+        assert (result.collisions, result.stuck) == (0, False)
         return arena.simulation.state_hash()
 
 
@@ -166,3 +168,16 @@ def test_in_real_time_the_wire_goes_by_the_clock() -> None:
         senses = arena.robot.sense(0.0)
         assert 0.0 <= senses.encoder_age_s < 5.0
         assert len(set(senses.infrared_counts)) > 1
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("world", ["a", "b", "c"])
+async def test_the_policy_follows_walls_over_a_wire_that_loses_every_tenth_frame(world: str) -> None:
+    for seed in range(5):
+        await policy_drives("lossy", seed, 60.0, world)
+
+
+@pytest.mark.deep
+async def test_a_good_wire_changes_nothing_in_a_minute_in_any_world() -> None:
+    for world in ("a", "b", "c"):
+        assert await policy_drives("one_megabit", 0, 60.0, world) == await policy_drives("none", 0, 60.0, world)
