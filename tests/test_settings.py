@@ -14,6 +14,7 @@ from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
+from kurt2rt.faults.table import FaultTable
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.wire.settings import WireSettings
@@ -26,6 +27,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "repertoires": RepertoireSettings,
     "worlds": WorldSettings,
     "wires": WireSettings,
+    "faults": FaultTable,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
 REPERTOIRE = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()

@@ -16,6 +16,7 @@ from kurt2rt.cli.commission import commission
 from kurt2rt.cli.demo import demo
 from kurt2rt.cli.doctor import doctor
 from kurt2rt.cli.exam import exam
+from kurt2rt.cli.faults import faults
 from kurt2rt.cli.knowledge import knowledge
 from kurt2rt.cli.lesson import lesson
 from kurt2rt.cli.pair import pair
@@ -23,6 +24,7 @@ from kurt2rt.cli.run import run
 from kurt2rt.cli.sim import sim
 from kurt2rt.cli.teach import teach
 from kurt2rt.experiments.curriculum import LessonLostError
+from kurt2rt.faults.drill import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
 from kurt2rt.page.error import PageError
@@ -51,6 +53,7 @@ _ONE_LINERS = (
     RefusedError,
     PageError,
     RecordingError,
+    DidNotDriveError,
 )
 """Errors whose message tells the user what, where and what to do."""
 
@@ -85,6 +88,7 @@ app.command()(lesson)
 app.command()(exam)
 app.add_typer(knowledge, name="knowledge")
 app.command()(commission)
+app.command()(faults)
 app.command()(bench)
 app.command()(doctor)
 
