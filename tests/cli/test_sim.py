@@ -8,10 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.helpers import CommandLine, running
-from tests.cli.three_programs import ROBOT, teach_kill_and_return
-
-BRAKING_CYCLES = 30
-"""From the fastest that the guard allows, 0.6 m/s at 3 m/s², it takes 20 cycles, and some for the speed loop."""
+from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, teach_kill_and_return
 
 
 def a_bus(name: str) -> str:
@@ -20,8 +17,7 @@ def a_bus(name: str) -> str:
 
 async def test_taught_over_a_bus_killed_while_it_drives_and_back_with_all_it_knew(tmp_path: Path) -> None:
     told = await teach_kill_and_return(a_bus("story"), tmp_path)
-    watchdog_cycles = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
-    assert told.cycles_to_rest <= watchdog_cycles + BRAKING_CYCLES
+    assert told.cycles_to_rest <= WATCHDOG_CYCLES + BRAKING_CYCLES
 
 
 @pytest.mark.deep

@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import ExitStack, asynccontextmanager, contextmanager
+from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,14 +17,19 @@ from hal.control import RawControl, decode_control
 from hal.robot_settings import load_robot
 from kurt2rt.channel.state import State
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.answer import NoAnswerError
 from tests.cli.helpers import Running, running
 
 ROBOT = load_robot()
 CODEC = load_codec()
 ENCODER = CODEC.message("ENCODER")
+WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
+BRAKING_CYCLES = 30
+"""From the fastest that the guard allows, 0.6 m/s at 3 m/s², it takes 20 cycles, and some for the speed loop."""
 LONG_ENOUGH_S = 60.0
 """For whatever a test waits for; it fails then."""
 _LOOK_S = 0.005
+_SILENT_CYCLES = 30
 _STARTED = "the robot program was started"
 
 
@@ -133,43 +138,58 @@ async def teach_kill_and_return(bus: str, folder: Path) -> Told:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
         with runtime(bus, folder) as robot, ExitStack() as supervised:
             async with teacher_of(robot, folder) as we:
-                await _teach(we)
+                assert (await we.take()).accepted
+                stopped = await state_where(we, lambda state: state.teacher == "local")
+                assert stopped.stopped_because == _STARTED
+                lessons = await _until_it_drives(we)
                 await seen.until(turns)
-                await state_where(we, lambda state: state.rla == 1 and state.left_m_s > 0.1)
                 seen.forget()
                 robot.process.kill()
                 killed_at_s = time.monotonic()
                 robot = supervised.enter_context(runtime(bus, folder))
-                cycles = await _cycles_to_rest(seen)
-                passed = await seen.until(is_control)
+                silent = await _silence(seen)
                 silence_s = time.monotonic() - killed_at_s
-                assert not any(turns(frame) for frame in passed)
             async with teacher_of(robot, folder) as we:
-                await _find_all_it_knew(we)
-    return Told(cycles, silence_s)
+                back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
+                assert (back.action, back.unsaved, back.stopped_because) == (None, 0, _STARTED)
+                assert back.lessons >= lessons  # one that was not acknowledged may be there as well
+                assert (await we.lessons())[-1].teacher == "local"
+                assert (await we.take()).accepted
+                await _until_it_drives(we)
+    assert silent[-1] is False
+    return Told(max((cycle + 1 for cycle, turned in enumerate(silent) if turned), default=0), silence_s)
 
 
-async def _teach(we: TeacherClient) -> None:
-    assert (await we.take()).accepted
-    stopped = await state_where(we, lambda state: state.teacher == "local")
-    assert stopped.stopped_because == _STARTED
-    assert (await we.resume()).accepted
-    asks = await state_where(we, lambda state: state.cause == "unknown")
-    assert (await we.answer("forward", of=asks.tick)).text == "RLA 1 taught: forward"
+async def _until_it_drives(we: TeacherClient) -> int:
+    """Say go and answer what it asks until it drives by what it was taught; how many lessons that took.
+
+    Again and again: on a machine that has much to do at the same time the guard may stop it now and then.
+    """
+    lessons = 0
+    with anyio.fail_after(LONG_ENOUGH_S):
+        async for state in we.states():
+            if state.rla is not None and state.left_m_s > 0.1:
+                return lessons
+            with suppress(NoAnswerError):
+                if state.stopped_because:
+                    await we.resume()
+                elif state.cause == "unknown":
+                    lessons += (await we.answer("forward", of=state.tick)).accepted
+    raise AssertionError("the client ended")
 
 
-async def _cycles_to_rest(seen: Onlooker) -> int:
-    """Of the controller, from the last CONTROL frame until the wheels stand; they turn now."""
-    passed = await seen.until(stands)
-    last = max((at for at, frame in enumerate(passed) if is_control(frame)), default=0)
-    return sum(turns(frame) for frame in passed[last:])
+async def _silence(seen: Onlooker) -> list[bool]:
+    """Wait for CONTROL after a silence that no living program keeps; whether the wheels turned, cycle by cycle."""
+    turned: list[bool] = []
 
+    def a_new_one(frame: can.Message) -> bool:
+        if is_control(frame):
+            if len(turned) > _SILENT_CYCLES:
+                return True
+            turned.clear()
+        elif turns(frame) or stands(frame):
+            turned.append(turns(frame))
+        return False
 
-async def _find_all_it_knew(we: TeacherClient) -> None:
-    back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
-    assert (back.action, back.lessons, back.unsaved, back.stopped_because) == (None, 1, 0, _STARTED)
-    (line,) = await we.lessons()
-    assert line.teacher == "local"
-    assert (await we.take()).accepted
-    assert (await we.resume()).accepted
-    assert (await state_where(we, lambda state: state.rla == 1)).action == "forward"
+    await seen.until(a_new_one)
+    return turned
