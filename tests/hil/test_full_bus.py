@@ -36,7 +36,7 @@ def cangen(*options: str) -> Iterator["subprocess.Popen[bytes]"]:
 
 def test_no_set_point_is_put_behind_two_that_the_bus_has_yet_to_carry(drive: Drive, link: Link, vcan0: str) -> None:
     with listener(vcan0) as bus:
-        link.hold_frames_for(400)
+        link.hold_frames_for(1000)
         grants = [drive.tick() for _ in range(5)]
         assert [grant.latched for grant in grants] == [False, False, True, True, True]
         assert grants[2:] == [((0.0, 0.0), (BUS_BLOCKED,), True)] * 3
@@ -54,7 +54,7 @@ def test_no_set_point_is_put_behind_two_that_the_bus_has_yet_to_carry(drive: Dri
 
 
 def test_when_the_bus_is_free_again_the_robot_waits_to_be_resumed(drive: Drive, link: Link) -> None:
-    link.hold_frames_for(400)
+    link.hold_frames_for(1000)
     drive.ticks(5)
     link.carry_at_once()
     drive.until_fresh()

@@ -1,0 +1,74 @@
+"""The runtime as a process, its teacher's own policy at the wheels: `python -m ...runtime BUS SECONDS [HANGS_AT_TICK]`.
+
+In that tick its decision takes a second. At its end it tells how many ticks there were, and each at which the guard
+had other reasons than in the one before.
+"""
+
+import json
+import sys
+import time
+
+import anyio
+
+from behaviors.policies.build import build_policy
+from behaviors.repertoire import load_repertoire
+from hal.bus import open_bus
+from hal.guard import SLEW_LIMIT
+from hal.kurt2 import Kurt2
+from hal.robot import Senses
+from hal.robot_settings import load_robot
+from kurt2rt.experiments.exam import NothingIsTaught
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.perception.perception import Situation
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.timerfd import TimerfdClock
+
+HANG_S = 1.0
+
+
+class Hanging(PolicyLevel):
+    """The policy, which takes its time once."""
+
+    hangs_at = 0
+    decisions = 0
+
+    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+        self.decisions += 1
+        if self.decisions == self.hangs_at:
+            print(json.dumps({"hangs_from_s": time.time()}), flush=True)
+            time.sleep(HANG_S)
+        return super().decide(situation, senses, stand_because)
+
+
+async def drive(bus: str, seconds: float, hangs_at: int) -> None:
+    settings, task = load_robot(), load_task("wall_following")
+    policy = build_policy(task.policy, settings.infrared)
+    period_s = settings.can.cycle_s
+    level = Hanging(
+        policy, load_repertoire(task.repertoire, settings), round(task.learning.minimum_action_s / period_s)
+    )
+    level.hangs_at = hangs_at
+    robot = Kurt2(settings, open_bus(bus))
+    turns: list[dict[str, object]] = []
+    before: tuple[str, ...] = ()
+
+    def after_tick(record: TickRecord) -> None:
+        nonlocal before
+        reasons = tuple(reason for reason in record.grant.reasons if reason != SLEW_LIMIT)
+        if reasons != before:
+            before = reasons
+            turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})
+
+    with TimerfdClock() as clock, robot.watchdog:
+        runtime = build_runtime(robot, settings, task, (), NothingIsTaught(), clock, level_override=level)
+        await runtime.scheduler.run(round(seconds / period_s), after_tick)
+    robot.close()
+    ledger = runtime.ledger
+    print(json.dumps({"ticks": ledger.ticks, "missed": ledger.missed_ticks, "turns": turns}))
+
+
+if __name__ == "__main__":
+    anyio.run(drive, sys.argv[1], float(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 0)

@@ -1,0 +1,77 @@
+"""From a cause to the frame on the bus that stops the robot, by the kernel's own stamps."""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import pytest
+
+from hal.guard import INFRARED_STALE
+from hal.watchdog import TICKS_CEASED
+from tests.hil.simulated_time.played import Played
+from tests.hil.simulated_time.stage import Story
+
+pytestmark = pytest.mark.boots
+
+Play = Callable[[Story], Played]
+CYCLE_US = 10_000
+DRIVES_TICKS = 340
+"""Of both sides in a cycle, at the 0.3 m/s that the teacher's policy likes."""
+
+
+@pytest.mark.parametrize("phase_s", [0.0, 0.0025, 0.005, 0.0075])
+def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_failed_to_come(
+    play: Play, phase_s: float
+) -> None:
+    played = play(Story(3.0, phase_s=phase_s, infrared_silent_s=2.0))
+    (turn,) = played.runtime["turns"]
+    assert turn["reasons"] == [INFRARED_STALE]
+
+    log = played.log
+    last_us = log.infrared_us[-1]
+    before = [told for told in log.told if told.at_us > last_us and not told.stops]
+    stop = next(told for told in log.told if told.at_us > last_us and told.stops)
+    assert 50_000 < stop.at_us - last_us <= 60_000
+    assert before[-1].at_us - last_us <= 50_000
+    assert stop.at_us - (last_us + CYCLE_US) <= 50_000
+
+
+@pytest.mark.parametrize("phase_s", [0.0, 0.005])
+def test_a_tick_that_hangs_is_stopped_by_the_second_guard_within_100_ms(play: Play, phase_s: float) -> None:
+    played = play(Story(4.0, phase_s=phase_s, tick_hangs=150))
+    (turn,) = played.runtime["turns"]
+    assert turn["reasons"] == [TICKS_CEASED]
+
+    hangs_from_us = round(1e6 * played.runtime["hangs_from_s"])
+    stop, *later = (told for told in played.log.told if told.at_us > hangs_from_us)
+    assert stop.brakes
+    assert stop.at_us - hangs_from_us <= 100_000
+    # It brakes on, also when the loop has come back.
+    assert all(told.brakes for told in later)
+    gaps_us = [after.at_us - before.at_us for before, after in pairwise([stop, *later])]
+    assert max(gaps_us) <= CYCLE_US + 1000
+
+
+@pytest.mark.parametrize("phase_s", [0.0, 0.0075])
+def test_when_the_runtime_is_killed_the_robot_brakes_by_itself_after_200_ms(play: Play, phase_s: float) -> None:
+    log = play(Story(3.5, phase_s=phase_s, runtime_killed_s=2.0)).log
+    last_us = log.told[-1].at_us
+    assert not log.told[-1].stops
+    full_speed_us = [turned.at_us - last_us for turned in log.turned if turned.ticks >= DRIVES_TICKS]
+    assert 190_000 <= max(full_speed_us) <= 200_000
+    standing_us = next(turned.at_us - last_us for turned in log.turned if turned.at_us > last_us and not turned.ticks)
+    assert standing_us <= 310_000  # from 0.3 m/s at 3 m/s^2
+    assert all(turned.ticks == 0 for turned in log.turned if turned.at_us >= last_us + standing_us)
+
+
+def test_a_runtime_that_was_stopped_for_a_second_brakes_first_and_takes_nothing_old_for_new(play: Play) -> None:
+    """SIGSTOP stops the second guard as well; then it goes on, with a socket full of frames of half a second ago."""
+    played = play(Story(4.0, runtime_stopped_s=2.0, robot_stopped_s=2.5))
+    stopped_us, goes_on_us = played.moments_us["runtime stopped"], played.moments_us["runtime goes on"]
+    after = [told for told in played.log.told if told.at_us > stopped_us]
+    assert after[0].at_us >= goes_on_us
+    assert all(told.brakes for told in after)
+    assert any(not turned.ticks for turned in played.log.turned if turned.at_us < goes_on_us)  # it stood long before
+
+    (turn,) = played.runtime["turns"]
+    assert turn["reasons"] == [TICKS_CEASED]
+    assert turn["infrared_age_s"] >= 0.5
