@@ -21,6 +21,8 @@ class Asked(StrEnum):
     """Which wheels turned, and which way."""
     CLEAR = "clear"
     """To take everything away from the sensors."""
+    KEEP = "keep"
+    """Whether what was found before still holds."""
     HAND = "hand"
     """For a hand before a sensor."""
     WHICH = "which"

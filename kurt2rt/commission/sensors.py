@@ -1,6 +1,6 @@
 """Step: which analog channel does each distance sensor answer on?"""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hal.robot_settings import SensorSettings
 from kurt2rt.commission.bench import Bench
@@ -17,6 +17,7 @@ _LEAST_RISE = 60.0
 _CLEARLY = 1.7
 """So many times the rise of the second channel."""
 _FORGET = "f"
+_ALL = "a"
 
 
 class SensorsStep:
@@ -34,14 +35,14 @@ class SensorsStep:
 
     async def take(self, bench: Bench, findings: Findings) -> Result:
         """Ask for a hand before each sensor of the table."""
+        sensors = bench.settings.infrared.sensors
+        found = await _kept(bench, findings, sensors)
         await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
         await bench.stand(SETTLE_S)
         heard = await bench.stand(_BASELINE_S)
         empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
-        sensors = bench.settings.infrared.sensors
-        found: dict[str, str] = {}
         dead: list[str] = []
-        waiting = list(sensors)
+        waiting = [sensor for sensor in sensors if sensor.name not in found]
         while waiting:
             sensor = waiting.pop(0)
             answer = await _find(bench, sensor, empty, found, dead)
@@ -51,9 +52,26 @@ class SensorsStep:
         result = Result(findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
         for sensor in sensors:
             result.note(_row(sensor, found, dead))
+        not_tried = [sensor.name for sensor in sensors if sensor.name not in (*found, *dead)]
+        if not_tried:
+            result.to_do.append(f"Not tried: {', '.join(not_tried)}; this step goes on with them when it is repeated")
         for name in dead:
             result.to_do.append(f"{name} answers on no channel: check its plug and its 5 V, then repeat this step")
         return result
+
+
+async def _kept(bench: Bench, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
+    """Channels that were found before and need no hand again."""
+    before = dict(findings.channels)
+    missing = [sensor.name for sensor in sensors if sensor.name not in before]
+    if not before or not missing:
+        return {}
+    question = Question(
+        Asked.KEEP,
+        f"{len(before)} channels were found before.",
+        (Choice("", f"go on with {', '.join(missing)}"), Choice(_ALL, "ask for all of them anew")),
+    )
+    return {} if await bench.ask(question) == _ALL else before
 
 
 async def _find(

@@ -46,6 +46,18 @@ async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_pa
     assert session.progress.findings.channels == {"s9": "BDC04"}
     assert session.progress.findings.dead_sensors == ()
     assert session.measured("sensors")[0] == "s1 left front: not tried, the table says ADC07"
+    (told,) = session.to_do("sensors")
+    assert told.startswith("Not tried: s1, s2, s3, ")
+
+
+async def test_what_was_found_before_needs_no_hand_again(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(channels={each.name: each.channel for each in BASE.infrared.sensors if each.name != "s9"})
+        await session.walk("sensors")
+    assert [question.subject for question in session.person.asked if question.about is Asked.HAND] == ["s9"]
+    assert session.outcome("sensors") is Outcome.PASSED
+    assert len(session.progress.findings.channels) == 18
 
 
 @dataclass

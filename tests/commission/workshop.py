@@ -39,12 +39,19 @@ class Workshop:
     """Robot, room, hand and wheels as they really are. `true`: what the robot is; the checklist is given BASE."""
 
     def __init__(
-        self, true: RobotSettings = BASE, wiring: Wiring | None = None, seed: int = 1, hand_radius_m: float = 0.05
+        self,
+        true: RobotSettings = BASE,
+        wiring: Wiring | None = None,
+        seed: int = 1,
+        hand_radius_m: float = 0.05,
+        spec: str = "",
     ) -> None:
         self.true = true
         self.wiring = wiring or Wiring()
-        self.spec = f"virtual:commission-test-{next(_numbers)}"
-        self.robot_end = CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
+        self.spec = spec or f"virtual:commission-test-{next(_numbers)}"
+        self.robot_end = (
+            open_bus(spec) if spec else CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
+        )
         self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
         self.stranger: CanBus | None = None
         """Somebody else, who sends CONTROL as soon as a wheel turns."""
