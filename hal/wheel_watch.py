@@ -23,14 +23,15 @@ class WheelWatch:
 
     def __init__(self, robot: RobotSettings) -> None:
         limits = robot.guard
-        self._tick_m_s = robot.geometry.metres_per_tick / robot.can.cycle_s
-        # After a longer pause nobody knows what became of the set point: others have stopped the robot meanwhile.
+        self._cycle_s = robot.can.cycle_s
+        self._metres_per_tick = robot.geometry.metres_per_tick
+        # After a longer pause, of the runtime or of the encoders, nobody knows what became of the set points: others
+        # have stopped the robot meanwhile, and the wheels are taken as they are found.
         self._pause_s = limits.ticks_ceased_s
         self._error_s = limits.wheel_error_s
         self._left, self._right = _Side(robot), _Side(robot)
         self._told = STANDSTILL
-        self._at_s = -math.inf
-        self._lost = True
+        self._counted_at_s = -math.inf
 
     def tell(self, told: WheelSpeeds) -> None:
         """Set points in m/s that this tick's CONTROL carries."""
@@ -41,26 +42,25 @@ class WheelWatch:
 
         The ticks are those of all `frames` ENCODER frames of this tick of the runtime, none or several.
         """
-        elapsed_s = now_s - self._at_s
-        self._at_s = now_s
         left, right, told = self._left, self._right, self._told
-        if 0.0 <= elapsed_s <= self._pause_s:
-            left.follow(told.left_m_s, elapsed_s)
-            right.follow(told.right_m_s, elapsed_s)
-        else:
-            self._lost = True
+        # Time goes by the controller's cycles: a frame that was lost takes its ticks along, and leaves the band wider.
+        turned_s = frames * self._cycle_s
+        left.follow(told.left_m_s, turned_s)
+        right.follow(told.right_m_s, turned_s)
         if not frames:
             return ""
-        # By frames, not by time: a frame that was lost takes its ticks along.
-        left_m_s, right_m_s = left_ticks * self._tick_m_s / frames, right_ticks * self._tick_m_s / frames
-        if self._lost:
-            self._lost = False
+        left_m_s = left_ticks * self._metres_per_tick / turned_s
+        right_m_s = right_ticks * self._metres_per_tick / turned_s
+        silent_s = now_s - self._counted_at_s
+        self._counted_at_s = now_s
+        if not 0.0 <= silent_s <= self._pause_s:
             left.start(left_m_s)
             right.start(right_m_s)
             return ""
-        if left.off_s(left_m_s, elapsed_s) >= self._error_s:
+        left_off_s, right_off_s = left.off_s(left_m_s, silent_s), right.off_s(right_m_s, silent_s)
+        if left_off_s >= self._error_s:
             return f"left wheels were told {told.left_m_s:.2f} m/s and turn at {left_m_s:.2f}"
-        if right.off_s(right_m_s, elapsed_s) >= self._error_s:
+        if right_off_s >= self._error_s:
             return f"right wheels were told {told.right_m_s:.2f} m/s and turn at {right_m_s:.2f}"
         return ""
 
@@ -81,7 +81,6 @@ class _Side:
     def start(self, speed_m_s: float) -> None:
         """Nothing is known but this speed."""
         self._low_m_s = self._high_m_s = speed_m_s
-        self._off_s = 0.0
 
     def follow(self, told_m_s: float, elapsed_s: float) -> None:
         """Go on for a while with this set point."""
@@ -90,7 +89,7 @@ class _Side:
         self._high_m_s = told_m_s if told_m_s >= high_m_s else self._slowest(high_m_s, told_m_s, elapsed_s)
 
     def off_s(self, speed_m_s: float, elapsed_s: float) -> float:
-        """For how long it has been off the band, this speed included; at most `wheel_error_s`."""
+        """For how long it has been off the band, with this speed since the last; at most `wheel_error_s`."""
         low_m_s, high_m_s = self._low_m_s, self._high_m_s
         below_m_s = low_m_s - speed_m_s - self._error_share * abs(low_m_s)
         above_m_s = speed_m_s - high_m_s - self._error_share * abs(high_m_s)

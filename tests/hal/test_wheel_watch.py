@@ -161,6 +161,38 @@ def test_wheels_that_were_stopped_by_somebody_else_during_a_pause_start_anew(dri
     assert driving.drive(2.0, 0.3, 0.2) == ""
 
 
+def test_encoders_that_come_back_find_the_wheels_as_they_are(driving: Trial) -> None:
+    """A controller that hung for a second: it goes on at the old speed and has yet to hear that it should stand."""
+    for _ in range(100):
+        driving.now_s += TICK_S
+        driving.watch.tell(STANDSTILL)
+        assert driving.watch.disobedience(0, 0, 0, driving.now_s) == ""
+    driving.told = STANDSTILL
+    assert driving.drive(1.0, 0.0, 0.0) == ""
+
+
+def test_a_controller_that_is_slow_by_itself_is_judged_by_its_own_cycles(trial: Trial) -> None:
+    """A simulation on a busy machine: two of three cycles do not take place."""
+    for tick in range(600):
+        trial.told = WheelSpeeds(*(slewed(m_s, (-0.3, 0.3)[tick // 100 % 2]) for m_s in trial.told))
+        trial.watch.tell(trial.told)
+        trial.now_s += TICK_S
+        left = right = frames = 0
+        if tick % 3 == 0:
+            trial.wheels.turn(*trial.told)
+            left, right = trial.wheels.take_ticks()
+            frames = 1
+        assert trial.watch.disobedience(left, right, frames, trial.now_s) == ""
+
+
+def test_a_short_silence_is_no_excuse(driving: Trial) -> None:
+    driving.obey = lambda _: WheelSpeeds(0.3, 0.3)
+    said = ""
+    for cycle in range(100):
+        said = said or driving.cycle(0.0, 0.0, lost=cycle % 8 != 0)
+    assert said
+
+
 def test_a_clock_that_ran_backwards_starts_anew(driving: Trial) -> None:
     driving.now_s -= 1.0
     driving.wheels.halt()
