@@ -20,8 +20,8 @@ FRONT_BUMPER = "front bumper"
 REAR_BUMPER = "rear bumper"
 SPEED_LIMIT = "speed limit"
 SLEW_LIMIT = "slew limit"
-BUS_LOST = "bus lost"
-BUS_BLOCKED = "bus blocked"
+BUS_LOST = "bus lost"  # it did not take a frame: unplugged, down, or its transmit queue is full of others' frames
+BUS_BLOCKED = "bus blocked"  # it takes frames and does not carry them: nobody is there to acknowledge, or it is full
 BUS_OFF = "bus off"
 FOREIGN_CONTROL = "another CONTROL sender"
 WHEELS_DISOBEY = "wheels disobey"
@@ -94,7 +94,8 @@ class Guard:
     def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
-        The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own.
+        The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own. No set
+        point is put behind frames that the bus has not carried yet; a brake is.
         """
         with self._lock:
             if self._latched is None and self._port.unconfirmed >= _UNCONFIRMED:
