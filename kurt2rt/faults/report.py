@@ -32,8 +32,8 @@ def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Co
     console.print(table)
     console.print(
         "ms: from the fault's beginning to the standstill at the robot's end of the bus, the worst of all seeds. "
-        "Below it, what it needs besides the end of the fault to drive on: a teacher's resume, a new press of his hand, "
-        "a new start of the program.\n"
+        "Below it, what it needs besides the end of the fault to drive on: a teacher's resume, a new press of his "
+        "hand, a new start of the program.\n"
     )
     if times:
         console.print(_times(times))
@@ -69,7 +69,7 @@ def _cell(trials: Sequence[Trial]) -> Text:
     if not trials:
         return Text()
     must = trials[0].case.must
-    lines = ["drives" if must.leads_to == "drives_on" else must.leads_to]
+    lines: list[str] = ["drives" if must.leads_to == "drives_on" else must.leads_to]
     stands = [trial.outcome.first if must.leads_to == "stutters" else trial.outcome.last for trial in trials]
     after_s = [stand.after_s for stand in stands if stand is not None]
     if must.leads_to != "drives_on" and after_s:
