@@ -126,16 +126,7 @@ class Kurt2:
             self._bumpers,
             now_s - self._bumpers_at_s,
         )
-        if bus_off or self._bus_state.off:
-            self._stop(BUS_OFF)
-        if foreign_control:
-            self._stop(FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it")
-        disobedience = self._wheel_watch.disobedience(left_ticks, right_ticks, encoder_frames, now_s)
-        if disobedience:
-            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders and their cables")
-        freeze = self._infrared_watch.freeze(now_s, driving=self._told != STANDSTILL)
-        if freeze:
-            self._stop(INFRARED_FROZEN, freeze)
+        self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off)
         return self._senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
@@ -182,6 +173,22 @@ class Kurt2:
             alarm=self._alarm,
             latched=self._guard.latched,
         )
+
+    def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool) -> None:
+        """Stop for what the newest senses show; `bus_off`: it was off since the last ones, if only for a moment."""
+        senses = self._senses
+        if bus_off or self._bus_state.off:
+            self._stop(BUS_OFF)
+        if foreign_control:
+            self._stop(FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it")
+        disobedience = self._wheel_watch.disobedience(
+            senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s
+        )
+        if disobedience:
+            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders and their cables")
+        freeze = self._infrared_watch.freeze(senses.time_s, driving=self._told != STANDSTILL)
+        if freeze:
+            self._stop(INFRARED_FROZEN, freeze)
 
     def _stop(self, reason: str, alarm: str = "") -> None:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it
