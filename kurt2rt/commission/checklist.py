@@ -48,7 +48,7 @@ class Checklist:
     async def walk(self, chosen: Sequence[Step], skipped: Sequence[Step] = ()) -> None:
         """Take the chosen steps in the checklist's order, note the skipped. Raises LeftError, BusError, OSError."""
         for step in skipped:
-            await self._keep(step, StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who))
+            await self._skip(step, "as was wished on the command line")
         # Whoever turns wheels is asked about the block first, in every session.
         moving = [step for step in chosen if step.moves]
         walked = [step for step in STEPS if step in chosen or (step is _LIFTED and moving and step not in skipped)]
@@ -65,12 +65,7 @@ class Checklist:
                 result = await self._result(step)
             except SkippedError as skipped:
                 self._bench.tell(f"skipped: {skipped}")
-                reason = (str(skipped),)
-                # A step that passed before has still passed.
-                before = self.progress.steps.get(step.name)
-                if before is None or before.outcome is not Outcome.PASSED:
-                    record = StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who, measured=reason)
-                    await self._keep(step, record)
+                await self._skip(step, str(skipped))
                 return
             again = await self._judge(step, result)
 
@@ -106,6 +101,12 @@ class Checklist:
         self._bench.tell(f"FAILED: {step.title}", Tone.BAD)
         choices = (Choice(_AGAIN, "repeat it, when that is mended"), Choice("", "go on"))
         return await self._bench.ask(Question(Asked.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
+
+    async def _skip(self, step: Step, why: str) -> None:
+        before = self.progress.steps.get(step.name)
+        if before is None or before.outcome is not Outcome.PASSED:  # what passed before has still passed
+            record = StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who, measured=(why,))
+            await self._keep(step, record)
 
     async def _keep(self, step: Step, record: StepRecord, result: Result | None = None) -> None:
         findings = self.progress.findings if result is None else result.findings

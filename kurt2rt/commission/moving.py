@@ -17,7 +17,7 @@ TURNS_SHARE = 0.3
 
 async def leave_to_move(bench: Bench, text: str) -> None:
     """Ask before wheels turn. Raises SkippedError."""
-    question = Question(Asked.MOVE, text, (Choice("", "turn them"), Choice(SKIP, "skip this step")))
+    question = Question(Asked.MOVE, text, (Choice("", "turn them"), Choice(SKIP, "do not turn them")))
     if await bench.ask(question) == SKIP:
         raise SkippedError("the wheels were not to turn")
 
@@ -43,9 +43,11 @@ def why_it_stood(drive: Drive) -> str | None:
     return None
 
 
-def rests_or_switch_off(bench: Bench, drive: Drive, result: Result) -> None:
-    """Say so at once when the brake did not bring the wheels to rest."""
-    if drive.rested_after_s is None:
-        heard = "still turn" if drive.after.encoder else "are not heard of any more"
-        result.to_do.append(f"The wheels {heard} after the brake: SWITCH THE MOTORS OFF, then look for the reason")
-        bench.tell(result.to_do[-1], Tone.BAD)
+def rests(bench: Bench, drive: Drive, result: Result) -> bool:
+    """Whether the brake brought the wheels to rest; says at once what to do when not. No step goes on then."""
+    if drive.rested_after_s is not None:
+        return True
+    heard = "still turn" if drive.after.encoder else "are not heard of any more"
+    result.to_do.append(f"The wheels {heard} after the brake: SWITCH THE MOTORS OFF, then look for the reason")
+    bench.tell(result.to_do[-1], Tone.BAD)
+    return False

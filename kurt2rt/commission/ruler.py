@@ -6,7 +6,7 @@ from hal.robot_settings import SensorSettings
 from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.findings import Findings, LawFound
 from kurt2rt.commission.law import Fit, Law, LawError, Reading, fit_law
-from kurt2rt.commission.person import SKIP, Asked, Choice, Question, Tone
+from kurt2rt.commission.person import SKIP, Asked, Choice, Question, SkippedError, Tone
 from kurt2rt.commission.sensors import SETTLE_S
 from kurt2rt.commission.step import Result
 
@@ -81,6 +81,8 @@ class RulerStep:
 async def _choose(bench: Bench, findings: Findings) -> tuple[SensorSettings, ...]:
     sensors = {sensor.name: sensor for sensor in bench.settings.infrared.sensors}
     usable = [name for name in sensors if name not in findings.dead_sensors]
+    if not usable:
+        raise SkippedError("no sensor answers: take the step sensors first")
     usual = next((name for name in usable if sensors[name].heading_deg == 0.0 and sensors[name].y_m == 0.0), usable[0])
     question = Question(
         Asked.WHICH,

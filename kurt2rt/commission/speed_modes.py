@@ -2,23 +2,25 @@
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
-from kurt2rt.commission.bench import Bench, Drive
+from kurt2rt.commission.bench import RAN_AWAY, Bench, Drive
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.moving import (
     DRIVE_S,
     TEST_SPEED_M_S,
     TURNS_SHARE,
     leave_to_move,
-    rests_or_switch_off,
+    rests,
     steady,
     why_it_stood,
 )
+from kurt2rt.commission.person import SkippedError
 from kurt2rt.commission.step import Result
 
 PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
 """Closed loops in the controller before the open one; SPEED_CM is the finer of the two."""
 _ACCURATE = (0.6, 1.6)
 """Measured speed against the set point's; outside of it the mode answers, but by another measure."""
+_AFTER_RUNAWAY = "an encoder that counts the wrong way does that: go on, step wheels tells which; then repeat this one"
 
 
 class SpeedModesStep:
@@ -36,13 +38,19 @@ class SpeedModesStep:
         result = Result(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         answering: list[SpeedMode] = []
         for mode in PREFERENCE:
-            await leave_to_move(bench, f"All wheels turn forward, then backward: mode {mode}.")
-            drives = []
+            try:
+                await leave_to_move(bench, f"All wheels turn forward, then backward: mode {mode}.")
+            except SkippedError:
+                result.tell(bench, f"{mode}: left out")
+                continue
+            drives: list[Drive] = []
             for sign in (1.0, -1.0):
                 wanted = WheelSpeeds(sign * TEST_SPEED_M_S, sign * TEST_SPEED_M_S)
-                drive = await bench.drive(mode, wanted, DRIVE_S)
-                rests_or_switch_off(bench, drive, result)
-                drives.append(drive)
+                drives.append(await bench.drive(mode, wanted, DRIVE_S))
+                if not rests(bench, drives[-1], result):
+                    return result
+                if why_it_stood(drives[-1]) is not None:
+                    break
             said = _judge(mode, drives, bench.settings, result)
             result.tell(bench, said)
             if all(_turned(drive, bench.settings) for drive in drives):
@@ -64,6 +72,9 @@ def _judge(mode: SpeedMode, drives: list[Drive], robot: RobotSettings, result: R
     """One line of what came; notes in the result what is wrong, and how fast 100 % is in SPEED mode."""
     for drive in drives:
         stood = why_it_stood(drive)
+        if stood == RAN_AWAY:
+            result.to_do.append(f"{mode}: {RAN_AWAY} and were braked; {_AFTER_RUNAWAY}")
+            return f"{mode}: {RAN_AWAY}"
         if stood is not None:
             result.to_do.append(f"{mode}: the wheels were kept from turning: {stood}")
             return f"{mode}: not tried out, {stood}"

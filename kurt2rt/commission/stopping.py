@@ -11,7 +11,7 @@ from kurt2rt.commission.moving import (
     TURNS_SHARE,
     leave_to_move,
     mode_found,
-    rests_or_switch_off,
+    rests,
     steady,
     why_it_stood,
 )
@@ -39,12 +39,14 @@ class StoppingStep:
         result = Result(findings.model_copy(update={"controller_watchdog_s": None}))
         await leave_to_move(bench, "All wheels turn forward; then the brake.")
         drive = await bench.drive(mode, _FORWARD, DRIVE_S)
-        rests_or_switch_off(bench, drive, result)
-        if _was_turning(bench, drive, result) and drive.rested_after_s is not None:
-            result.tell(bench, f"braked: the wheels stood {drive.rested_after_s * 1000:.0f} ms after the frame")
-            if drive.rested_after_s > BRAKED_WITHIN_S:
+        rested_s = drive.rested_after_s
+        if not rests(bench, drive, result) or rested_s is None:
+            return result
+        if _was_turning(bench, drive, result):
+            result.tell(bench, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
+            if rested_s > BRAKED_WITHIN_S:
                 result.to_do.append(
-                    f"The brake took {drive.rested_after_s:.2f} s, allowed are {BRAKED_WITHIN_S} s: "
+                    f"The brake took {rested_s:.2f} s, allowed are {BRAKED_WITHIN_S} s: "
                     "does the firmware know RAW and its brake bit?"
                 )
         await leave_to_move(bench, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")

@@ -10,7 +10,7 @@ from kurt2rt.commission.moving import (
     TURNS_SHARE,
     leave_to_move,
     mode_found,
-    rests_or_switch_off,
+    rests,
     steady,
     why_it_stood,
 )
@@ -43,7 +43,8 @@ class WheelsStep:
                 await leave_to_move(bench, f"The wheels of one side turn: {ordered}.")
                 wanted = WheelSpeeds(ordered.left * TEST_SPEED_M_S, ordered.right * TEST_SPEED_M_S)
                 drive = await bench.drive(mode, wanted, DRIVE_S)
-                rests_or_switch_off(bench, drive, result)
+                if not rests(bench, drive, result):
+                    return result
                 stood = why_it_stood(drive)
                 speeds = steady(drive, bench.settings)
                 counted = _counted(drive, bench.settings)

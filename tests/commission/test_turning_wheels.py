@@ -8,7 +8,7 @@ from hal.bus import open_bus
 from hal.guard import FOREIGN_CONTROL
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.commission.checklist import barring
-from kurt2rt.commission.person import Asked, Question, Tone
+from kurt2rt.commission.person import SKIP, Asked, Question, Tone
 from kurt2rt.commission.step import Outcome
 from kurt2rt.commission.wiring import Motion, Trial, parse_seen, what_to_rewire
 from tests.commission.wired_end import Wiring
@@ -58,13 +58,45 @@ async def test_what_a_hundred_per_cent_are_is_measured(tmp_path: Path) -> None:
 
 
 async def test_wheels_that_run_away_are_braked_at_once(tmp_path: Path) -> None:
-    wild = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"full_speed_m_s": 2.5})})
-    with Workshop(wild, Wiring(modes=[SpeedMode.SPEED])) as workshop:
+    with Workshop(wiring=Wiring(wild_modes=[SpeedMode.SPEED_CM])) as workshop:
         session = Session(workshop, tmp_path)
         await session.walk("modes")
-        assert max(map(abs, workshop.take_peaks())) < 0.55
-    assert "SPEED: the wheels were kept from turning: the wheels ran away" in session.to_do("modes")
-    assert session.progress.findings.speed_mode is None
+        assert max(map(abs, workshop.take_peaks())) < 0.6
+    (told,) = session.to_do("modes")
+    assert told.startswith("SPEED_CM: the wheels ran away and were braked; an encoder that counts the wrong way does ")
+
+
+async def test_an_encoder_that_makes_speed_loops_run_away_is_found_in_open_loop(tmp_path: Path) -> None:
+    closed = (SpeedMode.SPEED_CM, SpeedMode.SPEED)
+    session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(wild_modes=closed, reversed_encoders=[0]))
+    assert session.progress.findings.speed_mode is SpeedMode.RAW
+    assert len(session.to_do("modes")) == 2
+    assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
+
+
+async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
+    """Where it made the controller crash, for one."""
+
+    def leave_out(question: Question) -> str | None:
+        return SKIP if question.about is Asked.MOVE and "SPEED_CM" in question.text else None
+
+    session = await turned(tmp_path, "modes", instead=leave_out)
+    assert session.measured("modes")[0] == "SPEED_CM: left out"
+    assert session.progress.findings.speed_mode is SpeedMode.SPEED
+
+
+async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+
+        def crash(question: Question) -> None:
+            if question.about is Asked.MOVE:
+                workshop.robot.controller.dead = True
+
+        session = Session(workshop, tmp_path, crash)
+        await session.walk("modes")
+    (told,) = session.to_do("modes")
+    assert told.startswith("The wheels are not heard of any more after the brake: SWITCH THE MOTORS OFF")
+    assert [question.about for question in session.person.asked].count(Asked.MOVE) == 1
 
 
 async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
@@ -212,5 +244,5 @@ async def test_a_controller_that_does_not_stop_by_itself_is_braked_and_bars_driv
 async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path: Path) -> None:
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
-    assert "SWITCH THE MOTORS OFF" in session.person.lines(Tone.BAD)[0]
+    assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
     assert session.outcome("modes") is Outcome.FAILED

@@ -23,6 +23,8 @@ class Wiring:
 
     modes: Collection[SpeedMode] = tuple(SpeedMode)
     """Speed modes of the firmware; others change nothing, as junk does."""
+    wild_modes: Collection[SpeedMode] = ()
+    """Speed loops of the firmware that run away, as one does whose encoder counts the wrong way."""
     motors_exchanged: bool = False
     reversed_motors: Collection[int] = ()
     """Sides, 0 left, whose motor's leads are exchanged."""
@@ -82,7 +84,8 @@ class WiredEnd(InProcessBus):
                 -speed if side in wiring.reversed_motors else speed
                 for side, speed in enumerate(_at_plugs(sides, wiring))
             ]
-            return control._replace(left=signed[0], right=signed[1])
+            gain = 6 if SpeedMode(control.mode.name) in wiring.wild_modes else 1
+            return control._replace(left=gain * signed[0], right=gain * signed[1])
         if isinstance(control, RawControl):
             braking = control.left.brake and control.right.brake
             if not wiring.brake_works if braking else SpeedMode.RAW not in wiring.modes:
