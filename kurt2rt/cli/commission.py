@@ -100,7 +100,7 @@ def commission(
     _tell(console, f"{name} on {bus}; progress is kept in {path}; Ctrl-C brakes")
     for step in STEPS:
         record = progress.steps.get(step.name)
-        if step not in chosen and record is not None:
+        if step not in chosen and record is not None and step.name != "lifted":
             _tell(
                 console, f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
             )
@@ -126,6 +126,7 @@ async def _walk(
     with TimerfdClock() as clock:
         bench = Bench(base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, person, second_guard=True)
         checklist = Checklist(bench, progress, path, who, _now)
+        stopped = True
         async with anyio.create_task_group() as tasks:
             await tasks.start(_leave_on_signal, tasks.cancel_scope)
             with bench:  # inside of the scope: whatever ends it, the wheels are braked first
@@ -133,8 +134,9 @@ async def _walk(
                     await checklist.walk(chosen, skipped)
                 except LeftError:
                     _tell(console, "left; the same command goes on from here")
+                stopped = False  # not by a signal
             tasks.cancel_scope.cancel()
-        if tasks.cancel_scope.cancelled_caught:
+        if stopped:
             _tell(console, "stopped: the wheels are braked; the same command goes on from here")
         return checklist.progress
 

@@ -27,7 +27,7 @@ def type_at(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
 
 def test_a_person_types_and_the_file_is_written(type_at: Type, tmp_path: Path) -> None:
     with Workshop() as workshop, live(workshop):
-        commission_the_rest(type_at, workshop.spec, tmp_path)
+        commission_the_rest(type_at, workshop.spec, tmp_path, "stop")
 
 
 def test_ctrl_c_brakes_while_the_wheels_turn(tmp_path: Path) -> None:

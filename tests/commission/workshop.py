@@ -26,6 +26,7 @@ from simbridge.world_settings import StartPoseSettings, WorldSettings
 from tests.commission.wired_end import WiredEnd, Wiring
 
 BASE = load_robot()
+CODEC = load_codec()
 TODAY = "2026-11-21 15:00"
 _SIDE_M = 6.0
 _PARKED_M = (0.5, 0.5)
@@ -190,7 +191,7 @@ class Session:
                 Bench(
                     BASE,
                     lambda settings: Kurt2(settings, open_bus(spec)),
-                    Listener(open_bus(spec), load_codec()),
+                    Listener(open_bus(spec), CODEC),
                     LockstepClock(self.workshop.step),
                     self.person,
                     second_guard=False,

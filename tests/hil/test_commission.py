@@ -14,4 +14,4 @@ def test_a_person_types_and_the_file_is_written(
     vcan0: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     with Workshop(spec=vcan0) as workshop, live(workshop):
-        commission_the_rest(typing(monkeypatch, capfd, tmp_path), vcan0, tmp_path)
+        commission_the_rest(typing(monkeypatch, capfd, tmp_path), vcan0, tmp_path, "identity", "stop")
