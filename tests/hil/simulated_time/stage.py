@@ -31,6 +31,9 @@ class Story:
     infrared_silent_s: float | None = None
     tick_hangs: int | None = None
     """Number of the decision that hangs."""
+    wall_clock_set_s: float | None = None
+    wall_clock_by_s: float = 0.0
+    """Forward, or back where negative."""
     runtime_killed_s: float | None = None
     runtime_stopped_s: float | None = None
     """By SIGSTOP, for a second."""
@@ -82,6 +85,9 @@ def put_on(stage: Stage, story: Story) -> None:
     sleep_until(began_s + _STARTING_S + story.phase_s)
     hangs = () if story.tick_hangs is None else (story.tick_hangs,)
     runtime = stage.program("runtime", story.seconds - 2 * _STARTING_S, *hangs)
+    if story.wall_clock_set_s is not None:
+        sleep_until(began_s + story.wall_clock_set_s)
+        time.clock_settime(time.CLOCK_REALTIME, time.time() + story.wall_clock_by_s)
     if story.runtime_stopped_s is not None:
         stage.signal_at(began_s + story.runtime_stopped_s, runtime, signal.SIGSTOP, "runtime stopped")
         if story.robot_stopped_s is not None:
