@@ -24,8 +24,8 @@ from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
 from kurt2rt.commission.listener import Listener
 from kurt2rt.commission.person import LeftError
-from kurt2rt.commission.progress import Progress, load_progress
-from kurt2rt.commission.report import print_report
+from kurt2rt.commission.progress import Progress, load_progress, write_durably
+from kurt2rt.commission.report import as_text, print_report
 from kurt2rt.commission.robot_file import write_robot_file
 from kurt2rt.commission.step import Outcome, Step
 from kurt2rt.commission.typing_person import TypingPerson
@@ -106,6 +106,9 @@ def commission(
             )
     taken = anyio.run(_walk, bus, base, progress, path, chosen, skipped, who or _user(), console)
     print_report(taken, STEPS, console)
+    report = path.with_suffix(".txt")
+    write_durably(report, as_text(taken, STEPS))
+    _tell(console, f"all that was measured: {report}")
     _conclude(console, taken, base, target)
     if any(taken.steps[step.name].outcome is Outcome.FAILED for step in chosen if step.name in taken.steps):
         raise typer.Exit(1)

@@ -18,6 +18,22 @@ def passed(progress: Progress, steps: Sequence[Step]) -> bool:
     return all(step.name in progress.steps and progress.steps[step.name].outcome is Outcome.PASSED for step in steps)
 
 
+def as_text(progress: Progress, steps: Sequence[Step]) -> str:
+    """Everything that is kept about each step, to be filed."""
+    verdict = "PASSED" if passed(progress, steps) else "not passed"
+    lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {verdict}"]
+    for step in steps:
+        record = progress.steps.get(step.name)
+        lines += ["", f"{step.title}  [{step.name}]"]
+        if record is None:
+            lines.append("  not taken")
+            continue
+        lines.append(f"  {record.outcome}, {record.at} UTC, {record.who}")
+        lines += [f"    {each}" for each in record.measured]
+        lines += [f"  TO DO: {each}" for each in record.to_do]
+    return "\n".join(lines) + "\n"
+
+
 def print_report(progress: Progress, steps: Sequence[Step], console: Console) -> None:
     """Table, what is to be done, verdict."""
     table = Table("step", "outcome", "when (UTC)", "who", box=SIMPLE_HEAD)

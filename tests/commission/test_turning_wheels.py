@@ -74,6 +74,22 @@ async def test_an_encoder_that_makes_speed_loops_run_away_is_found_in_open_loop(
     assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
 
 
+async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are_named(tmp_path: Path) -> None:
+    """The high-speed variant has 5120 ticks in a turn, not 21950."""
+    coarse = BASE.model_copy(update={"geometry": BASE.geometry.model_copy(update={"metres_per_tick": 0.000074})})
+    session = await turned(tmp_path, "modes", true=coarse)
+    (told,) = session.to_do("modes")
+    assert told.startswith("SPEED_CM: 0.23 times as fast as told, by the encoders. Turn a wheel once by hand: 21938 ")
+    assert session.progress.findings.speed_mode is SpeedMode.SPEED_CM
+    assert [step.name for step in barring(session.progress)] == ["modes"]
+
+
+async def test_what_is_wrong_with_a_mode_that_is_not_needed_is_no_matter(tmp_path: Path) -> None:
+    session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
+    assert session.outcome("modes") is Outcome.PASSED
+    assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
+
+
 async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
     """Where it made the controller crash, for one."""
 

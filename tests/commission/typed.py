@@ -89,5 +89,8 @@ def commission_the_rest(type_at: Type, spec: str, folder: Path, *steps: str) -> 
     robot = load_robot(str(folder / "var" / "robots" / "robbie.yaml"))
     assert robot.can.speed_mode is SpeedMode.SPEED
     assert 0.1 <= robot.motors.controller_watchdog_s <= 1.0
+    report = (folder / PROGRESS).with_suffix(".txt").read_text(encoding="utf-8")
+    assert report.startswith(f"robbie on {spec}, begun with kurt2: PASSED\n")
+    assert "    without CONTROL: the drive dropped out after " in report
     kept = load_progress(folder / PROGRESS)
     assert kept.steps["stop"].who == "bert"
