@@ -4,7 +4,6 @@ import sqlite3
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Self
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.place import Disturbance, SimulatedTime
@@ -32,11 +31,13 @@ class _DisturbedJournal(Journal):
     simulated: SimulatedTime
     waits_until_s: float | None = None
     """Simulated time until which a write waits; None while none does."""
+    given_up = False
+    """The drill is over: nothing fails or waits any more."""
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         """Write, with what the fault does to it. Raises KnowledgeError."""
         now_s = self.simulated.now_s()
-        if not self.disturbance.acts(now_s):
+        if self.given_up or not self.disturbance.acts(now_s):
             return super().append(entries)
         match self.disturbance.kind:
             case "off" | "intermittent":
@@ -57,7 +58,7 @@ class _DisturbedJournal(Journal):
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s
-        while self.simulated.now_s() < until_s:
+        while self.simulated.now_s() < until_s and not self.given_up:
             time.sleep(_LOOK_S)
         self.waits_until_s = None
 
@@ -115,7 +116,8 @@ class FailingDisk:
         self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
 
     def close(self) -> None:
-        """Write what is left and close the file. Raises KnowledgeError."""
+        """Write what is left and close the file; may be called twice. Raises KnowledgeError."""
+        self._journal.given_up = True
         self._writer.close()
 
     def what_it_lost(self) -> str:
@@ -134,12 +136,6 @@ class FailingDisk:
             return self._writer.trouble is None
         fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
         return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 def _exchange(path: Path, away: Path) -> None:

@@ -58,6 +58,7 @@ class _Drill:
         task: TaskSettings,
         chance: random.Random,
         keeper: LessonKeeper,
+        recorder: FailingRecorder | None,
     ) -> None:
         self._place = place
         self._case = case
@@ -74,6 +75,7 @@ class _Drill:
             place, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
         )
         self.latched_in_the_end: str | None = None
+        self._ended_by = ""
         self._answers = 0
         # The ticks' phase against the controller's cycle.
         self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
@@ -86,10 +88,9 @@ class _Drill:
             self.link = HandLink(self._time, place.disturbance, self._runtime, chance)
             self.link.press()
             self.link.start()
-        self.recorder: FailingRecorder | None = None
-        if case.target == "recorder":
-            self.recorder = FailingRecorder(self._time, place.disturbance)
-            place.look_on(self.recorder.tap)
+        self.recorder = recorder
+        if recorder is not None:
+            place.look_on(recorder.tap)
         self._plan()
 
     async def run(self) -> None:
@@ -124,6 +125,7 @@ class _Drill:
             longest_stand_s=max((each.to_s - each.from_s for each in stands), default=0.0),
             latched=self.latched_in_the_end,
             latched_after_s=None if witness.latched is None else witness.latched[0] - begin_s,
+            ended_by=self._ended_by,
             drove_by_itself=any(end_s < at_s <= self._word_at_s for at_s in witness.drove_at_s),
             drove_when_told=any(at_s > self._word_at_s for at_s in witness.drove_at_s),
             oldest_age_s=witness.envelope.oldest_age_s,
@@ -187,7 +189,7 @@ class _Drill:
             raise
         except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the service
             self._place.robot.emergency_stop(SERVICE_ENDS)
-            self.ended_by = repr(error)
+            self._ended_by = repr(error)
 
     def _start_anew(self) -> None:
         """What a supervisor does, and a teacher afterwards."""
@@ -228,7 +230,7 @@ async def drill(
         case.target,
         case.kind,
         begin_s=schedule.begins_at_s,
-        end_s=schedule.begins_at_s + schedule.lasts_s,
+        end_s=schedule.begins_at_s + (case.must.lasts_s or schedule.lasts_s),
         period_s=case.must.period_s,
         delay_s=case.must.delay_s,
         seed=seed,
@@ -243,7 +245,11 @@ async def drill(
             disk = FailingDisk(place.time, place.disturbance, folder / "drill.knowledge", settings, task)
             keeper = disk
             stack.callback(disk.close)
-        running = _Drill(place, case, table, settings, task, chance, keeper)
+        recorder: FailingRecorder | None = None
+        if case.target == "recorder":
+            recorder = FailingRecorder(place.time, place.disturbance)
+            stack.callback(recorder.close)
+        running = _Drill(place, case, table, settings, task, chance, keeper, recorder)
         await running.run()
         if disk is not None:
             disk.close()

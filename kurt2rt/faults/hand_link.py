@@ -17,10 +17,13 @@ TEACHER = "ann"
 _BOOT = bytes(BOOT_BYTES)
 _SPEEDS_M_S = (0.3, 0.28)
 _SWERVES_EVERY_S = 0.25
+_ROUNDING_S = 1e-9
 
 
 class HandLink:
     """Messages of a press, as bytes, on their way from the teacher's device to the robot's reception.
+
+    Past the keys: what they would refuse already, garbled bytes and copies, has to be refused by the rules behind them.
 
     off: none arrives. stuck: the last one arrives again and again. garbage: bytes of chance. wrong: well-formed, and
     far too fast. slow: few. delayed: late. intermittent: none for a while, again and again.
@@ -68,7 +71,7 @@ class HandLink:
                 speeds_m_s = (HIGHEST_SPEED_M_S, HIGHEST_SPEED_M_S / 2)
                 self._arrive(self._number, self._message(*(speeds_m_s[::-1] if left else speeds_m_s)))
             case "slow":
-                if now_s - self._passed_at_s >= disturbance.period_s:
+                if now_s - self._passed_at_s > disturbance.period_s - _ROUNDING_S:
                     self._passed_at_s = now_s
                     self._arrive(*message)
             case "delayed":

@@ -58,7 +58,8 @@ def _about_standing(must: CaseSettings, outcome: Outcome) -> list[str]:
 
 def _about_the_latch(must: CaseSettings, outcome: Outcome) -> list[str]:
     if outcome.latched != must.latches:
-        return [f"must stay stopped because of {must.latches}, it was {outcome.latched}"]
+        said = f"{outcome.latched} ({outcome.ended_by})" if outcome.ended_by else outcome.latched
+        return [f"must stay stopped because of {must.latches}, it was {said}"]
     if must.latches_within_s is None or outcome.latched_after_s is None:
         return []
     if outcome.latched_after_s > must.latches_within_s:

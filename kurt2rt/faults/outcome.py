@@ -32,6 +32,8 @@ class Outcome:
     latched: str | None
     """Why it was stopped for good when the fault was over, in the guard's word; None when it was not."""
     latched_after_s: float | None
+    ended_by: str
+    """The error that ended the service; empty when none did."""
     drove_by_itself: bool
     """Whether it drove when the fault was over, before anybody said anything."""
     drove_when_told: bool

@@ -20,7 +20,7 @@ class _FailingWriter:
 
     def __init__(self, simulated: SimulatedTime, disturbance: Disturbance) -> None:
         self.waits_until_s: float | None = None
-        self.kept = 0
+        self.given_up = False
         self._simulated = simulated
         self._disturbance = disturbance
 
@@ -40,14 +40,13 @@ class _FailingWriter:
                     self._wait(self._disturbance.end_s)
                 case "slow" | "delayed":
                     self._wait(now_s + self._disturbance.delay_s)
-        self.kept += len(frames)
 
     def close(self) -> None:
         """No more comes."""
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s
-        while self._simulated.now_s() < until_s:
+        while self._simulated.now_s() < until_s and not self.given_up:
             time.sleep(_LOOK_S)
         self.waits_until_s = None
 
@@ -63,7 +62,6 @@ class FailingRecorder:
         self._writer = _FailingWriter(simulated, disturbance)
         self._simulated = simulated
         self._log = CanLog(self._writer, "a drill's", "sim", _ROOM_FRAMES)
-        self._noted = 0
         self._thread: threading.Thread | None = None
         simulated.every(_PERIOD_S, _PERIOD_S, self._write)
 
@@ -76,6 +74,12 @@ class FailingRecorder:
     def lost(self) -> int:
         """Frames that are not in the file, as the log counts them."""
         return self._log.lost
+
+    def close(self) -> None:
+        """The drill is over: nobody waits any more."""
+        self._writer.given_up = True
+        if self._thread is not None:
+            self._thread.join()
 
     def _write(self) -> None:
         self._keep_in_step()

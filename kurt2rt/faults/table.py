@@ -62,6 +62,8 @@ class CaseSettings(Settings):
     """slow: between two that come, or time constant. intermittent: each span of failing, and each of working."""
     delay_s: Seconds = 1.0
     """How late, or how long something hangs each time."""
+    lasts_s: Seconds | None = None
+    """Where it is not the schedule's time."""
     stop_said_after_s: Seconds | None = None
     """A teacher says stop so long after the fault began, to see whether the robot still obeys."""
     leads_to: LeadsTo

@@ -43,6 +43,8 @@ class Witness:
         now_s = self._place.time.now_s()
         if record.grant.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
+            if not record.decision.driving:
+                self.envelope.violations.append(f"at {now_s:.3f} s: drives though {record.decision.cause}")
         else:
             # A layer that wants to drive is not why the robot stands.
             cause = () if record.decision.driving else (str(record.decision.cause),)
@@ -52,10 +54,11 @@ class Witness:
         """When the robot was told to stand, or heard nothing for so long that its own watchdog stopped it."""
         stands: list[Stand] = []
         state, since_s, heard_at_s = True, 0.0, 0.0
-        for at_s, standing in [*self._arrivals, (end_s, True)]:
+        heard = [each for each in self._arrivals if each[0] < end_s]
+        for at_s, standing in (*heard, (end_s, True)):
             if not state and at_s - heard_at_s >= self._controller_watchdog_s:
                 state, since_s = True, heard_at_s + self._controller_watchdog_s
-            if at_s >= end_s:
+            if at_s == end_s:
                 break
             if standing != state:
                 if state:

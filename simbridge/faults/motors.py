@@ -11,6 +11,8 @@ from simbridge.wheels import Wheels
 
 Side = Literal["left", "right"]
 _FASTEST_M_S = 0.9
+_WHIM_CYCLES = 40
+"""A motor with a whim every cycle would hardly move."""
 
 
 class _Order(NamedTuple):
@@ -21,8 +23,8 @@ class _Order(NamedTuple):
 class DisturbedWheels(Wheels):
     """The wheels, with one side's motor disturbed.
 
-    off: it gets no current and rolls out. stuck: it goes on as it was last told, brake or not. garbage: it does
-    anything. wrong: it turns the other way. slow: it follows with a time constant of the disturbance's period.
+    off: it gets no current and rolls out. stuck: it goes on as it was last told, brake or not. garbage: it
+    does anything. wrong: it turns the other way. slow: it follows with a time constant of the disturbance's period.
     delayed: it does everything late. intermittent: its cable has a loose contact.
     """
 
@@ -39,6 +41,8 @@ class DisturbedWheels(Wheels):
         self._late_cycles = max(1, round(disturbance.delay_s / robot.can.cycle_s))
         self._slow_share = min(1.0, robot.can.cycle_s / disturbance.period_s) if disturbance.period_s else 1.0
         self._slow_m_s = 0.0
+        self._whim_m_s = 0.0
+        self._whims = 0
 
     def turn(
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False
@@ -64,7 +68,10 @@ class DisturbedWheels(Wheels):
             case "stuck":
                 return self._last
             case "garbage":
-                return _Order(self._chance.uniform(-_FASTEST_M_S, _FASTEST_M_S), brake=False)
+                if self._whims % _WHIM_CYCLES == 0:
+                    self._whim_m_s = self._chance.uniform(-_FASTEST_M_S, _FASTEST_M_S)
+                self._whims += 1
+                return _Order(self._whim_m_s, brake=False)
             case "wrong":
                 return _Order(-order.target_m_s, order.brake)
             case "slow":

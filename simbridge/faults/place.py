@@ -54,7 +54,6 @@ class FaultyPlace:
         self._settings = settings
         self._part = part
         self._chance = chance
-        self._codec = load_codec(settings.can.database)
         self._spec = f"faults-{uuid.UUID(int=chance.getrandbits(128))}-{id(self)}"
         self._put = self._carried = 0
         self._notebooks_end: DisturbedEnd | None = None
@@ -133,8 +132,11 @@ class FaultyPlace:
             self.on_control(self._carried, bytes(frame.data))
 
     def _way_of_telemetry(self) -> Way:
+        if self._part not in ("encoders", "sensor_board_1", "sensor_board_2"):
+            return StraightWay()
+        codec = load_codec(self._settings.can.database)
         if self._part == "encoders":
-            encoder = self._codec.message("ENCODER")
+            encoder = codec.message("ENCODER")
             return DisturbedWay(
                 self.disturbance,
                 self.time,
@@ -144,18 +146,19 @@ class FaultyPlace:
                 freeze=lambda _: encoder.pack(0, 0),
                 falsify=lambda frame: [encoder.pack(*(-ticks for ticks in encoder.unpack(frame.data)))],
             )
-        if self._part == "sensor_board_1" or self._part == "sensor_board_2":
-            letters = _BOARD_LETTERS[self._part]
-            board = {each for each, message in self._codec.by_id.items() if message.name.startswith(letters)}
-            return DisturbedWay(
-                self.disturbance, self.time, self._chance, board, falsify=lambda frame: [self._far_for_near(frame)]
-            )
-        return StraightWay()
+        letters = _BOARD_LETTERS[self._part]
+        board = {each: message for each, message in codec.by_id.items() if message.name.startswith(letters)}
+
+        def show_far_for_near(frame: can.Message) -> list[can.Message]:
+            message = board[frame.arbitration_id]
+            return [message.pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in message.unpack(frame.data)))]
+
+        return DisturbedWay(self.disturbance, self.time, self._chance, board.keys(), falsify=show_far_for_near)
 
     def _way_in(self) -> Way:
         if self._part != "bus_in":
             return StraightWay()
-        last_of_a_cycle = self._codec.message("BUMPERC").frame_id
+        last_of_a_cycle = load_codec(self._settings.can.database).message("BUMPERC").frame_id
 
         def hear_somebody_else(frame: can.Message) -> list[can.Message]:
             return [frame, _SOMEBODY_ELSES_ORDER] if frame.arbitration_id == last_of_a_cycle else [frame]
@@ -174,11 +177,6 @@ class FaultyPlace:
             case "right_motor":
                 return DisturbedWheels(self._settings, self.disturbance, "right", self.time, self._chance)
         return None
-
-    def _far_for_near(self, frame: can.Message) -> can.Message:
-        """Readings that show as far what is near; their noise stays."""
-        message = self._codec.by_id[frame.arbitration_id]
-        return message.pack(*(max(0, _FLOOR_AND_PLATEAU - counts) for counts in message.unpack(frame.data)))
 
 
 class _Watched:

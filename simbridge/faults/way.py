@@ -11,6 +11,8 @@ from hal.frame import Frame
 from simbridge.faults.disturbance import Disturbance
 from simbridge.faults.event_time import EventTime
 
+_ROUNDING_S = 1e-9
+
 Arrive = Callable[[can.Message], None]
 
 
@@ -82,7 +84,8 @@ class DisturbedWay:
                 for each in self._falsify(frame):
                     arrive(each)
             case "slow":
-                if now_s - self._passed_at_s.get(frame_id, self._disturbance.begin_s) >= self._disturbance.period_s:
+                passed_at_s = self._passed_at_s.get(frame_id, self._disturbance.begin_s)
+                if now_s - passed_at_s > self._disturbance.period_s - _ROUNDING_S:
                     self._passed_at_s[frame_id] = now_s
                     arrive(frame)
             case "delayed":

@@ -18,6 +18,7 @@ STOOD = Outcome(
     longest_stand_s=1.9,
     latched="ticks ceased",
     latched_after_s=0.105,
+    ended_by="",
     drove_by_itself=False,
     drove_when_told=True,
     oldest_age_s=0.0,

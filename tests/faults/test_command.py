@@ -1,0 +1,92 @@
+"""`kurt2rt faults`, as it is typed."""
+
+import inspect
+import json
+from pathlib import Path
+
+import pytest
+import typer
+import yaml
+from typer.testing import CliRunner
+
+import kurt2rt.service
+from config import CONFIG_DIR
+from kurt2rt.cli.faults import faults
+from kurt2rt.faults.drill import SERVICE_ENDS, DidNotDriveError
+
+
+@pytest.fixture
+def app() -> typer.Typer:
+    app = typer.Typer()
+    app.command()(faults)
+    return app
+
+
+def run(app: typer.Typer, *arguments: str) -> tuple[int, str]:
+    result = CliRunner(env={"COLUMNS": "120"}).invoke(app, arguments)
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.exit_code, result.output
+
+
+def changed_table(tmp_path: Path, **update: object) -> str:
+    content = yaml.safe_load((CONFIG_DIR / "faults" / "kurt2.yaml").read_text())
+    content["cases"]["tick"]["stuck"].update(update)
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return str(path)
+
+
+def test_some_cases_print_their_matrix_and_write_json(app: typer.Typer, tmp_path: Path) -> None:
+    file = tmp_path / "faults.json"
+    arguments = ("--target", "tick", "--kind", "stuck", "--kind", "wrong", "--seeds", "2", "--json", str(file))
+    exit_code, said = run(app, *arguments)
+    assert exit_code == 0, said
+    assert "2 cases, 4 trials, 0 not as they must be" in said
+    assert "tick hung" in said
+    report = json.loads(file.read_text(encoding="utf-8"))
+    (hung,) = report["stop_times"]
+    assert hung["trials"] == 2
+    assert 0.1 <= hung["median_s"] <= hung["worst_s"] <= 0.11
+    assert [(row["kind"], row["seed"], row["passed"]) for row in report["trials"]] == [
+        ("stuck", 1, True),
+        ("stuck", 2, True),
+        ("wrong", 1, True),
+        ("wrong", 2, True),
+    ]
+    assert report["trials"][0]["last"]["because"] == ["ticks ceased"]
+
+
+def test_what_is_not_as_the_table_says_ends_with_code_1(app: typer.Typer, tmp_path: Path) -> None:
+    table = changed_table(tmp_path, within_s=0.05)
+    exit_code, said = run(app, "--target", "tick", "--kind", "stuck", "--table", table)
+    assert exit_code == 1
+    assert "tick stuck, seed 1: must stand within 50 ms, took 10" in said
+    assert "NOT SO" in said
+
+
+def test_a_known_gap_is_said(app: typer.Typer, tmp_path: Path) -> None:
+    table = changed_table(tmp_path, because="bus lost", known_gap="nobody knows why")
+    exit_code, said = run(app, "--target", "tick", "--kind", "stuck", "--table", table)
+    assert exit_code == 0
+    assert "tick stuck: known gap: nobody knows why" in said
+    assert "1 known gaps" in said
+
+
+@pytest.mark.parametrize(("option", "name"), [("--target", "wings"), ("--kind", "tired")])
+def test_what_cannot_fail_is_refused_with_what_can(app: typer.Typer, option: str, name: str) -> None:
+    exit_code, said = run(app, option, name)
+    assert exit_code == 2
+    assert f"there is no {name}; give some of" in said
+
+
+def test_a_robot_that_stands_anyway_shows_nothing(app: typer.Typer, tmp_path: Path) -> None:
+    content = yaml.safe_load((CONFIG_DIR / "faults" / "kurt2.yaml").read_text())
+    path = tmp_path / "standing.yaml"
+    path.write_text(yaml.safe_dump({**content, "action": "stand"}))
+    with pytest.raises(DidNotDriveError, match="tick stuck: the robot stands before anything fails"):
+        run(app, "--target", "tick", "--kind", "stuck", "--table", str(path))
+
+
+def test_the_drill_ends_as_the_service_does() -> None:
+    assert f'robot.emergency_stop("{SERVICE_ENDS}")' in inspect.getsource(kurt2rt.service)
