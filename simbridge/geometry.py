@@ -20,6 +20,11 @@ def is_convex(corners: Sequence[Point]) -> bool:
     return bool(polygon.is_valid) and len(shapely.get_coordinates(polygon.convex_hull)) == len(corners) + 1
 
 
+def polygons_of(shape: shapely.Geometry) -> list[shapely.Polygon]:
+    """The polygons that a shape is made of, without the empty ones; lines and points are left out."""
+    return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and not part.is_empty]
+
+
 def point_distance_m(point: Point, edge: Edge) -> float:
     """Distance of a point from an edge."""
     (ax, ay), (bx, by) = edge

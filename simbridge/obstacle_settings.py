@@ -3,12 +3,13 @@
 import math
 from typing import Annotated, Self
 
+import shapely
 from pydantic import Field, field_validator, model_validator
 
 from hal.settings import Settings
-from simbridge.geometry import Point, is_convex, rectangle
+from simbridge.geometry import Point, rectangle
 
-Coordinate = Annotated[float, Field(ge=-50, le=50)]
+Coordinate = Annotated[float, Field(ge=-200, le=200)]
 Corner = tuple[Coordinate, Coordinate]
 
 
@@ -55,16 +56,17 @@ class RoundObstacleSettings(Settings):
 
 
 class PolygonObstacleSettings(Settings):
-    """A box with straight sides; convex, since the physics takes the hull of anything else without a word."""
+    """A box, a block or an island with straight sides, which may bend inwards too."""
 
     name: str
     corners: Annotated[tuple[Corner, ...], Field(min_length=3)]
 
     @field_validator("corners")
     @classmethod
-    def _is_convex(cls, corners: tuple[Corner, ...]) -> tuple[Corner, ...]:
-        if not is_convex(corners):
-            raise ValueError("must be convex, each corner named once; build another shape from several convex ones")
+    def _is_simple(cls, corners: tuple[Corner, ...]) -> tuple[Corner, ...]:
+        polygon = shapely.Polygon(corners)
+        if len(set(corners)) < len(corners) or not polygon.is_valid or polygon.area == 0:
+            raise ValueError("its sides must enclose one area: each corner is named once, no side crosses another")
         return corners
 
     def moved(self, dx_m: float, dy_m: float) -> Self:

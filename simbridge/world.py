@@ -1,8 +1,10 @@
 """The walls of a world in the physics engine: what the robot bumps into."""
 
+from collections.abc import Sequence
+
 import pymunk
 
-from simbridge.geometry import edges_of
+from simbridge.geometry import Point, edges_of, is_convex
 from simbridge.world_settings import WorldSettings
 
 ROBOT_KIND = 1
@@ -23,13 +25,15 @@ class World:
         self.space = pymunk.Space()
         self.space.collision_slop = _CONTACT_SLOP_M
         self._bodies: dict[str, pymunk.Body] = {}
-        # Radius 0: outline corners are the inner faces themselves.
-        for a, b in edges_of(settings.outline[:-1]):
-            self._add_shape(pymunk.Segment(self.space.static_body, a, b, 0.0))
+        self._add_faces(self.space.static_body, settings.outline[:-1])
         for wall in settings.walls:
             self._add_shape(pymunk.Poly(self._add_body(wall.name), wall.corners))
         for box in settings.polygon_obstacles:
-            self._add_shape(pymunk.Poly(self._add_body(box.name), box.corners))
+            body = self._add_body(box.name)
+            if is_convex(box.corners):
+                self._add_shape(pymunk.Poly(body, box.corners))
+            else:  # of which the engine would take the hull, without a word
+                self._add_faces(body, box.corners)
         for post in settings.round_obstacles:
             self._add_shape(pymunk.Circle(self._add_body(post.name), post.radius_m, (post.x_m, post.y_m)))
 
@@ -45,6 +49,11 @@ class World:
         self._bodies[name] = body
         self.space.add(body)
         return body
+
+    def _add_faces(self, body: pymunk.Body, corners: Sequence[Point]) -> None:
+        # Radius 0: the corners are those of the faces themselves.
+        for a, b in edges_of(corners):
+            self._add_shape(pymunk.Segment(body, a, b, 0.0))
 
     def _add_shape(self, shape: pymunk.Shape) -> None:
         shape.friction = WALL_FRICTION

@@ -1,15 +1,15 @@
-"""Schema of `config/worlds/*.yaml`: outline, walls, obstacles and start poses of one world. Lengths in metres."""
+"""Schema of `config/worlds/*.yaml`: outline, walls, obstacles, streets and start poses. Lengths in metres."""
 
 import math
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import Annotated, Literal, Self
 
 import shapely
 from pydantic import Field, field_validator, model_validator
 
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
-from hal.settings import Settings, SettingsError, find_config, load_settings
-from simbridge.geometry import Point, rectangle
+from hal.settings import Settings
+from simbridge.geometry import Point, polygons_of, rectangle
 from simbridge.obstacle_settings import (
     Coordinate,
     Corner,
@@ -19,10 +19,10 @@ from simbridge.obstacle_settings import (
 )
 from simbridge.pose import Pose
 
-START_CLEARANCE_M = 0.05
-"""A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
+Size = Annotated[float, Field(gt=0, le=200)]
 
-Size = Annotated[float, Field(gt=0, le=50)]
+_ALIKE_M = 0.01
+_ALIKE_DEG = 1.0
 
 
 class StartPoseSettings(Settings):
@@ -38,6 +38,14 @@ class StartPoseSettings(Settings):
         return Pose(self.x_m, self.y_m, math.radians(self.heading_deg))
 
 
+class StreetSettings(Settings):
+    """A straight street between blocks, by its middle line; streets end in the middle of the junction they end at."""
+
+    from_m: Corner
+    to_m: Corner
+    width_m: Annotated[float, Field(gt=0, le=20)]
+
+
 class WorldSettings(Settings):
     """One world, whole. The outline's corners are the inner faces of the outer walls."""
 
@@ -48,6 +56,8 @@ class WorldSettings(Settings):
     walls: tuple[WallSettings, ...] = ()
     round_obstacles: tuple[RoundObstacleSettings, ...] = ()
     polygon_obstacles: tuple[PolygonObstacleSettings, ...] = ()
+    streets: tuple[StreetSettings, ...] = ()
+    """For measures only: nothing is built from them."""
     start_poses: Annotated[tuple[StartPoseSettings, ...], Field(min_length=1)]
 
     @field_validator("outline")
@@ -73,6 +83,15 @@ class WorldSettings(Settings):
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
             raise ValueError(f"two walls or obstacles share the name {', '.join(twice)}")
+        room = shapely.Polygon(self.outline)
+        for name, shape in zip(names, self.shapes, strict=True):
+            # One that crosses the outline stands against it, which is how most walls do.
+            if room.intersection(shape).area == 0:
+                raise ValueError(f"{name} stands outside the outline; move it inside, or leave it out")
+        for (i, one), (k, other) in combinations(enumerate(self.start_poses), 2):
+            turn_deg = abs(math.remainder(one.heading_deg - other.heading_deg, 360.0))
+            if math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) < _ALIKE_M and turn_deg < _ALIKE_DEG:
+                raise ValueError(f"start_poses.{i} and start_poses.{k} are alike; leave one out")
         return self
 
     @property
@@ -88,6 +107,32 @@ class WorldSettings(Settings):
     def solids(self) -> list[tuple[Point, ...]]:
         """Corners of every wall and box inside the outline."""
         return [*(wall.corners for wall in self.walls), *(box.corners for box in self.polygon_obstacles)]
+
+    @property
+    def shapes(self) -> list[shapely.Polygon]:
+        """Everything inside the outline as polygons, in the order of `names`; posts have many corners."""
+        posts = [shapely.Point(post.x_m, post.y_m).buffer(post.radius_m) for post in self.round_obstacles]
+        walls, boxes = self.walls, self.polygon_obstacles
+        return [
+            *(shapely.Polygon(wall.corners) for wall in walls),
+            *posts,
+            *(shapely.Polygon(box.corners) for box in boxes),
+        ]
+
+    @property
+    def free_space(self) -> shapely.Polygon | shapely.MultiPolygon:
+        """Where nothing stands: the inside of the outline without walls and obstacles, in one piece or several."""
+        free = shapely.Polygon(self.outline).difference(shapely.union_all(self.shapes))
+        # With sides that only touch, the difference may come with lines.
+        return free if isinstance(free, shapely.Polygon) else shapely.MultiPolygon(polygons_of(free))
+
+    @property
+    def junctions(self) -> list[Point]:
+        """Where two streets meet, from left to right and from below."""
+        lines = [shapely.LineString([street.from_m, street.to_m]) for street in self.streets]
+        places = [one.intersection(other) for one, other in combinations(lines, 2)]
+        # Rounded, since three streets that meet do so in three pairs.
+        return sorted({(round(at.x, 6), round(at.y, 6)) for at in places if isinstance(at, shapely.Point) and at})
 
     def moved(self, name: str, dx_m: float, dy_m: float) -> Self:
         """The same world with one named wall or obstacle moved. Raises KeyError that lists the names."""
@@ -117,18 +162,13 @@ class WorldSettings(Settings):
 
 
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
-    """Settings of a shipped world by name, or of a file by path; the robot (KURT2 unless given) must fit each start.
+    """A world that the robot (KURT2 unless given) can drive in: shipped or generated by name, or a file by path.
 
+    Names: those in config/worlds, `rooms-17` and `streets-17` for any number (simbridge.world_generator). Files: a
+    world, a map of ROS's map_server, or a world on such a map (simbridge.map_server).
     Raises hal.settings.SettingsError that names file and key.
     """
-    path = find_config("worlds", name_or_path)
-    world = load_settings(path, WorldSettings)
-    geometry = (robot or load_robot()).geometry
-    for i, start in enumerate(world.start_poses):
-        clear_m = world.clearance_m(start.pose, geometry)
-        if clear_m < START_CLEARANCE_M:
-            raise SettingsError(
-                f"{path}: start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, "
-                f"allowed is at least {START_CLEARANCE_M} m; move the pose away from it"
-            )
-    return world
+    # Not at the top: whatever makes worlds builds on this schema.
+    from simbridge.world_loading import load
+
+    return load(name_or_path, (robot or load_robot()).geometry)

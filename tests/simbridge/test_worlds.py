@@ -1,4 +1,5 @@
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -7,10 +8,11 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
+from simbridge.obstacle_settings import PolygonObstacleSettings
 from simbridge.sight import Sight
 from simbridge.world import World
 from simbridge.world_settings import WorldSettings, load_world
-from tests.simbridge.rig import ROBOT
+from tests.simbridge.rig import ROBOT, Rig, room
 
 NAMES = ("a", "b", "c")
 PLAIN = {
@@ -21,7 +23,10 @@ PLAIN = {
     "start_poses": [{"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}],
 }
 BOW_TIE = [[0, 0], [3, 3], [3, 0], [0, 3], [0, 0]]
+BAY = [[1.5, 2.1], [2.2, 2.1], [2.2, 2.9], [1.5, 2.9], [1.5, 2.85], [2.0, 2.85], [2.0, 2.15], [1.5, 2.15]]
 STAR = [[0.5, 0.2], [0.68, 0.74], [0.2, 0.41], [0.8, 0.41], [0.32, 0.74]]
+AHEAD = {"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}
+DIVIDER = {"name": "divider", "from_m": [0.8, 0.0], "to_m": [0.8, 3.0], "thickness_m": 0.02}
 BOARD = {"name": "board", "from_m": [1.5, 0.0], "to_m": [1.5, 1.5], "thickness_m": 0.05}
 
 
@@ -73,14 +78,36 @@ def test_the_training_ground_is_three_by_four_metres() -> None:
         ({"size_m": [3.0, 4.0]}, "outline must span 0 to 4.0 in y"),
         ({"walls": [BOARD, BOARD]}, "two walls or obstacles share the name board"),
         ({"walls": [{**BOARD, "to_m": [1.5, 0.0]}]}, "walls.0: .*at least 0.01 m apart"),
-        (
-            {"polygon_obstacles": [{"name": "arrow", "corners": [[0.2, 0.2], [1, 0.5], [0.2, 1], [0.5, 0.5]]}]},
-            "polygon_obstacles.0.corners: .*must be convex",
-        ),
-        ({"polygon_obstacles": [{"name": "star", "corners": STAR}]}, "polygon_obstacles.0.corners: .*must be convex"),
+        ({"polygon_obstacles": [{"name": "star", "corners": STAR}]}, "polygon_obstacles.0.corners: .*no side crosses"),
         (
             {"polygon_obstacles": [{"name": "line", "corners": [[0.2, 0.2], [0.5, 0.2], [0.9, 0.2]]}]},
-            "polygon_obstacles.0.corners: .*must be convex",
+            "polygon_obstacles.0.corners: .*must enclose one area",
+        ),
+        (
+            {"polygon_obstacles": [{"name": "ring", "corners": [[0.2, 0.2], [1, 0.2], [1, 1], [0.2, 0.2]]}]},
+            "polygon_obstacles.0.corners: .*each corner is named once",
+        ),
+        (
+            {"round_obstacles": [{"name": "tree", "x_m": 3.2, "y_m": 1.5, "radius_m": 0.2}]},
+            "tree stands outside the outline",
+        ),
+        ({"walls": [{**BOARD, "from_m": [-1, -0.1], "to_m": [4, -0.1]}]}, "board stands outside the outline"),
+        ({"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, AHEAD]}, "start_poses.0 and start_poses.2 are alike"),
+        (
+            {"start_poses": [{**AHEAD, "heading_deg": 180}, {**AHEAD, "heading_deg": -179.5}]},
+            "start_poses.0 and start_poses.1 are alike",
+        ),
+        (
+            {"walls": [DIVIDER], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
+            "start_poses.1: no way that is 0.33 m wide leads there from start_poses.0",
+        ),
+        (
+            {"walls": [{**DIVIDER, "to_m": [0.8, 2.69]}], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
+            "start_poses.1: no way that is 0.33 m wide",
+        ),
+        (
+            {"streets": [{"from_m": [1.5, 1.5], "to_m": [1.5, 2.9], "width_m": 0.8}]},
+            "streets.0: the robot does not fit along its middle line",
         ),
         ({"start_poses": []}, "start_poses"),
         ({"start_poses": [{"x_m": 0.25, "y_m": 1.5, "heading_deg": 0}]}, "start_poses.0: the robot is 0.033 m"),
@@ -107,10 +134,71 @@ def test_a_world_that_cannot_be_is_refused_with_file_and_key(
         load_world(str(path))
 
 
-def test_plain_is_a_world(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, {**AHEAD, "x_m": 1.52}]},
+        {"walls": [{**DIVIDER, "to_m": [0.8, 2.66]}], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
+        {"walls": [{**BOARD, "from_m": [-0.2, 2.9], "to_m": [0.5, 3.2]}]},
+        {"polygon_obstacles": [{"name": "bay", "corners": BAY}]},
+    ],
+)
+def test_what_may_be_is_a_world(change: dict[str, object], tmp_path: Path) -> None:
     path = tmp_path / "plain.yaml"
-    path.write_text(yaml.safe_dump(PLAIN), encoding="utf-8")
+    path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     assert load_world(str(path)).name == "plain"
+
+
+def test_the_robot_drives_into_a_bay_and_meets_its_back() -> None:
+    bay = PolygonObstacleSettings(name="bay", corners=tuple((x + 1.0, y - 0.5) for x, y in BAY))
+    with Rig(room(boxes=[bay])) as rig:
+        rig.run(0.5)
+        assert ROBOT.infrared.distance_m(rig.reading("s11")) > 0.5
+        rig.drive(20, 20, 6.0)
+        assert rig.robot.collisions > 0
+        assert rig.robot.pose.x_m == pytest.approx(3.0 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
+
+
+def test_streets_meet_where_their_middle_lines_do() -> None:
+    world = load_world("manhattan")
+    lines = (0.4, 2.2, 4.0, 5.8)
+    assert world.junctions == [(x, y) for x in lines for y in lines]
+    for street in world.streets:
+        line = shapely.LineString([street.from_m, street.to_m])
+        assert world.free_space.exterior.distance(line) == pytest.approx(street.width_m / 2)  # type: ignore[union-attr]
+        assert min(shape.distance(line) for shape in world.shapes) == pytest.approx(street.width_m / 2)
+    assert load_world("a").junctions == []
+
+
+def test_the_starts_in_the_streets_are_in_their_middle_and_look_along_them() -> None:
+    world = load_world("manhattan")
+    for start in range(len(world.start_poses)):
+        assert left_clearances_m(world, start) == pytest.approx([0.4 - 0.165] * 4)
+
+
+@pytest.mark.parametrize(
+    ("name", "post", "side", "away_m"),
+    [("one_object", "post", "left", 0.3), ("two_objects", "west", "left", 0.2), ("two_objects", "east", "right", 0.2)],
+)
+def test_the_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
+    world = load_world(name)
+    object_ = next(each for each in world.round_obstacles if each.name == post)
+    abeam = 0
+    for pose in (start.pose for start in world.start_poses):
+        dx, dy = object_.x_m - pose.x_m, object_.y_m - pose.y_m
+        ahead_m = dx * math.cos(pose.heading_rad) + dy * math.sin(pose.heading_rad)
+        left_m = dy * math.cos(pose.heading_rad) - dx * math.sin(pose.heading_rad)
+        beside_m = (left_m if side == "left" else -left_m) - object_.radius_m - ROBOT.geometry.outline_width_m / 2
+        abeam += abs(ahead_m) < 0.002 and abs(beside_m - away_m) < 0.002
+    assert abeam == len(world.start_poses) // len(world.round_obstacles)
+
+
+def test_the_small_object_is_smaller_than_the_gap_between_two_sensors() -> None:
+    world = load_world("one_object")
+    left = sorted(sensor.x_m for sensor in ROBOT.infrared.sensors if sensor.heading_deg == 90)
+    assert 2 * world.round_obstacles[0].radius_m < min(b - a for a, b in pairwise(left))
+    assert world.infrared_rays == 3
 
 
 def test_moving_a_wall_keeps_the_settings_true() -> None:

@@ -1,0 +1,50 @@
+"""From a name or a path to a world that the robot can drive in."""
+
+import shapely
+
+from hal.robot_settings import GeometrySettings
+from hal.settings import SettingsError, find_config, load_settings
+from simbridge.geometry import polygons_of
+from simbridge.world_settings import WorldSettings
+
+START_CLEARANCE_M = 0.05
+"""A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
+
+
+def load(name_or_path: str, geometry: GeometrySettings) -> WorldSettings:
+    """What simbridge.world_settings.load_world promises, for a robot of this shape."""
+    path = find_config("worlds", name_or_path)
+    world = load_settings(path, WorldSettings)
+    require_drivable(world, geometry, str(path))
+    return world
+
+
+def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:
+    """See that each start is free, each other one within reach, and each street wide enough.
+
+    Raises SettingsError that names the source and the key.
+    """
+    for i, start in enumerate(world.start_poses):
+        clear_m = world.clearance_m(start.pose, geometry)
+        if clear_m < START_CLEARANCE_M:
+            raise SettingsError(
+                f"{source}: start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, "
+                f"allowed is at least {START_CLEARANCE_M} m; move the pose away from it"
+            )
+    # Where the robot's centre can be at all: it gets through a gap that is as wide as itself.
+    within_reach = world.free_space.buffer(-geometry.outline_width_m / 2)
+    pieces = polygons_of(within_reach)
+    first = world.start_poses[0]
+    home = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(first.x_m, first.y_m))))
+    for i, start in enumerate(world.start_poses):
+        if not home.intersects(shapely.Point(start.x_m, start.y_m)):
+            raise SettingsError(
+                f"{source}: start_poses.{i}: no way that is {geometry.outline_width_m} m wide leads there from "
+                "start_poses.0; open one, or leave the pose out"
+            )
+    for i, street in enumerate(world.streets):
+        if not home.covers(shapely.LineString([street.from_m, street.to_m])):
+            raise SettingsError(
+                f"{source}: streets.{i}: the robot does not fit along its middle line, or cannot get there; "
+                "move the line or what stands in its way"
+            )
