@@ -1,5 +1,6 @@
 """The journal's writer: a thread that makes lessons durable while the tick goes on."""
 
+import math
 import queue
 import threading
 import time
@@ -15,6 +16,10 @@ from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
+
+
+HANGS_AFTER_S = 3.0
+"""A disk that has lessons to keep and makes no headway for so long hangs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +65,19 @@ class JournalWriter:
     until it succeeds.
     """
 
-    def __init__(self, journal: Journal, now: Callable[[], str], retry: RetryDelays | None = None) -> None:
-        self.trouble: str | None = None
-        """One line: what, where, what to do; None while lessons become durable."""
+    def __init__(
+        self,
+        journal: Journal,
+        now: Callable[[], str],
+        retry: RetryDelays | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`now` stamps the rows; `clock`, in seconds, tells when a write hangs."""
+        self._failure: str | None = None
         self._journal = journal
         self._now = now
+        self._clock = clock
+        self._headway_at_s = -math.inf
         self._retry = retry or RetryDelays()
         # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
         self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
@@ -81,6 +94,13 @@ class JournalWriter:
         self._thread.start()
 
     @property
+    def trouble(self) -> str | None:
+        """One line: what, where, what to do; None while lessons become durable."""
+        if self._failure is None and self.unwritten and self._clock() - self._headway_at_s > HANGS_AFTER_S:
+            return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
+        return self._failure
+
+    @property
     def unwritten(self) -> int:
         """Lessons submitted and not yet settled."""
         return self._submitted - self._settled
@@ -88,6 +108,8 @@ class JournalWriter:
     def submit(self, event: TeachingEvent) -> None:
         """Hand over a lesson; never waits. Raises KnowledgeError after `close`."""
         self._require_open()
+        if not self.unwritten:
+            self._headway_at_s = self._clock()
         self._submitted += 1
         self._inbox.put(event)
 
@@ -142,7 +164,9 @@ class JournalWriter:
         try:
             self._work()
         except BaseException as error:
-            self.trouble = f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
+            self._failure = (
+                f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
+            )
             raise
         finally:
             self._end()
@@ -151,7 +175,7 @@ class JournalWriter:
         try:
             self._journal.close()
         except KnowledgeError as error:  # what was acknowledged is durable nevertheless
-            self.trouble = self.trouble or str(error)
+            self._failure = self._failure or str(error)
         self._ended = True
         while not self._inbox.empty():
             item = self._inbox.get()
@@ -167,10 +191,10 @@ class JournalWriter:
             try:
                 self._write()
             except KnowledgeError as error:
-                self.trouble = str(error)
+                self._failure = str(error)
                 pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
             else:
-                self.trouble = None
+                self._failure = None
                 pause_s = 0.0
             if stop:
                 return
@@ -220,6 +244,7 @@ class JournalWriter:
 
     def _settle(self, acknowledgement: Acknowledgement) -> None:
         self._acknowledged.put(acknowledgement)
+        self._headway_at_s = self._clock()
         self._settled += 1
 
 

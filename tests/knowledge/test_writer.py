@@ -1,6 +1,7 @@
 import resource
 import sqlite3
-from collections.abc import Iterator
+import threading
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from itertools import count
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge import journal_file
+from kurt2rt.knowledge.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
@@ -53,6 +55,37 @@ def test_lessons_are_acknowledged_in_order_when_they_are_durable(path: Path) -> 
         assert writer.trouble is None
 
     assert acknowledged == [Acknowledgement(f"create-{number}", number, None, STAMP) for number in range(1, 31)]
+
+
+class HangingJournal(Journal):
+    """Its disk does not come back from a write before it is let go."""
+
+    let_go: threading.Event
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        self.let_go.wait()
+        return super().append(entries)
+
+
+def test_a_write_that_hangs_is_trouble_until_it_comes_back(path: Path) -> None:
+    journal = HangingJournal.open(path, BINDING)
+    journal.let_go = threading.Event()
+    now_s = 100.0
+    with JournalWriter(journal, now=lambda: STAMP, retry=SOON, clock=lambda: now_s) as writer:
+        now_s += 10.0  # with nothing to keep a disk may rest
+        assert writer.trouble is None
+        writer.submit(created(1))
+        now_s += 2.0
+        writer.submit(created(2))
+        now_s += 1.0
+        assert writer.trouble is None
+        now_s += 0.1
+        assert writer.trouble == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
+        journal.let_go.set()
+        assert [each.command_id for each in settled(writer)] == ["create-1", "create-2"]
+        assert writer.trouble is None
+        writer.submit(created(3))
+        assert writer.trouble is None
 
 
 def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> None:
