@@ -17,7 +17,6 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
 
-
 HANGS_AFTER_S = 3.0
 """A disk that has lessons to keep and makes no headway for so long hangs."""
 
