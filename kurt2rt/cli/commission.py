@@ -48,7 +48,10 @@ def commission(
         str | None, typer.Option(help=f"Take these steps alone, passed or not: some of {_NAMES}.", show_default=False)
     ] = None,
     skip: Annotated[
-        str | None, typer.Option(help="Note these steps as skipped for good; the file can be written without them.")
+        str | None,
+        typer.Option(
+            help="Note these steps as skipped, so that the file can be written without them.", show_default=False
+        ),
     ] = None,
     anew: Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")] = False,
@@ -81,6 +84,11 @@ def commission(
     settings (a copy of config/runtime/default.yaml):
 
         kurt2rt run --robot can0 --settings my-runtime.yaml
+
+    Rehearse it without a robot; `lift`, typed at the first, puts it on a block:
+
+        kurt2rt sim --bus shared:desk
+        kurt2rt commission shared:desk --only identity,modes,wheels,stop
 
     Ends with code 1 when a step of this session failed.
     """

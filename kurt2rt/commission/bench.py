@@ -175,6 +175,8 @@ class Bench:
         if self._robot is None or self._mode is not mode:
             self._close_robot()
             ear = self._listener
+            if not ear.channels:
+                await self.stand(_BREATH_S)  # to hear which boards there are
             settings = bench_settings(self.settings, mode, ear.channels, has_bumpers=ear.has_bumpers)
             robot = self._robot = self._open_robot(settings)
             self._mode = mode

@@ -18,8 +18,10 @@ from tests.commission.workshop import Session, Workshop, leaves_at
 
 async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Path) -> None:
     with Workshop() as workshop:
+        stood = workshop.robot.pose
         session = Session(workshop, tmp_path)
         progress = await session.walk()
+        assert workshop.robot.pose == stood
     assert session.person.lines(Tone.BAD) == []
     assert passed(progress, STEPS)
     findings = progress.findings
