@@ -10,7 +10,7 @@ import can
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.bus_state import BusState
 from hal.codec import Codec, JunkFrameError, MessageCodec, load_codec
-from hal.guard import BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
+from hal.guard import BUS_BLOCKED, BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
 from hal.health import Health
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, Grant, Senses, WheelSpeeds
@@ -145,8 +145,11 @@ class Kurt2:
         self._guard.emergency_stop(reason)
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven."""
+        """End a latched stop; the robot still stands until it is driven. A blocked bus is opened anew."""
         self._alarm = ""
+        if self._guard.latched == BUS_BLOCKED:
+            # Frames that were lost on the way out would count as yet to be carried for ever; a new end counts anew.
+            self._reopen(self._senses.time_s)
         self._guard.release()
 
     def close(self) -> None:
@@ -215,7 +218,7 @@ class Kurt2:
         return messages, bus_now_s
 
     def _reopen(self, now_s: float) -> None:
-        """An adapter that was unplugged fails once and is silent then: only opening it anew shows that it is back."""
+        """Only opening it anew shows that an adapter is back which was unplugged."""
         self._reopen_at_s = now_s + REOPEN_PERIOD_S
         try:
             self._bus.reopen()

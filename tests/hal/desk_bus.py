@@ -48,6 +48,10 @@ class DeskBus(InProcessBus):
             super().send(frame)
             self._put(frame, is_rx=False, stamp_s=self.time_s)
 
+    def lose(self) -> None:
+        """What waits is gone, and nobody is told."""
+        self._waiting.clear()
+
     def _put(self, frame: can.Message, *, is_rx: bool, stamp_s: float) -> None:
         frame = copy.copy(frame)
         frame.is_rx, frame.timestamp = is_rx, stamp_s
@@ -58,14 +62,21 @@ class Ride:
     """A robot on the desk whose wheels do as they are told and whose sensors live, until a test says otherwise."""
 
     def __init__(self) -> None:
-        name = f"desk-{next(_numbers)}"
-        self.desk = DeskBus(name)
-        self.robot_end = CanBus("can0", lambda _: self.desk)
-        self.kurt2 = Kurt2(ROBOT, self.robot_end)
-        self._far_end = open_bus(f"virtual:{name}")
+        self._name = f"desk-{next(_numbers)}"
+        self.desk = DeskBus(self._name)
+        self.openings = 0
+        self.kurt2 = Kurt2(ROBOT, CanBus("can0", self._open))
+        self._far_end = open_bus(f"virtual:{self._name}")
         self.now_s = 50.0
         self.granted = STANDSTILL
         self._counts = itertools.cycle((200, 201))
+
+    def _open(self, _: str) -> DeskBus:
+        self.openings += 1
+        if self.openings > 1:
+            before, self.desk = self.desk, DeskBus(self._name)
+            self.desk.time_s, self.desk.carries = before.time_s, before.carries
+        return self.desk
 
     def frames(self) -> list[can.Message]:
         """What the controller sends in a cycle."""

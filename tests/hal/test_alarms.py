@@ -93,11 +93,30 @@ def test_a_bus_that_carries_again_stays_stopped_until_released(ride: Ride) -> No
     assert not ride.drive_for(0.05).latched
 
 
-def test_released_too_early_it_is_blocked_as_before(ride: Ride) -> None:
+def test_released_too_early_it_is_blocked_again_after_two_slow_set_points(ride: Ride) -> None:
     ride.desk.carries = False
     ride.drive_for(0.05)
     ride.kurt2.release()
-    assert ride.tick() == stopped(BUS_BLOCKED)
+    first, second, third = ride.tick(), ride.tick(), ride.tick()
+    assert max(*first.wheel_speeds, *second.wheel_speeds) <= 0.05
+    assert third == stopped(BUS_BLOCKED)
+
+
+def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride: Ride) -> None:
+    ride.desk.carries = False
+    ride.drive_for(0.05)
+    ride.desk.lose()
+    ride.desk.carries = True
+    assert ride.drive_for(0.05) == stopped(BUS_BLOCKED)  # nobody can tell it from a bus that is late
+    ride.kurt2.release()
+    assert ride.openings == 2
+    assert not ride.drive_for(0.05).latched
+
+
+def test_a_bus_is_opened_anew_for_that_reason_alone(ride: Ride) -> None:
+    ride.kurt2.emergency_stop("teacher")
+    ride.kurt2.release()
+    assert ride.openings == 1
 
 
 def test_one_frame_late_is_no_alarm(ride: Ride) -> None:

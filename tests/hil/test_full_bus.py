@@ -63,7 +63,6 @@ def test_when_the_bus_is_free_again_the_robot_waits_to_be_resumed(drive: Drive, 
     drive.until_it_drives()
 
 
-@pytest.mark.xfail(strict=True, reason="what was lost counts as yet to be carried until the bus is opened anew")
 def test_frames_that_were_lost_without_a_word_do_not_stand_in_the_way_of_a_resume(drive: Drive, link: Link) -> None:
     link.hold_frames_for(60_000)
     drive.ticks(5)
