@@ -125,6 +125,8 @@ class FailingDisk:
         kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
         if kept != self.submitted:
             return f"{len(self.submitted)} lessons were taught, the file holds {len(kept)}: {kept}"
+        if self.acknowledged != self.submitted:
+            return f"{len(self.submitted)} lessons were saved, {len(self.acknowledged)} were said to be"
         return ""
 
     def _in_step(self) -> bool:

@@ -1,7 +1,6 @@
 """A drill: the robot drives, something fails for a while, and is well again."""
 
 import random
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -14,19 +13,17 @@ from kurt2rt.faults.levels import DisturbedLevel
 from kurt2rt.faults.outcome import Outcome, Standstill
 from kurt2rt.faults.place import Place, Stage
 from kurt2rt.faults.recorder import FailingRecorder
+from kurt2rt.faults.script import Script
 from kurt2rt.faults.table import FaultCase, FaultTable
 from kurt2rt.faults.witness import Witness
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import ReplaceAction, Resume, Stop, Teach
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import Clock
 
 SERVICE_ENDS = "the service ends"
 """The word with which the service stops the robot when its loop ends, for whatever reason."""
-_TEACHER = "ann"
-_LESSON_EVERY_S = 0.25
 
 
 class DidNotDriveError(RuntimeError):
@@ -62,49 +59,44 @@ class _Drill:
     ) -> None:
         self._place = place
         self._case = case
-        self._table = table
         self._settings = settings
         self._task = task
         self._keeper = keeper
         self._time = place.time
-        schedule = table.schedule
-        self._begin_s, self._end_s = place.disturbance.begin_s, place.disturbance.end_s
-        self._word_at_s = self._end_s + schedule.settles_s
-        self._over_at_s = self._word_at_s + (0.0 if case.must.ends_by == "itself" else schedule.drives_again_s)
-        self.witness = Witness(
+        self._recorder = recorder
+        self._script = Script(place, case, table)
+        self._witness = Witness(
             place, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
         )
-        self.latched_in_the_end: str | None = None
+        self._latched: str | None = None
         self._ended_by = ""
-        self._answers = 0
         # The ticks' phase against the controller's cycle.
         self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
+        self._time.at(place.disturbance.begin_s, self._require_driving)
+        self._time.at(self._script.word_at_s, self._note_the_end)
         self._level = DisturbedLevel(self._time, place.disturbance) if case.target == "tick" else None
         self._runtime = self._build(())
         if self._level is not None:
             self._level.behind = self._runtime.level
-        self.link: HandLink | None = None
+        self._link: HandLink | None = None
         if case.target == "teacher_link":
-            self.link = HandLink(self._time, place.disturbance, self._runtime, chance)
-            self.link.press()
-            self.link.start()
-        self.recorder = recorder
+            self._link = HandLink(self._time, place.disturbance, self._runtime, chance)
         if recorder is not None:
             place.look_on(recorder.tap)
-        self._plan()
+        self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
         """All of it."""
         await self._serve()
-        if self._time.now_s() < self._word_at_s:  # the service has ended before its time
-            self._time.run_until(self._word_at_s)
-            self._note_the_end()
+        if self._time.now_s() < self._script.word_at_s:  # the service has ended before its time
+            self._time.run_until(self._script.word_at_s)
             self._start_anew()
             await self._serve()
 
     def outcome(self, seed: int, problems: tuple[str, ...]) -> Outcome:
         """What it came to."""
-        witness, begin_s, end_s = self.witness, self._begin_s, self._end_s
+        witness, word_at_s = self._witness, self._script.word_at_s
+        begin_s, end_s = self._place.disturbance.begin_s, self._place.disturbance.end_s
         stands = witness.stands(begin_s, end_s)
         standstills = [Standstill(each.from_s - begin_s, witness.words_from(each.from_s)) for each in stands]
         health = self._place.robot.health
@@ -112,8 +104,8 @@ class _Drill:
             "junk frames": health.junk,
             "unintelligible commands": witness.envelope.unintelligible,
             "missed ticks": self._runtime.ledger.missed_ticks,
-            "refused messages": 0 if self.link is None else self.link.refused,
-            "lost frames": 0 if self.recorder is None else self.recorder.lost,
+            "refused messages": 0 if self._link is None else self._link.refused,
+            "lost frames": 0 if self._recorder is None else self._recorder.lost,
         }
         return Outcome(
             target=self._case.target,
@@ -123,11 +115,11 @@ class _Drill:
             last=standstills[-1] if stands and stands[-1].to_s >= end_s else None,
             went_on=bool(stands) and stands[0].to_s < end_s,
             longest_stand_s=max((each.to_s - each.from_s for each in stands), default=0.0),
-            latched=self.latched_in_the_end,
+            latched=self._latched,
             latched_after_s=None if witness.latched is None else witness.latched[0] - begin_s,
             ended_by=self._ended_by,
-            drove_by_itself=any(end_s < at_s <= self._word_at_s for at_s in witness.drove_at_s),
-            drove_when_told=any(at_s > self._word_at_s for at_s in witness.drove_at_s),
+            drove_by_itself=any(end_s < at_s <= word_at_s for at_s in witness.drove_at_s),
+            drove_when_told=any(at_s > word_at_s for at_s in witness.drove_at_s),
             oldest_age_s=witness.envelope.oldest_age_s,
             old_frames=witness.envelope.old_frames,
             frames=witness.envelope.frames,
@@ -140,7 +132,7 @@ class _Drill:
         if self._case.target == "clock":
             clock = DisturbedClock(self._time, self._place.disturbance)
         return build_runtime(
-            self.witness,
+            self._witness,
             self._settings,
             self._task,
             events,
@@ -150,36 +142,13 @@ class _Drill:
             attended=self._case.target == "teacher_link",
         )
 
-    def _plan(self) -> None:
-        at, must = self._time.at, self._case.must
-        at(self._begin_s, self._require_driving)
-        at(self._word_at_s, self._note_the_end)
-        match must.ends_by:
-            case "resume":
-                at(self._word_at_s, self._say_resume)
-            case "press":
-                assert self.link is not None
-                at(self._word_at_s, self.link.press)
-        if must.stop_said_after_s is not None:
-            at(self._begin_s + must.stop_said_after_s, lambda: self._runtime.inbox.put(Stop("stop", _TEACHER)))
-        if self._case.target == "disk":
-            for number in range(int((self._end_s - self._begin_s) / _LESSON_EVERY_S)):
-                at(self._begin_s + number * _LESSON_EVERY_S, self._lesson(number))
-
-    def _lesson(self, number: int) -> Callable[[], None]:
-        # It changes nothing: what the robot does then is for the disk's sake alone.
-        lesson = ReplaceAction(f"lesson-{number}", _TEACHER, 1, self._table.action)
-        return lambda: self._runtime.inbox.put(lesson)
-
     def _require_driving(self) -> None:
-        if self.witness.stands(self._begin_s - self._settings.can.cycle_s, self._begin_s):
+        begin_s = self._place.disturbance.begin_s
+        if self._witness.stands(begin_s - self._settings.can.cycle_s, begin_s):
             raise DidNotDriveError(f"{self._case}: the robot stands before anything fails; look at action and task")
 
     def _note_the_end(self) -> None:
-        self.latched_in_the_end = self._place.robot.health.latched
-
-    def _say_resume(self) -> None:
-        self._runtime.inbox.put(Resume("resume", _TEACHER))
+        self._latched = self._place.robot.health.latched
 
     async def _serve(self) -> None:
         """As kurt2rt.service does: whatever ends the loop, the wheels stand before anything else ends."""
@@ -194,23 +163,17 @@ class _Drill:
     def _start_anew(self) -> None:
         """What a supervisor does, and a teacher afterwards."""
         events = tuple(self._keeper.events) if isinstance(self._keeper, _Memory) else ()
-        self.witness.look_at(self._place.start_anew())
+        self._witness.look_at(self._place.start_anew())
         self._level = None
         self._runtime = self._build(events)
-        self._runtime.school.stop("the robot program was started")
-        self._say_resume()
+        self._script.begin_anew(self._runtime)
 
     def _after_tick(self, record: TickRecord) -> None:
-        now_s = self._time.now_s()
-        self.witness.note(record)
+        self._witness.note(record)
         if isinstance(self._keeper, FailingDisk):
             self._keeper.keep_in_step()
-        if self.link is not None:
-            self.link.see(record.tick)
-        elif record.decision.asking and not self._begin_s <= now_s < self._word_at_s:
-            self._answers += 1
-            self._runtime.inbox.put(Teach(f"answer-{self._answers}", _TEACHER, self._table.action))
-        if now_s >= self._over_at_s:
+        self._script.after_tick(record)
+        if self._time.now_s() >= self._script.over_at_s:
             self._runtime.scheduler.end()
 
 
