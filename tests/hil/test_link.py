@@ -67,6 +67,16 @@ def test_a_moment_down_is_long_enough_to_stop(drive: Drive, link: Link) -> None:
     drive.until_it_drives()
 
 
+@pytest.mark.xfail(strict=True, reason="until the readings are stale the guard grants what is wanted")
+def test_a_resume_moves_nothing_while_nothing_is_heard(drive: Drive, link: Link) -> None:
+    link.down()
+    drive.tick()
+    link.up()
+    drive.kurt2.release()
+    assert {drive.tick().wheel_speeds for _ in range(10)} == {(0.0, 0.0)}
+    assert drive.health.trouble
+
+
 def test_the_second_loss_is_as_the_first(drive: Drive, link: Link) -> None:
     for away in (Link.down, Link.delete, Link.down):
         away(link)
