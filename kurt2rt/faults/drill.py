@@ -10,7 +10,7 @@ from kurt2rt.faults.disk import FailingDisk
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.hand_link import HandLink
 from kurt2rt.faults.levels import DisturbedLevel
-from kurt2rt.faults.outcome import Outcome, Standstill
+from kurt2rt.faults.outcome import LOST_FRAMES, Outcome, Standstill
 from kurt2rt.faults.place import Place, Stage
 from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.script import Script
@@ -82,7 +82,7 @@ class _Drill:
         if case.target == "teacher_link":
             self._link = HandLink(self._time, place.disturbance, self._runtime, chance)
         if recorder is not None:
-            place.look_on(recorder.tap)
+            place.look_on(recorder)
         self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
@@ -105,7 +105,7 @@ class _Drill:
             "unintelligible commands": witness.envelope.unintelligible,
             "missed ticks": self._runtime.ledger.missed_ticks,
             "refused messages": 0 if self._link is None else self._link.refused,
-            "lost frames": 0 if self._recorder is None else self._recorder.lost,
+            LOST_FRAMES: 0 if self._recorder is None else self._recorder.lost,
         }
         return Outcome(
             target=self._case.target,
@@ -199,7 +199,6 @@ async def drill(
         seed=seed,
     )
     chance = random.Random(f"drill {case} {seed}")
-    problems: tuple[str, ...] = ()
     with ExitStack() as stack:
         stack.callback(place.close)
         keeper: LessonKeeper = _Memory()
@@ -214,8 +213,11 @@ async def drill(
             stack.callback(recorder.close)
         running = _Drill(place, case, table, settings, task, chance, keeper, recorder)
         await running.run()
+        problems: list[str] = []
         if disk is not None:
             disk.close()
-            lost = disk.what_it_lost()
-            problems = (lost,) if lost else ()
-        return running.outcome(seed, problems)
+            problems.append(disk.what_it_lost())
+        if recorder is not None:
+            recorder.close()
+            problems.append(recorder.what_is_uncounted())
+        return running.outcome(seed, tuple(each for each in problems if each))

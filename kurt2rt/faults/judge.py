@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.faults.outcome import Outcome
+from kurt2rt.faults.outcome import LOST_FRAMES, Outcome
 from kurt2rt.faults.table import CaseSettings
 
 _MOMENT_S = 0.03
@@ -34,6 +34,8 @@ def _about_the_limits(must: CaseSettings, outcome: Outcome) -> tuple[str, ...]:
         wrong.append(f"{outcome.old_frames} old set points arrived at the robot, allowed are {must.old_frames}")
     if must.counts is not None and not outcome.counted.get(must.counts):
         wrong.append(f"no {must.counts} were counted")
+    if must.counts != LOST_FRAMES and outcome.counted.get(LOST_FRAMES):
+        wrong.append(f"the log must lose nothing, lost {outcome.counted[LOST_FRAMES]} frames")
     return tuple(wrong)
 
 

@@ -5,6 +5,9 @@ from typing import NamedTuple
 
 from kurt2rt.faults.table import Kind, Target
 
+LOST_FRAMES = "lost frames"
+"""In `Outcome.counted`: those that are not in the CAN log."""
+
 
 class Standstill(NamedTuple):
     """The robot's end of the bus knows nothing but to stand."""

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import can
 
-from hal.tap import Tap
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.recording.can_log import CanLog
 
@@ -52,7 +51,7 @@ class _FailingWriter:
 
 
 class FailingRecorder:
-    """The log, and its thread kept in step: it writes every 0.1 s of simulated time unless it still hangs.
+    """The log (hal.tap.Tap), its thread kept in step: it writes every 0.1 s of simulated time unless it still hangs.
 
     off, garbage and intermittent: errors. stuck: a write does not come back, and there is room for half a second.
     wrong: the writer changes the frames that it gets. slow and delayed: each write takes long.
@@ -62,13 +61,19 @@ class FailingRecorder:
         self._writer = _FailingWriter(simulated, disturbance)
         self._simulated = simulated
         self._log = CanLog(self._writer, "a drill's", "sim", _ROOM_FRAMES)
+        self._noted = 0
         self._thread: threading.Thread | None = None
         simulated.every(_PERIOD_S, _PERIOD_S, self._write)
 
-    @property
-    def tap(self) -> Tap:
-        """What looks on at the bus."""
-        return self._log
+    def heard(self, frame: can.Message, age_s: float) -> None:
+        """A frame that came in."""
+        self._noted += 1
+        self._log.heard(frame, age_s)
+
+    def sent(self, frame: can.Message) -> None:
+        """A frame that went out."""
+        self._noted += 1
+        self._log.sent(frame)
 
     @property
     def lost(self) -> int:
@@ -80,6 +85,13 @@ class FailingRecorder:
         self._writer.given_up = True
         if self._thread is not None:
             self._thread.join()
+        self._log.write_waiting()
+
+    def what_is_uncounted(self) -> str:
+        """What is wrong with the log's own count once it is closed, in a line; empty when it adds up."""
+        if self._log.written + self._log.lost != self._noted:
+            return f"{self._noted} frames passed, {self._log.written} were written and {self._log.lost} lost"
+        return ""
 
     def _write(self) -> None:
         self._keep_in_step()

@@ -88,6 +88,12 @@ def test_what_must_be_counted_must_be_there() -> None:
     assert judge(must, replace(DROVE, counted={"missed ticks": 0})).complaints == ("no missed ticks were counted",)
 
 
+def test_a_log_loses_only_what_its_row_says() -> None:
+    lost = replace(DROVE, counted={"lost frames": 3})
+    assert judge(case_of("recorder", "off").must, lost).passed
+    assert judge(case_of("recorder", "slow").must, lost).complaints == ("the log must lose nothing, lost 3 frames",)
+
+
 def test_a_known_gap_excuses_what_it_names_and_nothing_beyond_the_envelope() -> None:
     must = HUNG.model_copy(update={"known_gap": "nobody says resume"})
     stays = replace(STOOD, drove_when_told=False)
