@@ -57,6 +57,13 @@ def test_its_own_frames_are_no_alarm_and_extended_or_remote_ones_are_no_control(
     assert ride.kurt2.health.foreign_control == 0
 
 
+def test_what_slips_past_the_filter_is_neither(ride: Ride) -> None:
+    ride.desk.listen_to(frozenset({0x123}))
+    ride.desk.arrive(Frame(0x123, bytes(8)))
+    assert not ride.decide().latched
+    assert (ride.kurt2.health.foreign_control, ride.kurt2.health.junk) == (0, 0)
+
+
 def test_what_stopped_it_first_is_what_is_told(ride: Ride) -> None:
     ride.kurt2.emergency_stop("teacher")
     ride.desk.arrive(FORWARD)

@@ -1,0 +1,58 @@
+"""A board that repeats itself is found out; one that lives, or a robot that stands, is left alone."""
+
+import pytest
+
+from hal.infrared_watch import InfraredWatch
+
+CHANNELS = ("ADC07", "BDC00", "ADC03", "BDC15", "ADC14")
+FROZEN_S = 1.5
+
+
+@pytest.fixture
+def watch() -> InfraredWatch:
+    watch = InfraredWatch(CHANNELS, FROZEN_S)
+    assert watch.freeze(10.0, driving=False) == ""
+    return watch
+
+
+def test_channels_of_one_controller_share_their_board(watch: InfraredWatch) -> None:
+    assert watch.board_of("ADC07") is watch.board_of("ADC14")
+    assert watch.board_of("BDC00") is watch.board_of("BDC15")
+    assert watch.board_of("ADC07") is not watch.board_of("BDC00")
+
+
+def test_a_board_may_be_still_for_as_long_as_the_settings_say(watch: InfraredWatch) -> None:
+    assert watch.freeze(10.0 + FROZEN_S - 0.01, driving=True) == ""
+    assert watch.freeze(10.0 + FROZEN_S, driving=True) != ""
+
+
+@pytest.mark.parametrize(
+    ("alive", "frozen"), [("ADC00", "second controller (BDC*)"), ("BDC00", "first controller (ADC*)")]
+)
+def test_the_one_that_is_frozen_is_named(watch: InfraredWatch, alive: str, frozen: str) -> None:
+    watch.board_of(alive).alive_at_s = 12.0
+    said = watch.freeze(12.0, driving=True)
+    assert said == f"the distance sensors of the {frozen} repeated themselves for 1.5 s; switch the robot off and on"
+
+
+def test_boards_that_change_are_alive(watch: InfraredWatch) -> None:
+    for tick in range(1000):
+        now_s = 10.0 + tick * 0.01
+        if tick % 140 == 0:
+            watch.board_of("ADC07").alive_at_s = watch.board_of("BDC00").alive_at_s = now_s
+        assert watch.freeze(now_s, driving=True) == ""
+
+
+def test_the_time_begins_when_the_robot_does(watch: InfraredWatch) -> None:
+    assert watch.freeze(50.0, driving=False) == ""
+    assert watch.freeze(50.0 + FROZEN_S - 0.01, driving=True) == ""
+    assert watch.freeze(50.0 + FROZEN_S, driving=True) != ""
+    assert watch.freeze(60.0, driving=False) == ""  # and ends when it stands
+    assert watch.freeze(60.01, driving=True) == ""
+
+
+def test_a_robot_with_sensors_on_one_board_has_no_other() -> None:
+    watch = InfraredWatch(("BDC01", "BDC02"), FROZEN_S)
+    assert "second controller" in watch.freeze(5.0, driving=True)
+    watch.board_of("BDC02").alive_at_s = 5.0
+    assert watch.freeze(5.0, driving=True) == ""
