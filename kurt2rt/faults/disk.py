@@ -90,7 +90,8 @@ class FailingDisk:
         self._journal = _DisturbedJournal.open(path, binding)
         self._journal.disturbance = disturbance
         self._journal.simulated = simulated
-        self._writer = JournalWriter(self._journal, utc_now, RetryDelays(first_s=0.001, longest_s=0.001))
+        retry = RetryDelays(first_s=0.001, longest_s=0.001)
+        self._writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
         if disturbance.kind == "wrong":
             away = path.with_name(f"{path.name}.away")
             simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
