@@ -1,7 +1,7 @@
 """`kurt2rt faults`."""
 
 from pathlib import Path
-from typing import Annotated, get_args
+from typing import TYPE_CHECKING, Annotated, get_args
 
 import anyio
 import typer
@@ -9,11 +9,11 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
-from kurt2rt.faults.report import as_json, print_report
-from kurt2rt.faults.stop_times import stop_times
-from kurt2rt.faults.suite import Trial, try_cases
 from kurt2rt.faults.table import KINDS, TARGETS, Kind, Target, cases_of, load_faults
 from kurt2rt.tasks.settings import load_task
+
+if TYPE_CHECKING:
+    from kurt2rt.faults.suite import Trial
 
 
 def faults(
@@ -46,7 +46,10 @@ def faults(
 
     Ends with code 1 when a case is not as the table says. Known gaps are said.
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it, and without the drills.
+    from kurt2rt.faults.report import as_json, print_report
+    from kurt2rt.faults.stop_times import stop_times
+    from kurt2rt.faults.suite import try_cases
     from simbridge.faults.stage import FaultStage
 
     if json is not None and not json.absolute().parent.is_dir():
@@ -58,10 +61,10 @@ def faults(
     with Progress(console=Console(stderr=True)) as progress:
         bar = progress.add_task("faults", total=len(targets) * len(kinds) * seeds)
 
-        def on_done(trial: Trial) -> None:
+        def on_done(trial: "Trial") -> None:
             progress.update(bar, advance=1, description=str(trial.case))
 
-        async def run() -> list[Trial]:
+        async def run() -> "list[Trial]":
             cases = cases_of(chosen, targets, kinds)
             return await try_cases(FaultStage(settings), cases, chosen, settings, task, range(1, seeds + 1), on_done)
 

@@ -24,7 +24,7 @@ from kurt2rt.cli.run import run
 from kurt2rt.cli.sim import sim
 from kurt2rt.cli.teach import teach
 from kurt2rt.experiments.curriculum import LessonLostError
-from kurt2rt.faults.drill import DidNotDriveError
+from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
 from kurt2rt.page.error import PageError

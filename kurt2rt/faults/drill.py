@@ -8,6 +8,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.faults.clocks import DisturbedClock, DrillClock
 from kurt2rt.faults.disk import FailingDisk
 from kurt2rt.faults.envelope import Envelope
+from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.faults.hand_link import HandLink
 from kurt2rt.faults.levels import DisturbedLevel
 from kurt2rt.faults.outcome import LOST_FRAMES, Outcome, Standstill
@@ -24,10 +25,6 @@ from kurt2rt.timing.clock import Clock
 
 SERVICE_ENDS = "the service ends"
 """The word with which the service stops the robot when its loop ends, for whatever reason."""
-
-
-class DidNotDriveError(RuntimeError):
-    """The robot stood before anything failed, so that nothing can be seen."""
 
 
 class _Memory:

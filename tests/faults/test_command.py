@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 import kurt2rt.service
 from config import CONFIG_DIR
 from kurt2rt.cli.faults import faults
-from kurt2rt.faults.drill import SERVICE_ENDS, DidNotDriveError
+from kurt2rt.faults.drill import SERVICE_ENDS
+from kurt2rt.faults.error import DidNotDriveError
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ import pytest
 
 from kurt2rt.faults.judge import judge
 from kurt2rt.faults.outcome import Outcome, Standstill
-from tests.faults.helpers import case_of
+from kurt2rt.faults.table import cases_of
+from tests.faults.helpers import TABLE, case_of
 
 STOOD = Outcome(
     target="tick",
@@ -80,6 +81,13 @@ def test_one_that_must_stutter_must_not_stand_for_good() -> None:
     )
     assert judge(must, stuttered).passed
     assert "must go on in between" in "; ".join(judge(must, replace(stuttered, went_on=False)).complaints)
+
+
+def test_a_fault_that_does_nothing_passes_only_where_nothing_must_come_of_it() -> None:
+    for case in cases_of(TABLE):
+        counted = {case.must.counts: 1} if case.must.counts else {}
+        drives_on = case.must.leads_to == "drives_on"
+        assert judge(case.must, replace(DROVE, counted=counted)).passed is drives_on, str(case)
 
 
 def test_what_must_be_counted_must_be_there() -> None:
