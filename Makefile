@@ -7,7 +7,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-.PHONY: run demo test test-deep hil bench lint types clean
+.PHONY: run demo test test-deep guard mutants hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --page $(ARGS)
@@ -18,14 +18,24 @@ demo: $(INSTALLED)
 test: lint types
 	$(BIN)/pytest -n 4 -q
 
-test-deep: $(INSTALLED)
+test-deep: $(INSTALLED) guard
 	$(BIN)/pytest -n 2 -q -m deep
+
+# Every line and branch of the guard and of what it stands on, by the tests of hal alone.
+guard: $(INSTALLED)
+	$(BIN)/coverage run -m pytest -q tests/hal -k 'not million'
+	$(BIN)/coverage report
+
+# Every small change to them has to make a test fail; minutes.
+mutants: $(INSTALLED)
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[mutants]'
+	$(BIN)/python -m tests.hal.mutants
 
 # First that both machines can be had (the small kernel is built once, 3 minutes), then real time, then simulated time.
 hil: $(INSTALLED)
 	$(BIN)/python -m tests.hil.machine $(HIL) --check
 	$(BIN)/python -m tests.hil.machine $(HIL) --simulated-time --check
-	$(BIN)/python -m tests.hil.machine $(BIN)/python -m pytest -q -m hil tests/hil
+	$(BIN)/python -m tests.hil.machine --limit 1800 $(BIN)/python -m pytest -q -m hil tests/hil
 	$(BIN)/pytest -n 2 -q -m boots tests/hil
 
 bench: $(INSTALLED)
@@ -49,4 +59,4 @@ $(INSTALLED): pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis build *.egg-info
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage mutants build *.egg-info

@@ -1,14 +1,19 @@
 """The guard's small print: what the stories do not come by, and what a changed sign or number would break."""
 
 import math
+import threading
 
+import can
 import pytest
 
 from hal import guard as words
 from hal.bus import CanBus
+from hal.guard import Guard
 from hal.robot import STANDSTILL, Grant, WheelSpeeds
-from tests.hal.helpers import fresh
-from tests.hal.test_guard import Driver
+from hal.watchdog import Watchdog
+from tests.hal.helpers import ROBOT, fresh
+from tests.hal.playing import SlowBus
+from tests.hal.test_guard import FRONT, Driver
 
 Ends = tuple[CanBus, CanBus]
 
@@ -25,3 +30,59 @@ def test_frames_from_after_the_senses_are_no_proof(driver: Driver, kind: int, ag
     reason = (words.INFRARED_STALE, words.ENCODER_STALE, words.BUMPER_STALE)[kind]
     senses = fresh(driver.now_s, 0, *ages_s)
     assert driver.tell(WheelSpeeds(0.3, 0.3), senses) == Grant(STANDSTILL, (reason,), latched=False)
+
+
+def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:
+    driver.drive(0.0, 0.0)
+    assert driver.drive(0.9, -0.9, FRONT).reasons == (words.SPEED_LIMIT, words.FRONT_BUMPER, words.SLEW_LIMIT)
+
+
+def test_the_bus_gives_no_trouble_before_it_fails_nor_after_a_release(driver: Driver, ends: Ends) -> None:
+    assert driver.guard.bus_trouble == ""
+    ends[0].shutdown()
+    driver.drive(0.1, 0.1)
+    assert driver.guard.bus_trouble != ""
+    driver.guard.release()
+    assert driver.guard.bus_trouble == ""
+
+
+class RefusesOne(SlowBus):
+    """A bus whose queue was full for one frame."""
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        self.refuses = not self.attempts
+        super().send(msg, timeout)
+
+
+def test_a_frame_that_was_refused_is_told_of_though_its_brake_went_out() -> None:
+    end = RefusesOne(confirms=False)
+    guard = Guard(ROBOT, CanBus("slow", lambda _: end))
+    assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (words.BUS_LOST,)
+    assert guard.send_failures == 1
+    assert "transmit queue is full" in guard.bus_trouble
+
+
+def test_a_frame_is_made_only_when_it_says_something_new() -> None:
+    end = SlowBus(confirms=False)
+    guard = Guard(ROBOT, CanBus("slow", lambda _: end))
+    for tick, speeds in enumerate([(0.01, 0.0), (0.01, 0.0), (0.01, 0.01), (0.01, 0.01), (0.0, 0.01)]):
+        guard.drive(WheelSpeeds(*speeds), fresh(tick * 0.01), tick * 0.01, tick * 0.01)
+    first, second, third, fourth, fifth = end.attempts
+    assert first is second is not third
+    assert third is fourth is not fifth
+
+
+def test_the_silence_that_is_allowed_is_allowed_to_its_end(ends: Ends) -> None:
+    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.125, lambda: 100.0)
+    watchdog.beat()
+    assert not watchdog.check(100.125)
+    assert watchdog.check(100.125 + 1e-9)
+
+
+def test_the_watchdog_is_a_thread_that_has_a_name_and_ends_with_the_program(ends: Ends) -> None:
+    with Watchdog(Guard(ROBOT, ends[0]), 0.1) as watchdog:
+        (thread,) = [thread for thread in threading.enumerate() if thread.name == "watchdog"]
+        assert thread.daemon
+        with pytest.raises(RuntimeError, match=r"^the watchdog runs already; start it once$"):
+            watchdog.start()
+    assert not thread.is_alive()

@@ -1,0 +1,92 @@
+"""The small print of the watches on wheels and boards: their limits to the last number."""
+
+from typing import Any
+
+import pytest
+
+from hal.infrared_watch import InfraredWatch
+from hal.robot import WheelSpeeds
+from hal.robot_settings import RobotSettings
+from hal.wheel_watch import REVERSAL_SPEED_M_S, WheelWatch
+from tests.hal.helpers import robot_with
+
+FINE = 0.0001
+"""Speed in m/s of one tick a cycle."""
+
+
+def measured_finely(metres_per_tick: float = 1e-6, cycle_s: float = 0.01, **limits: Any) -> RobotSettings:
+    """The shipped robot, watched without tolerance, with encoders of another resolution."""
+    least = {"wheel_error_m_s": 0.004, "wheel_error_share": 0.0, "wheel_error_s": 0.001}
+    robot = robot_with(**{**least, **limits})
+    geometry = robot.geometry.model_copy(update={"metres_per_tick": metres_per_tick})
+    return robot.model_copy(update={"geometry": geometry, "can": robot.can.model_copy(update={"cycle_s": cycle_s})})
+
+
+class Watched:
+    """Two sides that turn as the test says."""
+
+    def __init__(self, robot: RobotSettings, first_ticks: int) -> None:
+        self._watch = WheelWatch(robot)
+        self._cycle_s = robot.can.cycle_s
+        self.now_s = 8.0
+        assert self._watch.disobedience(first_ticks, first_ticks, 1, self.now_s) == ""
+
+    def turn(self, told_m_s: float, left_ticks: int, right_ticks: int, elapsed_s: float | None = None) -> str:
+        self._watch.tell(WheelSpeeds(told_m_s, told_m_s))
+        self.now_s += self._cycle_s if elapsed_s is None else elapsed_s
+        return self._watch.disobedience(left_ticks, right_ticks, 1, self.now_s)
+
+
+@pytest.mark.parametrize(
+    ("from_m_s", "told_m_s", "within_m_s", "off_m_s"),
+    [
+        (0.3, 0.4, 0.3002, 0.2998),  # the slowest loop makes 0.304 of it
+        (0.6, 0.0, 0.5888, 0.5892),  # the slowest brake 0.585
+        (0.0, 0.6, 0.0036, 0.0034),  # the slowest motor 0.0075
+        (0.01, -0.6, 0.0039, 0.0041),  # it comes to rest before it turns back
+        (REVERSAL_SPEED_M_S, -0.3, 0.0111, 0.0113),  # slow enough to be turned back: 0.0072
+    ],
+)
+def test_the_slowest_obedient_side_is_known_to_the_tenth_of_a_millimetre(
+    from_m_s: float, told_m_s: float, within_m_s: float, off_m_s: float
+) -> None:
+    first, within, off = (round(speed / FINE) for speed in (from_m_s, within_m_s, off_m_s))
+    robot = measured_finely()
+    assert Watched(robot, first).turn(told_m_s, within, within) == ""
+    assert Watched(robot, first).turn(told_m_s, off, within).startswith("left wheels were told")
+    assert Watched(robot, first).turn(told_m_s, within, off).startswith("right wheels were told")
+
+
+EXACT = measured_finely(2**-16, 2**-7, wheel_error_m_s=2**-4, ticks_ceased_s=2**-3)
+"""Everything is a power of two, so that a limit can be met exactly: a tick a cycle is 2^-9 m/s."""
+HALF = 256
+"""Ticks a cycle at 0.5 m/s."""
+
+
+@pytest.mark.parametrize("ticks", [HALF - 32, HALF + 32])
+def test_an_error_as_large_as_is_tolerated_is_tolerated(ticks: int) -> None:
+    watched = Watched(EXACT, HALF)
+    assert watched.turn(0.5, ticks, ticks) == ""
+    further = ticks + (1 if ticks > HALF else -1)
+    assert watched.turn(0.5, further, HALF).startswith("left")
+
+
+def test_wheels_are_taken_as_they_are_only_after_more_silence_than_ticks_may_have() -> None:
+    for silence_s, said in ((2**-3, "left"), (2**-3 + 2**-7, "")):
+        assert Watched(EXACT, HALF).turn(0.5, 0, 0, silence_s)[:4] == said
+
+
+def test_two_looks_at_the_same_time_forget_nothing() -> None:
+    watched = Watched(EXACT, HALF)
+    assert watched.turn(0.5, HALF - 33, HALF, 0.0) == ""
+    assert watched.turn(0.5, HALF - 33, HALF).startswith("left")
+
+
+def test_a_board_is_frozen_after_just_the_time_it_may_repeat_itself() -> None:
+    watch = InfraredWatch(("ADC00", "BDC00"), 1.0)
+    assert watch.freeze(50.0, driving=False) == ""
+    watch.board_of("BDC00").alive_at_s = 50.5
+    assert watch.freeze(51.0 - 2**-20, driving=True) == ""
+    assert watch.freeze(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
+    watch.board_of("ADC00").alive_at_s = 51.5
+    assert watch.freeze(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
