@@ -5,7 +5,6 @@ import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from pathlib import Path
-from typing import NamedTuple
 
 import anyio
 import anyio.to_thread
@@ -29,8 +28,7 @@ BRAKING_CYCLES = 30
 LONG_ENOUGH_S = 60.0
 """For whatever a test waits for; it fails then."""
 _LOOK_S = 0.005
-_SILENT_CYCLES = 30
-_STARTED = "the robot program was started"
+STARTED = "the robot program was started"
 
 
 class Onlooker:
@@ -69,7 +67,9 @@ def onlooker(bus: str) -> Iterator[Onlooker]:
 
 
 def is_control(frame: can.Message) -> bool:
-    return frame.arbitration_id == CONTROL_ID and not frame.is_error_frame
+    return frame.arbitration_id == CONTROL_ID and not (
+        frame.is_error_frame or frame.is_extended_id or frame.is_remote_frame
+    )
 
 
 def drives(frame: can.Message) -> bool:
@@ -123,73 +123,93 @@ async def state_where(robot: TeacherClient, true: Callable[[State], bool]) -> St
     raise AssertionError("the client ended")
 
 
-class Told(NamedTuple):
-    """What the story tells at its end."""
+async def teach_kill_and_return(bus: str, folder: Path) -> int:
+    """The robot is taught over the bus and drives; its program is killed; it stands, and its program is back.
 
-    cycles_to_rest: int
-    """Of the controller, from the last CONTROL frame of the killed program until the wheels stood."""
-    silence_s: float
-    """From the kill to the first CONTROL frame of the program that was started in its place."""
-
-
-async def teach_kill_and_return(bus: str, folder: Path) -> Told:
-    """The robot is taught over the bus and drives; its program is killed; it stands, and its program is back."""
+    Returns how many cycles of the controller it took from the last CONTROL frame until the wheels stood.
+    """
     with running("sim", "--bus", bus, "--start", "1", folder=folder) as sim, onlooker(bus) as seen:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
-        with runtime(bus, folder) as robot, ExitStack() as supervised:
+        with runtime(bus, folder) as robot:
             async with teacher_of(robot, folder) as we:
                 assert (await we.take()).accepted
                 stopped = await state_where(we, lambda state: state.teacher == "local")
-                assert stopped.stopped_because == _STARTED
-                lessons = await _until_it_drives(we)
+                assert stopped.stopped_because == STARTED
+                lessons = await until_it_drives(we)
                 await seen.until(turns)
                 seen.forget()
                 robot.process.kill()
-                killed_at_s = time.monotonic()
-                robot = supervised.enter_context(runtime(bus, folder))
-                silent = await _silence(seen)
-                silence_s = time.monotonic() - killed_at_s
+                cycles = await _cycles_to_rest(seen)
+        await anyio.to_thread.run_sync(sim.wait_for, "CONTROL has ceased: the watchdog brakes")
+        with runtime(bus, folder) as robot:  # as a supervisor does
             async with teacher_of(robot, folder) as we:
                 back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
-                assert (back.action, back.unsaved, back.stopped_because) == (None, 0, _STARTED)
+                assert (back.action, back.unsaved, back.stopped_because) == (None, 0, STARTED)
                 assert back.lessons >= lessons  # one that was not acknowledged may be there as well
                 assert (await we.lessons())[-1].teacher == "local"
                 assert (await we.take()).accepted
-                await _until_it_drives(we)
-    assert silent[-1] is False
-    return Told(max((cycle + 1 for cycle, turned in enumerate(silent) if turned), default=0), silence_s)
+                await until_it_drives(we)
+    return cycles
 
 
-async def _until_it_drives(we: TeacherClient) -> int:
-    """Say go and answer what it asks until it drives by what it was taught; how many lessons that took.
+async def kill_and_return(bus: str, folder: Path) -> float:
+    """From the kill of the robot's program to the first CONTROL of the one that a supervisor starts at once, in s."""
+    with running("sim", "--bus", bus, folder=folder) as sim, onlooker(bus) as seen, ExitStack() as supervised:
+        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
+        robot = supervised.enter_context(runtime(bus, folder))
+        await seen.until(is_control)
+        robot.process.kill()
+        killed_at_s = time.monotonic()
+        robot.process.wait()
+        seen.forget()
+        supervised.enter_context(runtime(bus, folder))
+        await seen.until(is_control)
+        return time.monotonic() - killed_at_s
+
+
+async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
+    """Say go and answer what it asks with that action until it drives by its RLAs; how many lessons that took.
 
     Again and again: on a machine that has much to do at the same time the guard may stop it now and then.
     """
     lessons = 0
     with anyio.fail_after(LONG_ENOUGH_S):
         async for state in we.states():
-            if state.rla is not None and state.left_m_s > 0.1:
+            if state.rla is not None and abs(state.left_m_s) > 0.1:
                 return lessons
             with suppress(NoAnswerError):
                 if state.stopped_because:
                     await we.resume()
                 elif state.cause == "unknown":
-                    lessons += (await we.answer("forward", of=state.tick)).accepted
+                    lessons += (await we.answer(action, of=state.tick)).accepted
     raise AssertionError("the client ended")
 
 
-async def _silence(seen: Onlooker) -> list[bool]:
-    """Wait for CONTROL after a silence that no living program keeps; whether the wheels turned, cycle by cycle."""
+@asynccontextmanager
+async def kept_driving(we: TeacherClient, action: str) -> AsyncIterator[None]:
+    """Meanwhile the robot is told to go on whenever it stopped itself."""
+
+    async def keep() -> None:
+        while True:
+            await until_it_drives(we, action)
+            await state_where(we, lambda state: state.stopped_because != "" or state.cause == "unknown")
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(keep)
+        yield
+        tasks.cancel_scope.cancel()
+
+
+async def _cycles_to_rest(seen: Onlooker) -> int:
+    """Of the controller, from the last CONTROL frame of a program that was killed until the wheels stand."""
     turned: list[bool] = []
 
-    def a_new_one(frame: can.Message) -> bool:
+    def at_rest(frame: can.Message) -> bool:
         if is_control(frame):
-            if len(turned) > _SILENT_CYCLES:
-                return True
-            turned.clear()
+            turned.clear()  # there are some that the program sent before
         elif turns(frame) or stands(frame):
             turned.append(turns(frame))
-        return False
+        return len(turned) > WATCHDOG_CYCLES and not turned[-1]
 
-    await seen.until(a_new_one)
-    return turned
+    await seen.until(at_rest)
+    return max((cycle + 1 for cycle, turning in enumerate(turned) if turning), default=0)

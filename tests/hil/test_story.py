@@ -12,5 +12,5 @@ pytestmark = pytest.mark.hil
 async def test_taught_over_the_socket_killed_while_it_drives_and_back_with_all_it_knew(
     vcan0: str, tmp_path: Path
 ) -> None:
-    told = await teach_kill_and_return(vcan0, tmp_path)
-    assert told.cycles_to_rest <= WATCHDOG_CYCLES + BRAKING_CYCLES
+    cycles = await teach_kill_and_return(vcan0, tmp_path)
+    assert cycles <= WATCHDOG_CYCLES + BRAKING_CYCLES
