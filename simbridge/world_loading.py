@@ -1,10 +1,13 @@
 """From a name or a path to a world that the robot can drive in."""
 
+from pathlib import Path
+
 import shapely
 
 from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, find_config, load_settings
 from simbridge.geometry import polygons_of
+from simbridge.world_generator.names import GENERATED, generated
 from simbridge.world_settings import WorldSettings
 
 START_CLEARANCE_M = 0.05
@@ -13,10 +16,20 @@ START_CLEARANCE_M = 0.05
 
 def load(name_or_path: str, geometry: GeometrySettings) -> WorldSettings:
     """What simbridge.world_settings.load_world promises, for a robot of this shape."""
-    path = find_config("worlds", name_or_path)
-    world = load_settings(path, WorldSettings)
-    require_drivable(world, geometry, str(path))
+    world = generated(name_or_path)
+    source = name_or_path
+    if world is None:
+        path = _find(name_or_path)
+        source, world = str(path), load_settings(path, WorldSettings)
+    require_drivable(world, geometry, source)
     return world
+
+
+def _find(name_or_path: str) -> Path:
+    try:
+        return find_config("worlds", name_or_path)
+    except SettingsError as error:
+        raise SettingsError(f"{error}; or {GENERATED}") from error
 
 
 def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:
@@ -24,8 +37,8 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
 
     Raises SettingsError that names the source and the key.
     """
-    for i, start in enumerate(world.start_poses):
-        clear_m = world.clearance_m(start.pose, geometry)
+    clearances_m = world.clearances_m((start.pose for start in world.start_poses), geometry)
+    for i, clear_m in enumerate(clearances_m):
         if clear_m < START_CLEARANCE_M:
             raise SettingsError(
                 f"{source}: start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, "

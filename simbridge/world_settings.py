@@ -1,6 +1,7 @@
 """Schema of `config/worlds/*.yaml`: outline, walls, obstacles, streets and start poses. Lengths in metres."""
 
 import math
+from collections.abc import Iterable
 from itertools import combinations, pairwise
 from typing import Annotated, Literal, Self
 
@@ -149,16 +150,20 @@ class WorldSettings(Settings):
 
     def clearance_m(self, pose: Pose, geometry: GeometrySettings) -> float:
         """Distance from the body at a pose to the nearest wall or obstacle; 0 when it overlaps one or is outside."""
-        corners = rectangle((pose.x_m, pose.y_m), geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
-        body, room = shapely.Polygon(corners), shapely.Polygon(self.outline)
-        if not room.contains(body):
-            return 0.0
-        clear_m: float = body.distance(room.exterior)
-        for solid in self.solids:
-            clear_m = min(clear_m, body.distance(shapely.Polygon(solid)))
-        for post in self.round_obstacles:
-            clear_m = min(clear_m, body.distance(shapely.Point(post.x_m, post.y_m)) - post.radius_m)
-        return max(0.0, clear_m)
+        return self.clearances_m([pose], geometry)[0]
+
+    def clearances_m(self, poses: Iterable[Pose], geometry: GeometrySettings) -> list[float]:
+        """As clearance_m, for several poses at once."""
+        room = shapely.Polygon(self.outline)
+        shapely.prepare(room)
+        things = [room.exterior, *self.shapes]
+        clear_m = []
+        for pose in poses:
+            body = shapely.Polygon(
+                rectangle((pose.x_m, pose.y_m), geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
+            )
+            clear_m.append(float(shapely.distance(body, things).min()) if room.contains(body) else 0.0)
+        return clear_m
 
 
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:

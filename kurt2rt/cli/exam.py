@@ -22,7 +22,10 @@ def exam(
     seed: Seed = 1,
     world: Annotated[
         list[str] | None,
-        typer.Option(help="World by name (config/worlds) or path; repeat for several. Default: those of the task."),
+        typer.Option(
+            help="World by name (config/worlds; rooms-N or streets-N for a new one by its seed) or path; repeat for "
+            "several. Default: those of the task."
+        ),
     ] = None,
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",

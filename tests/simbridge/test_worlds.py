@@ -9,9 +9,9 @@ import yaml
 from config import CONFIG_DIR
 from hal.settings import SettingsError
 from simbridge.obstacle_settings import PolygonObstacleSettings
-from simbridge.sight import Sight
 from simbridge.world import World
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_settings import load_world
+from tests.simbridge.left_wall import left_clearances_m
 from tests.simbridge.rig import ROBOT, Rig, room
 
 NAMES = ("a", "b", "c")
@@ -28,25 +28,6 @@ STAR = [[0.5, 0.2], [0.68, 0.74], [0.2, 0.41], [0.8, 0.41], [0.32, 0.74]]
 AHEAD = {"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}
 DIVIDER = {"name": "divider", "from_m": [0.8, 0.0], "to_m": [0.8, 3.0], "thickness_m": 0.02}
 BOARD = {"name": "board", "from_m": [1.5, 0.0], "to_m": [1.5, 1.5], "thickness_m": 0.05}
-
-
-def left_clearances_m(world: WorldSettings, start: int) -> list[float]:
-    """Distance to the wall at the left of each left sensor at a start pose."""
-    pose = world.start_poses[start].pose
-    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-    sight = Sight(World(world), 2.0)
-    sight.look_from(pose.x_m, pose.y_m)
-    return [
-        sight.distance_m(
-            pose.x_m + sensor.x_m * cos - sensor.y_m * sin,
-            pose.y_m + sensor.x_m * sin + sensor.y_m * cos,
-            -sin,
-            cos,
-            1.5,
-        )
-        for sensor in ROBOT.infrared.sensors
-        if sensor.heading_deg == 90
-    ]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,0 +1,30 @@
+"""Chance that falls alike on every machine."""
+
+import random
+from collections.abc import Sequence
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+class Dice:
+    """Choices made from a text; only Random.random() is used, the one sequence that Python promises never to change."""
+
+    def __init__(self, text: str) -> None:
+        self._random = random.Random(text).random
+
+    def length_m(self, least_m: float, most_m: float) -> float:
+        """A length in whole centimetres, bounds included: sums of them differ nowhere by a last bit that matters."""
+        return round(round(least_m * 100) + self.whole(round((most_m - least_m) * 100) + 1)) / 100
+
+    def whole(self, count: int) -> int:
+        """A whole number from 0 to below count."""
+        return int(self._random() * count)
+
+    def of(self, choices: Sequence[T]) -> T:
+        """One of them."""
+        return choices[self.whole(len(choices))]
+
+    def chance(self, share: float) -> bool:
+        """True in this share of cases."""
+        return self._random() < share

@@ -1,0 +1,19 @@
+"""Generated worlds by their names, such as `rooms-17`."""
+
+import re
+
+from simbridge.world_generator.rooms import room
+from simbridge.world_generator.streets import streets
+from simbridge.world_settings import WorldSettings
+
+GENERATED = "rooms-N or streets-N with any whole number N up to 9 digits, such as rooms-17"
+"""The names there are, for people."""
+_NAME = re.compile(r"(rooms|streets)-(0|[1-9]\d{0,8})", re.ASCII)
+
+
+def generated(name: str) -> WorldSettings | None:
+    """The world of this name, always the same one; None when the name is not one of a generated world."""
+    match = _NAME.fullmatch(name)
+    if match is None:
+        return None
+    return (room if match[1] == "rooms" else streets)(int(match[2]))

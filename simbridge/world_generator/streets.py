@@ -1,0 +1,119 @@
+"""Streets between blocks, like Manhattan world's: other widths, other numbers, and squares where a block is missing."""
+
+from itertools import accumulate, chain, product
+
+from simbridge.geometry import Point
+from simbridge.obstacle_settings import PolygonObstacleSettings
+from simbridge.world_generator.dice import Dice
+from simbridge.world_settings import StartPoseSettings, StreetSettings, WorldSettings
+
+_NARROWEST_M, _WIDEST_M = 0.7, 1.1
+"""In narrower ones the robot cannot turn with 6 cm to spare; in wider ones it loses the blocks' corners from sight."""
+
+Block = tuple[int, int]
+"""Column from the left and row from below."""
+
+
+def streets(seed: int) -> WorldSettings:
+    """The street grid of a seed: 3 to 5 streets each way, those at the border included."""
+    name = f"streets-{seed}"
+    dice = Dice(name)
+    columns, rows = _Axis(2 + dice.whole(3), dice), _Axis(2 + dice.whole(3), dice)
+    blocks = list(product(range(columns.blocks), range(rows.blocks)))
+    # Not at the corners of the grid, where two streets at the border would go with the block.
+    inner = [block for block in blocks if 0 < block[0] < columns.blocks - 1 or 0 < block[1] < rows.blocks - 1]
+    for _ in range(dice.whole(2 + len(inner) // 4) if inner else 0):
+        inner.remove(missing := dice.of(inner))
+        blocks.remove(missing)
+    width_m, height_m = columns.length_m, rows.length_m
+    built = set(blocks)
+    stretches = [
+        *_stretches(built, columns, rows, upright=True),
+        *_stretches({(row, column) for column, row in built}, rows, columns, upright=False),
+    ]
+    return WorldSettings(
+        name=name,
+        size_m=(width_m, height_m),
+        infrared_rays=1,
+        outline=((0.0, 0.0), (width_m, 0.0), (width_m, height_m), (0.0, height_m), (0.0, 0.0)),
+        polygon_obstacles=tuple(
+            PolygonObstacleSettings(
+                name=f"block-{column}{row}",
+                corners=(
+                    (columns.begin_m(column), rows.begin_m(row)),
+                    (columns.end_m(column), rows.begin_m(row)),
+                    (columns.end_m(column), rows.end_m(row)),
+                    (columns.begin_m(column), rows.end_m(row)),
+                ),
+            )
+            for column, row in blocks
+        ),
+        streets=_joined(stretches),
+        start_poses=tuple(_start(each, dice) for each in stretches),
+    )
+
+
+class _Axis:
+    """Widths along one axis: a street, a block, a street, and so on, and a street at last."""
+
+    def __init__(self, blocks: int, dice: Dice) -> None:
+        self.blocks = blocks
+        self.widths_m = [dice.length_m(_NARROWEST_M, _WIDEST_M) for _ in range(blocks + 1)]
+        """Of the streets."""
+        block_widths_m = [dice.length_m(0.6, 1.3) for _ in range(blocks)]
+        both = chain.from_iterable(zip(self.widths_m, [*block_widths_m, 0.0], strict=True))
+        self._edges_m = [0.0, *(round(edge_m, 2) for edge_m in accumulate(both))]
+
+    @property
+    def length_m(self) -> float:
+        return self._edges_m[-1]
+
+    def begin_m(self, block: int) -> float:
+        return self._edges_m[2 * block + 1]
+
+    def end_m(self, block: int) -> float:
+        return self._edges_m[2 * block + 2]
+
+    def middle_m(self, street: int) -> float:
+        return round((self._edges_m[2 * street] + self._edges_m[2 * street + 1]) / 2, 3)
+
+
+def _stretches(
+    built: frozenset[Block] | set[Block], across: _Axis, along: _Axis, *, upright: bool
+) -> list[StreetSettings]:
+    """Streets from one junction to the next that have all their blocks beside them."""
+
+    def place(across_m: float, along_m: float) -> Point:
+        return (across_m, along_m) if upright else (along_m, across_m)
+
+    return [
+        StreetSettings(
+            from_m=place(across.middle_m(street), along.middle_m(k)),
+            to_m=place(across.middle_m(street), along.middle_m(k + 1)),
+            width_m=across.widths_m[street],
+        )
+        for street in range(across.blocks + 1)
+        for k in range(along.blocks)
+        if all((beside, k) in built for beside in (street - 1, street) if 0 <= beside < across.blocks)
+    ]
+
+
+def _joined(stretches: list[StreetSettings]) -> tuple[StreetSettings, ...]:
+    """The same with stretches that go on straight as one street, so that streets meet at junctions only."""
+    joined: list[StreetSettings] = []
+    for each in stretches:
+        if joined and joined[-1].to_m == each.from_m and _is_upright(joined[-1]) == _is_upright(each):
+            each = joined.pop().model_copy(update={"to_m": each.to_m})
+        joined.append(each)
+    return tuple(joined)
+
+
+def _is_upright(street: StreetSettings) -> bool:
+    return street.from_m[0] == street.to_m[0]
+
+
+def _start(street: StreetSettings, dice: Dice) -> StartPoseSettings:
+    """Halfway between two junctions, one way or the other."""
+    (ax, ay), (bx, by) = street.from_m, street.to_m
+    heading_deg = dice.of((90.0, -90.0)) if _is_upright(street) else dice.of((0.0, 180.0))
+    return StartPoseSettings(x_m=round((ax + bx) / 2, 3), y_m=round((ay + by) / 2, 3), heading_deg=heading_deg)

@@ -1,0 +1,148 @@
+"""Worlds by their seeds: all of them can be driven in, and each is always the same."""
+
+import hashlib
+import math
+
+import pytest
+import shapely
+
+from hal.settings import SettingsError
+from simbridge.world_generator.dice import Dice
+from simbridge.world_generator.drivable import TURNING_M, is_drivable
+from simbridge.world_settings import WorldSettings, load_world
+from tests.simbridge.left_wall import left_clearances_m
+from tests.simbridge.rig import ROBOT, Rig
+from tests.simbridge.test_laps import follow, lap_driven
+
+
+def seeds(quick: range, deep: range) -> list[object]:
+    return [pytest.param(quick, id="quick"), pytest.param(deep, id="deep", marks=pytest.mark.deep)]
+
+
+def generated(name: str) -> WorldSettings:
+    return load_world(name, ROBOT)
+
+
+def digest(name: str) -> str:
+    return hashlib.sha256(generated(name).model_dump_json().encode()).hexdigest()[:16]
+
+
+@pytest.mark.parametrize("some", seeds(range(100), range(100, 1100)))
+def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
+    for seed in some:
+        world = generated(f"rooms-{seed}")
+        floor = world.free_space
+        assert is_drivable(floor), world.name
+        centres = floor.buffer(-TURNING_M + 0.002)
+        assert len(world.start_poses) >= 8
+        for start, pose in enumerate(world.start_poses):
+            assert centres.contains(shapely.Point(pose.x_m, pose.y_m)), f"{world.name} start_poses.{start}"
+        corners = shapely.Polygon(world.outline)
+        assert corners.area < corners.convex_hull.area - 0.05, f"{world.name} has no corner that points inwards"
+        assert world.walls[0].name == "tongue"
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 9), range(100, 1100, 9)))
+def test_every_start_in_a_room_has_its_wall_on_the_left_and_looks_along_it(some: range) -> None:
+    for seed in some:
+        world = generated(f"rooms-{seed}")
+        for start in range(len(world.start_poses)):
+            clearances = left_clearances_m(world, start)
+            assert all(0.145 <= clear_m <= 0.305 for clear_m in clearances), f"{world.name} {start}: {clearances}"
+            assert max(clearances) - min(clearances) < 0.01
+
+
+@pytest.mark.parametrize("some", seeds(range(100), range(100, 1100)))
+def test_the_robot_finds_its_way_through_all_streets(some: range) -> None:
+    for seed in some:
+        world = generated(f"streets-{seed}")
+        floor = world.free_space
+        assert is_drivable(floor), world.name
+        faces = floor.boundary
+        junctions = world.junctions
+        assert len(junctions) >= 9
+        for street in world.streets:
+            assert 0.7 <= street.width_m <= 1.1
+            line = shapely.LineString([street.from_m, street.to_m])
+            # At its junctions a wider street may cross it, along its blocks its walls are where they should be.
+            assert faces.distance(line) == pytest.approx(street.width_m / 2, abs=0.21), world.name
+        middles = shapely.MultiLineString([[street.from_m, street.to_m] for street in world.streets])
+        for start in world.start_poses:
+            assert middles.distance(shapely.Point(start.x_m, start.y_m)) < 1e-9
+            assert all(math.dist((start.x_m, start.y_m), junction) > 0.6 for junction in junctions)
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 9), range(100, 1100, 9)))
+def test_every_start_in_a_street_is_in_its_middle(some: range) -> None:
+    for seed in some:
+        world = generated(f"streets-{seed}")
+        for start in range(len(world.start_poses)):
+            clearances = left_clearances_m(world, start)
+            assert max(clearances) - min(clearances) < 1e-6
+            assert 0.35 - 0.165 - 1e-6 <= clearances[0] <= 0.55 - 0.165 + 1e-6
+
+
+def test_a_square_is_no_street() -> None:
+    world = next(world for world in map(generated, (f"streets-{i}" for i in range(50))) if has_a_square(world))
+    assert len(world.junctions) >= 9
+    free = world.free_space
+    for street in world.streets:
+        middle = shapely.LineString([street.from_m, street.to_m]).interpolate(0.5, normalized=True)
+        assert free.boundary.distance(middle) < 1.0
+
+
+def has_a_square(world: WorldSettings) -> bool:
+    columns = {name[-2] for name in world.names}
+    rows = {name[-1] for name in world.names}
+    return len(world.names) < len(columns) * len(rows)
+
+
+def test_the_same_seed_is_the_same_world_everywhere() -> None:
+    # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
+    assert [digest("rooms-17"), digest("streets-3")] == ["814b6389eb60dc6e", "6635d1be71c0b592"]
+
+
+def test_other_seeds_are_other_worlds() -> None:
+    assert len({digest(f"rooms-{i}") for i in range(20)} | {digest(f"streets-{i}") for i in range(20)}) == 40
+
+
+def test_dice_fall_within_their_bounds_and_reach_them() -> None:
+    dice = Dice("bounds")
+    lengths = {dice.length_m(0.7, 1.1) for _ in range(2000)}
+    assert (min(lengths), max(lengths), len(lengths)) == (0.7, 1.1, 41)
+    assert {dice.whole(3) for _ in range(100)} == {0, 1, 2}
+
+
+def test_a_gap_that_the_robot_does_not_fit_through_is_not_drivable() -> None:
+    room = shapely.box(0, 0, 4, 3)
+    assert is_drivable(room)
+    assert is_drivable(room.difference(shapely.box(1.9, 0, 2.0, 2.3)))
+    assert not is_drivable(room.difference(shapely.box(1.9, 0, 2.0, 2.5)))
+    assert not is_drivable(room.difference(shapely.box(0.3, 0.0, 0.4, 1.0)))
+
+
+@pytest.mark.parametrize("name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3"])
+def test_a_name_that_nothing_has_is_answered_with_those_that_there_are(name: str) -> None:
+    with pytest.raises(SettingsError, match=rf"^{name}: .* a, b, c, manhattan, .*; or rooms-N or streets-N with any"):
+        load_world(name)
+
+
+def test_a_plain_wall_follower_laps_a_generated_room() -> None:
+    world = generated("rooms-0")
+    with Rig(world) as rig:
+        assert lap_driven(rig, world.start_poses[0].pose) == pytest.approx(1.0, abs=0.02)
+        assert rig.robot.collisions == 0
+
+
+@pytest.mark.deep
+def test_a_plain_wall_follower_makes_its_way_round_nearly_all_rooms() -> None:
+    # It knows nothing of sharp corners, at which it may brush a wall.
+    lapped = 0
+    for seed in range(100):
+        world = generated(f"rooms-{seed}")
+        with Rig(world) as rig:
+            rig.robot.place(world.start_poses[0].pose)
+            while rig.robot.time_s < 150.0 and rig.robot.laps < 1.0:
+                rig.drive(*follow(rig), 0.05)
+            lapped += rig.robot.laps >= 1.0
+    assert lapped >= 90
