@@ -58,7 +58,13 @@ def test_output_goes_to_files_where_the_order_says_so(tmp_path: Path) -> None:
 
 # Both end only because nobody is left who holds the output open.
 def test_a_command_that_takes_too_long_is_ended_with_all_it_started() -> None:
-    assert run("sh", "-c", "sleep 1000 & wait", limit_s=0.3).returncode == 124
+    done = run("sh", "-c", "sleep 1000 & wait", limit_s=0.3)
+    assert (done.returncode, done.stderr) == (124, "machine: time limit of 0.3 s\n")
+
+
+def test_a_commands_own_124_is_no_time_limit() -> None:
+    done = run("sh", "-c", "exit 124")
+    assert (done.returncode, done.stderr) == (124, "")
 
 
 def test_what_a_command_leaves_running_ends_with_it() -> None:

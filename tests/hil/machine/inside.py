@@ -54,14 +54,17 @@ def run(task: dict[str, Any]) -> int:
                 **streams,
             )
         except OSError as error:
-            text = f"machine: cannot run {command[0]}: {error.strerror}\n"
-            (streams["stderr"] or sys.stderr.buffer).write(text.encode())
+            _tell(streams, f"cannot run {command[0]}: {error.strerror}")
             return _NOT_FOUND if isinstance(error, FileNotFoundError) else _NOT_EXECUTABLE
-        return _wait(child, task["limit_s"])
+        status, over = _wait(child, task["limit_s"])
+        if over:
+            _tell(streams, f"time limit of {task['limit_s']} s")
+            return TIME_LIMIT
+        return status if status >= 0 else 128 - status
 
 
-def _wait(child: subprocess.Popen[bytes], limit_s: float) -> int:
-    """Wait without polling, for in simulated time each look would be an event of its own."""
+def _wait(child: subprocess.Popen[bytes], limit_s: float) -> tuple[int, bool]:
+    """Its return code, and whether it took too long. No polling: in simulated time each look would be an event."""
     signal.pthread_sigmask(signal.SIG_BLOCK, _WATCHED)
     deadline_s = time.monotonic() + limit_s
     over = False
@@ -75,9 +78,11 @@ def _wait(child: subprocess.Popen[bytes], limit_s: float) -> int:
             os.killpg(child.pid, came.si_signo)
     with suppress(ProcessLookupError):  # what it left running
         os.killpg(child.pid, signal.SIGKILL)
-    if over:
-        return TIME_LIMIT
-    return child.returncode if child.returncode >= 0 else 128 - child.returncode
+    return child.returncode, over
+
+
+def _tell(streams: dict[str, Any], text: str) -> None:
+    (streams["stderr"] or sys.stderr.buffer).write(f"machine: {text}\n".encode())
 
 
 def _do(*words: str) -> None:

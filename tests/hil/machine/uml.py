@@ -71,13 +71,13 @@ class Uml:
             log = control / "log"
             with _Relay(control / "stdout", 1) as out, _Relay(control / "stderr", 2) as err:
                 deadline_s = time.monotonic() + self._order.limit_s + _SPARE_S
+                over = False
                 with self._booted(control, log) as machine:
-                    while (over := time.monotonic() >= deadline_s) is False:
-                        with contextlib.suppress(subprocess.TimeoutExpired):
-                            machine.wait(_LOOK_S)
-                            break
+                    while machine.poll() is None and not over:
+                        time.sleep(_LOOK_S)
                         out.pass_on()
                         err.pass_on()
+                        over = time.monotonic() >= deadline_s
                 out.pass_on()
                 err.pass_on()
             return self._status(control, log, machine.returncode, over=over)
@@ -149,10 +149,7 @@ class Uml:
 
     def _status(self, control: Path, log: Path, ended: int, *, over: bool) -> int:
         with contextlib.suppress(FileNotFoundError):
-            status = int((control / "status").read_text(encoding="ascii"))
-            if status == TIME_LIMIT:
-                print(f"machine: time limit of {self._order.limit_s} s", file=sys.stderr, flush=True)
-            return status
+            return int((control / "status").read_text(encoding="ascii"))
         if over:
             print(f"machine: time limit of {self._order.limit_s} s; the machine was ended", file=sys.stderr, flush=True)
             return TIME_LIMIT

@@ -7,6 +7,7 @@ import pytest
 
 from hal.guard import INFRARED_STALE
 from hal.watchdog import TICKS_CEASED
+from tests.hil.simulated_time.log import Turned
 from tests.hil.simulated_time.played import Played
 from tests.hil.simulated_time.stage import Story
 
@@ -14,8 +15,14 @@ pytestmark = pytest.mark.boots
 
 Play = Callable[[Story], Played]
 CYCLE_US = 10_000
+JITTER_US = 100
+"""Work takes no time here, but each look at the clock takes a little."""
 DRIVES_TICKS = 340
 """Of both sides in a cycle, at the 0.3 m/s that the teacher's policy likes."""
+
+
+def slows(turned: Turned) -> bool:
+    return turned.ticks < DRIVES_TICKS
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.0025, 0.005, 0.0075])
@@ -30,9 +37,9 @@ def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_fa
     last_us = log.infrared_us[-1]
     before = [told for told in log.told if told.at_us > last_us and not told.stops]
     stop = next(told for told in log.told if told.at_us > last_us and told.stops)
-    assert 50_000 < stop.at_us - last_us <= 60_000
-    assert before[-1].at_us - last_us <= 50_000
-    assert stop.at_us - (last_us + CYCLE_US) <= 50_000
+    assert 50_000 < stop.at_us - last_us <= 60_000 + JITTER_US
+    assert before[-1].at_us - last_us <= 50_000 + JITTER_US
+    assert stop.at_us - (last_us + CYCLE_US) <= 50_000 + JITTER_US
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.005])
@@ -44,11 +51,11 @@ def test_a_tick_that_hangs_is_stopped_by_the_second_guard_within_100_ms(play: Pl
     hangs_from_us = round(1e6 * played.runtime["hangs_from_s"])
     stop, *later = (told for told in played.log.told if told.at_us > hangs_from_us)
     assert stop.brakes
-    assert stop.at_us - hangs_from_us <= 100_000
+    assert stop.at_us - hangs_from_us <= 100_000 + JITTER_US
     # It brakes on, also when the loop has come back.
     assert all(told.brakes for told in later)
     gaps_us = [after.at_us - before.at_us for before, after in pairwise([stop, *later])]
-    assert max(gaps_us) <= CYCLE_US + 1000
+    assert max(gaps_us) <= CYCLE_US + JITTER_US
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.0075])
@@ -56,10 +63,11 @@ def test_when_the_runtime_is_killed_the_robot_brakes_by_itself_after_200_ms(play
     log = play(Story(3.5, phase_s=phase_s, runtime_killed_s=2.0)).log
     last_us = log.told[-1].at_us
     assert not log.told[-1].stops
-    full_speed_us = [turned.at_us - last_us for turned in log.turned if turned.ticks >= DRIVES_TICKS]
-    assert 190_000 <= max(full_speed_us) <= 200_000
+    # It counts its own cycles, and takes up to one to see the last frame.
+    slower_us = next(turned.at_us - last_us for turned in log.turned if turned.at_us > last_us and slows(turned))
+    assert 200_000 <= slower_us <= 200_000 + CYCLE_US + JITTER_US
     standing_us = next(turned.at_us - last_us for turned in log.turned if turned.at_us > last_us and not turned.ticks)
-    assert standing_us <= 310_000  # from 0.3 m/s at 3 m/s^2
+    assert standing_us - slower_us <= 100_000 + JITTER_US  # from 0.3 m/s at 3 m/s^2
     assert all(turned.ticks == 0 for turned in log.turned if turned.at_us >= last_us + standing_us)
 
 

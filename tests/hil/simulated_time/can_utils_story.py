@@ -1,0 +1,216 @@
+"""can-utils work with the simulated robot and the runtime as they would with the real ones.
+
+Programs as a person starts them, on the kernel's vcan0 and its own clock, which in simulated time waits for each of
+them; `test_programs` runs this in a machine of that kind.
+"""
+
+import asyncio
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import anyio
+import anyio.to_thread
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from hal.bus import CONTROL_ID, open_bus
+from hal.guard import FOREIGN_CONTROL
+from hal.kurt2 import Kurt2
+from kurt2rt.channel.state import State
+from kurt2rt.teaching import TeacherClient
+from tests.cli.helpers import Running, running
+from tests.cli.three_programs import (
+    CODEC,
+    ENCODER,
+    LONG_ENOUGH_S,
+    ROBOT,
+    brakes,
+    drives,
+    is_control,
+    kept_driving,
+    onlooker,
+    runtime,
+    stands,
+    state_where,
+    teacher_of,
+    turns,
+    until_it_drives,
+)
+from tests.hil.can_utils import Line, candump, cansend, cantools_decode, doing, lines_of
+
+STOP = "001#00000103FF0103FF"
+SLOWLY = "0002000A000A0001"
+INFRARED = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07")
+
+
+class AtWork(NamedTuple):
+    """A robot that spins on the spot, for one RLA tells it to wherever it is."""
+
+    sim: Running
+    robot: Running
+    we: TeacherClient
+
+
+@asynccontextmanager
+async def at_work(bus: str, folder: Path) -> AsyncIterator[AtWork]:
+    with running("sim", "--bus", bus, folder=folder) as sim:
+        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
+        with runtime(bus, folder, "--settings", str(one_rule_for_all(folder))) as robot:
+            async with teacher_of(robot, folder) as we:
+                assert (await we.take()).accepted
+                await until_it_drives(we, "spin_left")
+                yield AtWork(sim, robot, we)
+
+
+def one_rule_for_all(folder: Path) -> Path:
+    """Runtime settings with a confidence radius that no situation is outside of."""
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
+    task["learning"]["radius"] = 100_000
+    (folder / "task.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
+    service = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
+    service["task"] = str(folder / "task.yaml")
+    path = folder / "runtime.yaml"
+    path.write_text(yaml.safe_dump(service), encoding="utf-8")
+    return path
+
+
+async def test_candump_shows_the_traffic_and_cantools_reads_every_frame(vcan0: str, tmp_path: Path) -> None:
+    async with at_work(vcan0, tmp_path):
+        log = await anyio.to_thread.run_sync(candump, vcan0, 2000)
+    lines = lines_of(log)
+    names = [CODEC.by_id[line.frame_id].name if line.frame_id != CONTROL_ID else "CONTROL" for line in lines]
+    assert {"CONTROL", *INFRARED, "ENCODER", "BUMPERC", "INFO_1", "INFO_2", "GYRO_MC1", "DEADRECK"} <= set(names)
+    span_s = lines[-1].time_s - lines[0].time_s
+    for name in ("CONTROL", "ENCODER"):
+        # 100 a second at most; a machine that has much to do misses some, and how many is not this test's matter.
+        assert 20 * span_s < names.count(name) <= 100 * span_s + 2
+    told = cantools_decode(log).splitlines()
+    assert len(told) == len(lines)
+    for name, line in zip(names, told, strict=True):
+        assert f":: {name}(" in line
+
+
+async def test_an_emergency_stop_by_cansend_is_obeyed_by_robot_and_runtime(vcan0: str, tmp_path: Path) -> None:
+    async with at_work(vcan0, tmp_path) as (_, robot, we):
+        with onlooker(vcan0) as seen:
+            stopped = await _stopped_by_cansend(vcan0, we)
+            assert (stopped.left_m_s, stopped.right_m_s) == (0.0, 0.0)
+            await seen.until(stands)
+            seen.forget()
+            passed = await seen.until(lambda frame: frame.arbitration_id == CODEC.message("INFO_1").frame_id)
+            assert not any(turns(frame) or drives(frame) for frame in passed)
+            assert all(brakes(frame) for frame in passed if is_control(frame))
+        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {FOREIGN_CONTROL}")
+        await until_it_drives(we)  # after resume
+
+
+async def _stopped_by_cansend(bus: str, we: TeacherClient) -> State:
+    """Tried anew where something else was quicker to stop it: a machine that has much to do, for instance."""
+    while True:
+        await until_it_drives(we, "spin_left")
+        await anyio.to_thread.run_sync(cansend, bus, STOP)
+        state = await state_where(we, lambda state: state.stopped_because != "")
+        if FOREIGN_CONTROL in state.guard:
+            return state
+
+
+async def test_a_robot_without_a_runtime_is_stopped_and_driven_by_cangen(vcan0: str, tmp_path: Path) -> None:
+    with running("sim", "--bus", vcan0, folder=tmp_path) as sim, onlooker(vcan0) as seen:
+        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {vcan0}")
+        with doing("cangen", vcan0, "-I", "001", "-L", "8", "-D", SLOWLY, "-g", "10"):
+            await seen.until(turns)
+            await anyio.to_thread.run_sync(sim.wait_for, "CONTROL is heard and obeyed")
+        await seen.until(stands)
+        await anyio.to_thread.run_sync(sim.wait_for, "CONTROL has ceased: the watchdog brakes")
+
+
+@pytest.mark.parametrize("flood", [("-I", "300"), ("-e", "-I", "1"), ("-R", "-I", "301")], ids=" ".join)
+async def test_a_flood_of_frames_that_mean_nothing_here_disturbs_neither(
+    vcan0: str, tmp_path: Path, flood: tuple[str, ...]
+) -> None:
+    async with at_work(vcan0, tmp_path) as (_, _, we):
+        with onlooker(vcan0) as seen, doing("cangen", vcan0, "-g", "1", *flood) as cangen:
+            async with kept_driving(we, "spin_left"):
+                for _ in range(3):
+                    await seen.until(lambda frame: frame.is_extended_id or frame.arbitration_id in (0x300, 0x301))
+                    await seen.until(drives)
+                    await seen.until(turns)
+                assert (await state_where(we, lambda state: state.rla == 1)).trouble == ""
+            assert cangen.poll() is None
+
+
+class Recorded(NamedTuple):
+    """A candump log of a robot that was driven a little, without CONTROL, and what is in it."""
+
+    log: Path
+    counts: set[tuple[int, ...]]
+    """Readings of all sensors after each frame."""
+    ticks: tuple[int, int]
+    """Of the encoders, altogether."""
+
+
+@pytest.fixture
+def recorded(vcan0: str, tmp_path: Path) -> Recorded:
+    with running("sim", "--bus", vcan0, folder=tmp_path) as sim:
+        sim.wait_for(f"is on bus {vcan0}")
+        with doing("cangen", vcan0, "-I", "001", "-L", "8", "-D", SLOWLY, "-g", "10"):
+            sim.wait_for("CONTROL is heard and obeyed")
+            log = candump(f"{vcan0},001~7FF", 1500)
+    path = tmp_path / "recorded.log"
+    path.write_text(log, encoding="ascii")
+    lines = lines_of(log)
+    encoder = [ENCODER.unpack(line.data) for line in lines if line.frame_id == ENCODER.frame_id]
+    assert any(left for left, _ in encoder)
+    ticks = sum(left for left, _ in encoder), sum(right for _, right in encoder)
+    return Recorded(path, set(counts_in(lines * 2)), ticks)  # twice, for it may be played round and round
+
+
+def counts_in(lines: list[Line]) -> Iterator[tuple[int, ...]]:
+    """Readings of all sensors, in the order of the sensor table, after each frame."""
+    channels = dict.fromkeys((sensor.channel for sensor in ROBOT.infrared.sensors), 0)
+    yield tuple(channels.values())
+    for line in lines:
+        codec = CODEC.by_id[line.frame_id]
+        for signal, value in zip(codec.signals, codec.unpack(line.data), strict=True):
+            if signal in channels:
+                channels[signal] = value
+        yield tuple(channels.values())
+
+
+async def test_a_log_that_canplayer_plays_is_sensed_as_it_was_recorded(vcan0: str, recorded: Recorded) -> None:
+    kurt2 = Kurt2(ROBOT, open_bus(vcan0))
+    ticks, sensed = [0, 0], set()
+    with doing("canplayer", "-I", str(recorded.log)) as canplayer:
+        now_s, left_to_look = 0.0, 5
+        while left_to_look:
+            left_to_look -= canplayer.poll() is not None
+            now_s += ROBOT.can.cycle_s
+            senses = kurt2.sense(now_s)
+            ticks[0] += senses.encoder_left_ticks
+            ticks[1] += senses.encoder_right_ticks
+            sensed.add(senses.infrared_counts)
+            await asyncio.sleep(ROBOT.can.cycle_s)
+    kurt2.close()
+    assert tuple(ticks) == recorded.ticks
+    assert len(sensed) > 50
+    assert sensed <= recorded.counts
+
+
+async def test_a_log_that_canplayer_plays_drives_the_runtime(vcan0: str, tmp_path: Path, recorded: Recorded) -> None:
+    with doing("canplayer", "-l", "i", "-I", str(recorded.log)), runtime(vcan0, tmp_path) as robot:
+        async with teacher_of(robot, tmp_path) as we:
+            assert (await we.take()).accepted
+            assert (await we.resume()).accepted
+            asks = await state_where(we, lambda state: state.cause == "unknown")
+            assert asks.infrared_counts in recorded.counts
+            assert (await we.answer("stand", of=asks.tick)).accepted
+            with anyio.fail_after(LONG_ENOUGH_S):
+                seen = 0
+                async for state in we.states():
+                    assert state.infrared_counts in recorded.counts
+                    seen += state.rla == 1
+                    if seen >= 10:
+                        break
