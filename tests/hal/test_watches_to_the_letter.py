@@ -44,7 +44,6 @@ class Watched:
         (0.6, 0.0, 0.5888, 0.5892),  # the slowest brake 0.585
         (0.0, 0.6, 0.0036, 0.0034),  # the slowest motor 0.0075
         (0.01, -0.6, 0.0039, 0.0041),  # it comes to rest before it turns back
-        (REVERSAL_SPEED_M_S, -0.3, 0.0111, 0.0113),  # slow enough to be turned back: 0.0072
     ],
 )
 def test_the_slowest_obedient_side_is_known_to_the_tenth_of_a_millimetre(
@@ -55,6 +54,14 @@ def test_the_slowest_obedient_side_is_known_to_the_tenth_of_a_millimetre(
     assert Watched(robot, first).turn(told_m_s, within, within) == ""
     assert Watched(robot, first).turn(told_m_s, off, within).startswith("left wheels were told")
     assert Watched(robot, first).turn(told_m_s, within, off).startswith("right wheels were told")
+
+
+def test_a_side_as_slow_as_may_be_is_turned_back_at_once() -> None:
+    robot = measured_finely(5e-6)  # 40 of these ticks are 0.02 m/s, to the last bit
+    assert REVERSAL_SPEED_M_S == 40 * 5e-6 / 0.01
+    assert Watched(robot, 40).turn(-0.3, 22, 22) == ""  # to 0.0072
+    assert Watched(robot, 40).turn(-0.3, 23, 22).startswith("left")
+    assert Watched(robot, 41).turn(-0.3, 37, 37) == ""  # to 0.0197, for it is told 0 first
 
 
 EXACT = measured_finely(2**-16, 2**-7, wheel_error_m_s=2**-4, ticks_ceased_s=2**-3)
