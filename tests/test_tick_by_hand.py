@@ -33,7 +33,7 @@ from kurt2rt.tick import TickRecord
 from tests.teaching.helpers import correct, resume, set_phase, stop, teach
 from tests.test_tick import FORWARD, Corridor
 
-LEASE, REACH = 30, 35
+LEASE, REACH = 24, 35
 BY_HAND = WheelSpeeds(0.21, 0.19)
 
 
@@ -150,7 +150,7 @@ def test_it_drives_while_its_teacher_is_there_and_stands_until_resume_when_it_lo
     assert attended.run(100, watch(attended), resume()).decision.cause is Cause.RLA
 
 
-@pytest.mark.parametrize(("age", "there"), [(0, LEASE), (5, LEASE), (6, LEASE - 1), (34, 1), (35, 0)])
+@pytest.mark.parametrize(("age", "there"), [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0)])
 def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor, age: int, there: int) -> None:
     attended.ticks += 100
     cause = [attended.run(100, watch(attended, age=age)).decision.cause, *causes(attended, LEASE)]
@@ -160,8 +160,8 @@ def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor
 
 def test_who_watches_all_the_time_is_never_lost(attended: Corridor) -> None:
     for _ in range(20):
-        assert attended.run(100, watch(attended, age=10)).decision.cause is Cause.RLA
-        assert causes(attended, REACH - 10 - 1) == [Cause.RLA] * (REACH - 10 - 1)
+        assert attended.run(100, watch(attended, age=11)).decision.cause is Cause.RLA
+        assert causes(attended, REACH - 11 - 1) == [Cause.RLA] * (REACH - 11 - 1)
 
 
 def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:

@@ -14,7 +14,7 @@ class Authority:
     Whoever speaks first is the teacher; another one becomes it only by `take` or when it is handed over.
     """
 
-    def __init__(self, repertoire: Repertoire, *, attended: bool, lease_ticks: int = 30, reach_ticks: int = 35) -> None:
+    def __init__(self, repertoire: Repertoire, *, attended: bool, lease_ticks: int = 24, reach_ticks: int = 35) -> None:
         """`attended`: the robot needs a teacher who is there. A message is good for `lease_ticks` from its arrival, and
         never for longer than `reach_ticks` from the picture it was given on, however long it was on its way.
         """

@@ -13,9 +13,9 @@ from kurt2rt.teaching.link import LinkMeter
 from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response
 from kurt2rt.teaching.pictures import Pictures
 
-BEAT_S = 0.025
-"""Between two messages. The robot lets go of the wheels 0.3 s after the last one that it took: at 30 % loss each way
-and 40 messages a second a run of lost ones that long comes once in hours, at 20 a second twice a minute."""
+BEAT_S = 0.02
+"""Between two messages. The robot lets go of the wheels 0.24 s after the last one that it took: at 30 % loss each way
+and 50 messages a second a run of lost ones that long comes once in hours, at 20 a second several times a minute."""
 BLIND_AFTER_S = 0.5
 """Nothing is sent on a picture that came longer ago than this."""
 _FORGOTTEN_AFTER_S = 1.0

@@ -4,7 +4,7 @@ from kurt2rt.teaching.hand import Hand
 
 
 class Wheel:
-    """Set speeds as often as you like; they go out 40 times a second. Once the press has ended it stays ended."""
+    """Set speeds as often as you like; they go out 50 times a second. Once the press has ended it stays ended."""
 
     def __init__(self, hand: Hand) -> None:
         self._hand = hand

@@ -69,17 +69,17 @@ class NotingTeacher(TeacherClient):
         self.sent_ticks: list[int] = []
         self._at_work = at_work
 
-    async def _ask(self, request: Request, patience_s: float | None = None) -> Answer:
-        note = Note(request)
-        self.notes.append(note)
-        began_s = self._loop.time()
-        note.answer = await super()._ask(request, patience_s)
-        note.took_s = self._loop.time() - began_s
-        return note.answer
-
     def note_what_is_sent(self) -> None:
-        requests = self._requests
-        post = requests.post
+        requests, asking = self._requests, self._asking
+        post, ask = requests.post, asking.ask
+
+        async def noted_ask(request: Request, patience_s: float | None = None) -> Answer:
+            note = Note(request)
+            self.notes.append(note)
+            began_s = self._loop.time()
+            note.answer = await ask(request, patience_s)
+            note.took_s = self._loop.time() - began_s
+            return note.answer
 
         def noted(path: str, payload: bytes, on_response: OnResponse) -> Exchange:
             if path in ("/watch", "/drive"):
@@ -87,6 +87,7 @@ class NotingTeacher(TeacherClient):
             return post(path, payload, on_response)
 
         requests.post = noted  # type: ignore[method-assign]
+        asking.ask = noted_ask  # type: ignore[method-assign]
 
     def freeze(self) -> Callable[[], None]:
         """Its program hangs; returns what wakes it."""

@@ -7,7 +7,7 @@ from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Drive
 from tests.layers.helpers import Counted, sensed
 
-LEASE, REACH = 30, 35
+LEASE, REACH = 24, 35
 NOW = 1000
 
 
@@ -50,7 +50,9 @@ def test_the_hand_does_what_the_newest_message_says(hands: Hands) -> None:
 
 
 @pytest.mark.parametrize(
-    ("age", "driven"), [(0, LEASE), (5, LEASE), (6, LEASE - 1), (34, 1), (35, 0), (40, 0)], ids=lambda value: str(value)
+    ("age", "driven"),
+    [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0), (40, 0)],
+    ids=lambda value: str(value),
 )
 def test_a_message_held_back_drives_no_longer_than_35_ticks_after_its_picture(age: int, driven: int) -> None:
     hands = Hands()
