@@ -25,7 +25,7 @@ ENCODER = CODEC.message("ENCODER")
 WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
 BRAKING_CYCLES = 30
 """From the fastest that the guard allows, 0.6 m/s at 3 m/s², it takes 20 cycles, and some for the speed loop."""
-LONG_ENOUGH_S = 60.0
+LONG_ENOUGH_S = 120.0
 """For whatever a test waits for; it fails then."""
 _LOOK_S = 0.005
 STARTED = "the robot program was started"
