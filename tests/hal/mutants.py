@@ -7,6 +7,7 @@ anew for each, which is seconds for one. mutmut leaves out what stands behind a 
 """
 
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence
@@ -78,7 +79,9 @@ def run(arguments: Sequence[str]) -> str:
 def main() -> int:
     """Make the mutants, run the tests on each, compare. mutmut shows how far it is."""
     console = Console()
-    subprocess.run([*_MUTMUT, "run", *sys.argv[1:]], check=True)
+    # mutmut would go on with what it found before the tests were changed.
+    shutil.rmtree("mutants", ignore_errors=True)
+    subprocess.run([*_MUTMUT, "run"], check=True)
     ended = dict(_RESULT.findall(run(["results"])))
     living = [mutant_of(name, run(["show", name])) for name, status in ended.items() if status in _LIVES]
     wrong = verdict(living, equivalents())
