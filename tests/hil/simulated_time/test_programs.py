@@ -15,7 +15,7 @@ pytestmark = pytest.mark.boots
 
 
 @pytest.mark.timeout(1800)
-@pytest.mark.parametrize("stories", ["tests/hil/test_story.py", "tests/hil/simulated_time/can_utils_story.py"])
+@pytest.mark.parametrize("stories", ["tests/hil/test_story.py", "tests/hil/simulated_time/programs_story.py"])
 def test_stories_of_several_programs(stories: str) -> None:
     machine = [sys.executable, "-m", "tests.hil.machine", "--simulated-time"]
     pytest_there = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", "hil or not hil", stories]

@@ -1,4 +1,4 @@
-"""can-utils work with the simulated robot and the runtime as they would with the real ones.
+"""can-utils and the interface itself, with the simulated robot and the runtime as with the real ones.
 
 Programs as a person starts them, on the kernel's vcan0 and its own clock, which in simulated time waits for each of
 them; `test_programs` runs this in a machine of that kind.
@@ -17,7 +17,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.bus import CONTROL_ID, open_bus
-from hal.guard import FOREIGN_CONTROL
+from hal.guard import BUS_LOST, FOREIGN_CONTROL
 from hal.kurt2 import Kurt2
 from kurt2rt.channel.state import State
 from kurt2rt.teaching import TeacherClient
@@ -40,6 +40,7 @@ from tests.cli.three_programs import (
     until_it_drives,
 )
 from tests.hil.can_utils import Line, candump, cansend, cantools_decode, doing, lines_of
+from tests.hil.link import NAME, Link
 
 STOP = "001#00000103FF0103FF"
 SLOWLY = "0002000A000A0001"
@@ -140,6 +141,42 @@ async def test_a_flood_of_frames_that_mean_nothing_here_disturbs_neither(
                     await seen.until(turns)
                 assert (await state_where(we, lambda state: state.rla == 1)).trouble == ""
             assert cangen.poll() is None
+
+
+async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(link: Link, tmp_path: Path) -> None:
+    async with at_work(NAME, tmp_path) as (sim, robot, we):
+        await anyio.to_thread.run_sync(link.down)
+        await anyio.to_thread.run_sync(sim.wait_for, "lost: bus vcan0: ")
+        await anyio.to_thread.run_sync(sim.wait_for, "CONTROL has ceased: the watchdog brakes")
+        stopped = await state_where(we, lambda state: state.stopped_because == f"the guard: {BUS_LOST}")
+        assert stopped.trouble.startswith("bus vcan0: ")
+        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {BUS_LOST}")
+        await anyio.to_thread.run_sync(link.up)
+        await anyio.to_thread.run_sync(sim.wait_for, "the bus is there again")
+        await until_it_drives(we)
+        assert robot.process.poll() is None
+
+
+async def test_an_adapter_that_is_unplugged_and_plugged_in_again(link: Link, tmp_path: Path) -> None:
+    async with at_work(NAME, tmp_path) as (sim, _, we):
+        await anyio.to_thread.run_sync(link.delete)
+        await state_where(we, lambda state: state.stopped_because == f"the guard: {BUS_LOST}")
+        await anyio.to_thread.run_sync(sim.wait_for, "such network interface")
+        await anyio.to_thread.run_sync(link.make)
+        await anyio.to_thread.run_sync(sim.wait_for, "the bus is there again")
+        await until_it_drives(we)
+
+
+@pytest.mark.parametrize("words", [("sim", "--bus", NAME), ("run", "--robot", NAME)], ids=" ".join)
+def test_an_interface_that_is_down_is_told_in_a_line(link: Link, tmp_path: Path, words: tuple[str, ...]) -> None:
+    link.down()
+    with running(*words, folder=tmp_path) as program:
+        out, err = program.process.communicate()
+    assert program.process.returncode == 2
+    assert "Traceback" not in out + err
+    (line,) = err.splitlines()
+    assert "vcan0" in line
+    assert "down" in line
 
 
 class Recorded(NamedTuple):
