@@ -43,6 +43,8 @@ LONG: dict[str, Shorten] = {
     "lesson": lambda words: [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"],
     "run": lambda words: [*words, "--seconds", "2", "--port", "0", "--page-port", "0"],
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
+    "sim": lambda words: [*words, "--seconds", "1"],
+    "faults": lambda words: [*words, "--target", "tick", "--kind", "stuck"],
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick", "--only", "match"],
 }
