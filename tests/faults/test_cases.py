@@ -7,8 +7,6 @@ from kurt2rt.faults.table import KINDS, TARGETS, FaultCase, Kind, Target, cases_
 from tests.faults.helpers import TABLE, tried
 
 CASES = list(cases_of(TABLE))
-LONGER_THAN_ITS_GOAL = {"teacher silent while driving by hand"}
-"""The hand's lease is 0.3 s (docs/how-it-stays-safe.md), the goal 0.25 s."""
 
 
 @pytest.mark.parametrize("case", CASES, ids=str)
@@ -31,8 +29,7 @@ def test_stop_times_meet_their_goals() -> None:
     trials = [tried(target, kind, seed=seed) for target, kind in sorted(wanted) for seed in range(1, 31)]
     times = stop_times(TABLE, trials)
     assert len(times) == len(TABLE.stop_times)
-    assert {each.what for each in times if not each.met} == LONGER_THAN_ITS_GOAL
-    assert max(each.worst_s for each in times if each.what in LONGER_THAN_ITS_GOAL) < 0.335
+    assert [each.what for each in times if not each.met] == []
 
 
 @pytest.mark.parametrize(
