@@ -6,14 +6,15 @@ from types import TracebackType
 from typing import Self
 
 from hal.bus import CONTROL_ID, BusError, CanBus
+from hal.codec import load_codec
 from hal.robot_settings import RobotSettings
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.steady_bus import SteadyBus
 from simbridge.world_settings import WorldSettings
 
-_LISTENS_S = 0.12
-"""Longer than any robot is silent: its slowest frames come every 0.1 s."""
+_LISTENS_S = 0.1
+"""Ten times as long as a robot is silent."""
 
 
 class StandaloneRobot:
@@ -26,7 +27,7 @@ class StandaloneRobot:
 
         Raises BusError when a robot is on the bus already.
         """
-        _require_no_robot(bus)
+        _require_no_robot(settings, bus)
         bus.listen_to({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
         self._bus = bus
         self.bus = SteadyBus(bus)
@@ -49,12 +50,11 @@ class StandaloneRobot:
             self._bus.shutdown()
 
 
-def _require_no_robot(bus: CanBus) -> None:
+def _require_no_robot(settings: RobotSettings, bus: CanBus) -> None:
     """Two robots on a bus would both obey, and the runtime would see a mixture of them."""
+    encoder_id = load_codec(settings.can.database).message("ENCODER").frame_id
+    bus.listen_to({encoder_id})
     time.sleep(_LISTENS_S)
-    heard = sorted({frame.arbitration_id for frame in bus.drain() if not frame.is_error_frame} - {CONTROL_ID})
-    if heard:
+    if any(frame.arbitration_id == encoder_id and not frame.is_error_frame for frame in bus.drain()):
         bus.shutdown()
-        raise BusError(
-            f"bus {bus.name}: a robot is on it already, frame 0x{heard[0]:X} was heard; end it, or take another bus"
-        )
+        raise BusError(f"bus {bus.name}: a robot is on it already; end that one, or take another bus")

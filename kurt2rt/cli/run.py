@@ -69,7 +69,7 @@ def run(
         Path | None,
         typer.Option(
             help="Keep every frame that is heard and sent, with its time, in a new file: .log (candump's), .asc, .blf, "
-            ".csv, .trc or .mf4. 130 MB an hour as .log.",
+            ".csv, .trc or .mf4. 140 MB an hour as .log.",
         ),
     ] = None,
     seconds: Annotated[

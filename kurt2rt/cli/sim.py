@@ -134,6 +134,8 @@ class _Wish:
 
     def __enter__(self) -> Self:
         self._before = {each: signal.signal(each, self._note) for each in _ENDING}
+        # Started in the background it would be halted where it looks what was typed.
+        self._before[signal.SIGTTIN] = signal.signal(signal.SIGTTIN, signal.SIG_IGN)
         return self
 
     def __exit__(

@@ -1,5 +1,6 @@
 """What a person at the desk sees of the simulated robot, and may do to it."""
 
+import contextlib
 import math
 import queue
 import threading
@@ -83,8 +84,10 @@ class Keyboard:
             yield self._typed.get()
 
     def _read(self) -> None:
-        for line in self._lines:
-            self._typed.put(line)
+        # A program in the background may not read its terminal.
+        with contextlib.suppress(OSError):
+            for line in self._lines:
+                self._typed.put(line)
         self.ended = True
 
 
