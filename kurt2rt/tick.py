@@ -74,7 +74,7 @@ class Tick:
         self._ledger = ledger
         self._now = now
         self._stale_infrared_s = stale_infrared_s
-        self._driving = False
+        self._driving = self._latched = False
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
@@ -99,8 +99,11 @@ class Tick:
                 continue
             result, event = self._school.attend(command, situation, tick)
             results.append(result)
-            if new and result.accepted and isinstance(command, Resume):
-                self._robot.release()  # a late copy of an old command must not end a new emergency stop
+            # Neither a late copy of an old command ends a new emergency stop, nor one that was said before anybody
+            # could see it: the senses of this very tick may have brought it.
+            if new and result.accepted and isinstance(command, Resume) and self._latched:
+                self._robot.release()
+                self._latched = False
             if event is not None:
                 events.append(event)
         decision = self._decide(tick, situation, senses, blind=blind)
@@ -111,6 +114,9 @@ class Tick:
         grant = self._robot.drive(decision.wheel_speeds, now_s, self._now())
         mark(Stage.GUARD)
 
+        if grant.latched and not self._latched:
+            self._school.stopped_at_tick = tick
+        self._latched = grant.latched
         self._driving = decision.driving and not grant.latched
         if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)

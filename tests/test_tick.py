@@ -16,7 +16,7 @@ from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.teaching.authority import Authority
-from kurt2rt.teaching.commands import Command
+from kurt2rt.teaching.commands import Command, Resume
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import Tick, TickRecord
@@ -36,7 +36,7 @@ class CorridorRobot:
         self.counts = 100
         self.infrared_age_s = 0.0
         self.command_ages_s: list[float] = []
-        self.latched = False
+        self.latched = self.relatches = False
         self.driven: list[WheelSpeeds] = []
         self.closed = False
 
@@ -45,6 +45,7 @@ class CorridorRobot:
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         self.command_ages_s.append(now_s - decided_at_s)
+        self.latched = self.latched or self.relatches
         granted = STANDSTILL if self.latched else wanted
         self.driven.append(granted)
         return Grant(granted, ("emergency stop",) if self.latched else (), self.latched)
@@ -253,6 +254,33 @@ def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving:
     assert record.results[0].text == "had been taken already; counted once"
     assert record.grant.latched
     assert not driving.run(100, resume("after a look")).grant.latched
+
+
+def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving: Corridor) -> None:
+    said_on = driving.run(100).tick
+    driving.robot.emergency_stop("bumper")
+    stopped_on = driving.run(100).tick
+    late = driving.run(100, Resume("on its way", "Ann", said_on))
+    assert late.results[0].text == "the robot was stopped after this was said; look at it, then say it again"
+    assert late.grant.latched
+    assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).grant.latched
+
+
+def test_a_resume_does_not_end_the_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
+    driving.robot.emergency_stop("bumper")  # as the senses of the next tick do
+    assert driving.run(100, resume("said before")).grant.latched
+    assert not driving.run(100, resume("after a look")).grant.latched
+
+
+def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(driving: Corridor) -> None:
+    driving.robot.emergency_stop("bus lost")
+    seen = driving.run(100).tick
+    driving.robot.relatches = True
+    again = driving.run(100, Resume("1", "Ann", seen))
+    assert again.grant.latched
+    driving.robot.relatches = False
+    assert driving.run(100, Resume("2", "Ann", seen)).grant.latched
+    assert not driving.run(100, Resume("3", "Ann", again.tick)).grant.latched
 
 
 def test_uses_and_transitions_are_counted_and_standing_ends_a_chain(driving: Corridor) -> None:

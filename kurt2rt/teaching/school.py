@@ -73,7 +73,7 @@ class School:
         """Empty while nobody stopped the robot."""
         self._stopped_by: set[str] = set()
         self.stopped_at_tick = -1
-        """When a teacher last said stop: what was said on an older picture must not lift it."""
+        """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
         self.corrections = 0
         self.session: str | None = None
         """Name of the session that is on."""
