@@ -56,10 +56,10 @@ class AtWork(NamedTuple):
 
 
 @asynccontextmanager
-async def at_work(bus: str, folder: Path) -> AsyncIterator[AtWork]:
+async def at_work(bus: str, folder: Path, *words: str) -> AsyncIterator[AtWork]:
     with running("sim", "--bus", bus, folder=folder) as sim:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
-        with runtime(bus, folder, "--settings", str(one_rule_for_all(folder))) as robot:
+        with runtime(bus, folder, "--settings", str(one_rule_for_all(folder)), *words) as robot:
             async with teacher_of(robot, folder) as we:
                 assert (await we.take()).accepted
                 await until_it_drives(we, "spin_left")
@@ -251,3 +251,16 @@ async def test_a_log_that_canplayer_plays_drives_the_runtime(vcan0: str, tmp_pat
                     seen += state.rla == 1
                     if seen >= 10:
                         break
+
+
+async def test_a_log_that_the_runtime_keeps_is_played_by_canplayer(vcan0: str, tmp_path: Path) -> None:
+    async with at_work(vcan0, tmp_path, "--can-log", "drive.log") as (_, robot, _):
+        await anyio.to_thread.run_sync(robot.wait_for, " s | ")
+        robot.process.terminate()
+        await anyio.to_thread.run_sync(robot.wait_for, "frames are in drive.log")
+    kept = lines_of((tmp_path / "drive.log").read_text(encoding="ascii"))
+    assert {CONTROL_ID, ENCODER.frame_id} <= {line.frame_id for line in kept}
+    with onlooker(vcan0) as seen, doing("canplayer", "-t", "-I", str(tmp_path / "drive.log")):
+        for line in kept:
+            (*_, frame) = await seen.until(lambda _: True)
+            assert (frame.arbitration_id, bytes(frame.data)) == (line.frame_id, line.data)
