@@ -177,7 +177,7 @@ def _raw_side(speed_m_s: float, motors: MotorSettings) -> RawSide:
     speeds, drives = motors.raw_speed_m_s, motors.raw_drive
     wanted_m_s = min(abs(speed_m_s), speeds[-1])
     upper = bisect_left(speeds, wanted_m_s)
-    if wanted_m_s == 0.0 or upper == 0:
+    if upper == 0:  # 0, or slower than the motor can turn
         return RawSide(0, brake=True)  # nothing regulates in RAW: without the brake the robot would roll on
     lower = upper - 1
     share = (wanted_m_s - speeds[lower]) / (speeds[upper] - speeds[lower])
