@@ -208,6 +208,7 @@ class Guard:
         self._left_m_s = self._right_m_s = 0.0
 
     def _stay_stopped(self) -> Grant:
+        self._left_m_s = self._right_m_s = 0.0  # again, for the stop may have come in the middle of an approach
         self._send_brake()
         return Grant(STANDSTILL, (self._latched or "",), latched=True)
 

@@ -258,6 +258,30 @@ def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) 
     assert driver.last_sent() == BRAKE
 
 
+def test_a_robot_that_was_stopped_and_released_between_two_ticks_starts_from_zero(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.guard.emergency_stop("teacher")
+    driver.guard.release()
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
+
+
+def test_a_robot_that_was_stopped_by_a_signal_in_the_middle_of_its_approach_starts_from_zero(driver: Driver) -> None:
+    class Interrupted(float):
+        """A signal handler of the same thread runs while the guard looks at this speed."""
+
+        __hash__ = float.__hash__
+
+        def __eq__(self, other: object) -> bool:
+            driver.guard.emergency_stop("signal")
+            return float(self) == other
+
+    driver.drive_for(1.0, 0.3, 0.3)
+    driver.now_s += TICK_S
+    assert driver.tell(WheelSpeeds(0.3, Interrupted(0.3)), fresh(driver.now_s)).latched
+    driver.guard.release()
+    assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
+
+
 def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends: Ends) -> None:
     robot_end, far_end = ends
     driver.drive_for(1.0, 0.3, 0.3)
