@@ -22,6 +22,7 @@ from hal.settings import SettingsError
 from kurt2rt.cli.options import RobotName
 from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
+from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.listener import Listener
 from kurt2rt.commission.person import LeftError
 from kurt2rt.commission.progress import Progress, load_progress, write_durably
@@ -50,7 +51,8 @@ def commission(
     skip: Annotated[
         str | None,
         typer.Option(
-            help="Note these steps as skipped, so that the file can be written without them.", show_default=False
+            help="Note these steps as skipped, failed or not, so that the file can be written without them.",
+            show_default=False,
         ),
     ] = None,
     anew: Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")] = False,
@@ -88,9 +90,9 @@ def commission(
     Rehearse it without a robot; `lift`, typed at the first, puts it on a block:
 
         kurt2rt sim --bus shared:desk
-        kurt2rt commission shared:desk --only identity,modes,wheels,stop
+        kurt2rt commission shared:desk --name practice --skip sensors,bumpers,infrared
 
-    Ends with code 1 when a step of this session failed.
+    Ends with code 1 when a step that was this session's to take has failed.
     """
     if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
         raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
@@ -191,6 +193,11 @@ def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
     if kept.base != fresh.base:
         raise SettingsError(
             f"{path}: was begun with --robot-settings {kept.base}; go on with that, give another --name, or --anew"
+        )
+    if kept.bus != fresh.bus and kept.findings != Findings() and kept.findings.hardware_id is None:
+        raise SettingsError(
+            f"{path}: was begun on bus {kept.bus}, and which robot that was is not known; "
+            "go on there, give another --name, or --anew"
         )
     return kept.model_copy(update={"bus": fresh.bus})
 

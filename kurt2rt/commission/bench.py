@@ -23,6 +23,8 @@ _RUNAWAY_FACTOR, _RUNAWAY_MARGIN_M_S = 2.5, 0.1
 _RUNAWAY_FRAMES = 5
 _BREATH_S = 0.1
 """Before the wheels turn: the senses are fresh then, and whatever held up the loop is over."""
+_IDENTITY_S = 0.25
+"""INFO_1 comes every 0.1 s."""
 _HALT_S = 1.5
 _REST_S = 0.1
 
@@ -111,6 +113,12 @@ class Bench:
         for _ in range(self._ticks(seconds)):
             await self._tick(heard, STANDSTILL)
         return heard
+
+    async def hardware_id(self) -> int | None:
+        """As INFO_1 says it; None when that does not come. The robot stands while it is waited for."""
+        if self._listener.hardware_id is None:
+            await self.stand(_IDENTITY_S)
+        return self._listener.hardware_id
 
     async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> Drive:
         """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them."""

@@ -5,6 +5,8 @@ from pathlib import Path
 
 from anyio import to_thread
 
+from hal.identity import hardware
+from hal.settings import SettingsError
 from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.bumpers import BumpersStep
 from kurt2rt.commission.identity import IdentityStep
@@ -46,9 +48,13 @@ class Checklist:
         self._lifted = False
 
     async def walk(self, chosen: Sequence[Step], skipped: Sequence[Step] = ()) -> None:
-        """Take the chosen steps in the checklist's order, note the skipped. Raises LeftError, BusError, OSError."""
+        """Take the chosen steps in the checklist's order, note the skipped.
+
+        Raises LeftError, BusError, OSError, and SettingsError when what was found before is another robot's.
+        """
+        await self._require_same_robot()
         for step in skipped:
-            await self._skip(step, "as was wished on the command line")
+            await self._skip(step, "as was wished on the command line", on_purpose=True)
         # Whoever turns wheels is asked about the block first, in every session.
         moving = [step for step in chosen if step.moves]
         walked = [step for step in STEPS if step in chosen or (step is _LIFTED and moving and step not in skipped)]
@@ -76,6 +82,7 @@ class Checklist:
             begin = Question(Asked.BEGIN, "Ready?", (Choice("", "begin"), Choice(SKIP, "skip this step")))
             if await self._bench.ask(begin) == SKIP:
                 raise SkippedError("as you wished")
+            await self._require_same_robot()
         result = await step.take(self._bench, self.progress.findings)
         if step is _LIFTED:
             self._lifted = True
@@ -102,11 +109,31 @@ class Checklist:
         choices = (Choice(_AGAIN, "repeat it, when that is mended"), Choice("", "go on"))
         return await self._bench.ask(Question(Asked.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
 
-    async def _skip(self, step: Step, why: str) -> None:
+    async def _require_same_robot(self) -> None:
+        """What was found on one robot, a simulated one perhaps, is not to be taken for another's."""
+        before = self.progress.findings.hardware_id
+        if before is None:
+            return
+        now = await self._bench.hardware_id()
+        if now is not None and now != before:
+            raise SettingsError(
+                f"{self._path}: is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}; "
+                "give this robot another --name, or begin anew with --anew"
+            )
+
+    async def _skip(self, step: Step, why: str, *, on_purpose: bool = False) -> None:
+        """Note it. What passed before has still passed, what failed has still failed, unless that is passed over
+        on purpose: then what is to be done is kept.
+        """
         before = self.progress.steps.get(step.name)
-        if before is None or before.outcome is not Outcome.PASSED:  # what passed before has still passed
-            record = StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who, measured=(why,))
-            await self._keep(step, record)
+        if before is not None and before.outcome is Outcome.PASSED:
+            return
+        if before is not None and before.outcome is Outcome.FAILED and not on_purpose:
+            self._bench.tell(f"{step.title}: failed on {before.at}, and that stands", Tone.BAD)
+            return
+        to_do = () if before is None else before.to_do
+        record = StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who, measured=(why,), to_do=to_do)
+        await self._keep(step, record)
 
     async def _keep(self, step: Step, record: StepRecord, result: Result | None = None) -> None:
         findings = self.progress.findings if result is None else result.findings

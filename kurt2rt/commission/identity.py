@@ -2,7 +2,7 @@
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
-from hal.identity import SIMULATED_HARDWARE_ID
+from hal.identity import hardware
 from kurt2rt.commission.bench import Bench
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.heard import Heard
@@ -43,11 +43,15 @@ def _judge_identity(heard: Heard, result: Result) -> None:
     for name, said in sorted(heard.identities.items()):
         last = said[-1]
         counted = last.loop_counter - said[0].loop_counter
-        hardware = f"hardware {last.hardware_id}"
-        if last.hardware_id == SIMULATED_HARDWARE_ID:
-            hardware += " (the simulated robot)"
-        result.note(f"{name}: {hardware}, firmware {last.firmware}, loop counter at {last.loop_counter}")
-        if (len(said) > 1 and counted <= 0) or len({each.hardware_id for each in said}) > 1:
+        result.note(
+            f"{name}: {hardware(last.hardware_id)}, firmware {last.firmware}, loop counter at {last.loop_counter}"
+        )
+        kinds = sorted({each.hardware_id for each in said})
+        if len(kinds) > 1:
+            result.to_do.append(
+                f"{name} comes from {' and '.join(map(hardware, kinds))}: two robots; take one off the bus"
+            )
+        elif len(said) > 1 and counted <= 0:
             result.to_do.append(f"{name}'s loop counter does not advance: the controller hangs; switch it off and on")
         if name == "INFO_1":
             result.findings = result.findings.model_copy(

@@ -24,6 +24,8 @@ class Listener:
         """Analog channels heard so far."""
         self.has_bumpers = False
         """True when BUMPERC was heard so far."""
+        self.hardware_id: int | None = None
+        """As INFO_1 said it last."""
 
     def hear(self, now_s: float, heard: Heard) -> None:
         """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
@@ -65,7 +67,10 @@ class Listener:
             heard.bumpers.append(values[0])
             self.has_bumpers = True
         elif codec.name in ("INFO_1", "INFO_2"):
-            heard.identities.setdefault(codec.name, []).append(Identity(*values))
+            identity = Identity(*values)
+            heard.identities.setdefault(codec.name, []).append(identity)
+            if codec.name == "INFO_1":
+                self.hardware_id = identity.hardware_id
         else:
             for channel, counts in zip(codec.signals, values, strict=True):
                 if not _DISTANCE_CHANNEL.fullmatch(channel):

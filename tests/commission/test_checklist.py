@@ -13,7 +13,7 @@ from kurt2rt.commission.progress import Progress, load_progress
 from kurt2rt.commission.report import passed
 from kurt2rt.commission.step import Outcome
 from tests.commission.wired_end import Wiring
-from tests.commission.workshop import Session, Workshop, leaves_at
+from tests.commission.workshop import TODAY, Instead, Session, Workshop, leaves_at
 
 
 async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Path) -> None:
@@ -120,6 +120,62 @@ async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path
         await again.walk("bumpers", "sensors")
     assert again.outcome("bumpers") is Outcome.PASSED
     assert again.outcome("sensors") is Outcome.SKIPPED
+
+
+def skips_what_failed(again: str) -> Instead:
+    """A person who skips a step that failed: when it is begun once more, or at once in another session."""
+    failed = not again
+
+    def skip(question: Question) -> str | None:
+        nonlocal failed
+        if question.about is Asked.AFTER_FAILURE:
+            failed = True
+            return again
+        return SKIP if failed and question.about is Asked.BEGIN else None
+
+    return skip
+
+
+async def test_a_step_that_failed_stays_failed_when_it_is_skipped_later(tmp_path: Path) -> None:
+    """Or a robot of which it is known that a wheel turns the wrong way would get its settings file."""
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path, skips_what_failed(again="r"))
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
+        assert [step.name for step in barring(session.progress)] == ["wheels"]
+        another_day = Session(workshop, tmp_path, skips_what_failed(again=""))
+        another_day.progress = session.progress
+        await another_day.walk("wheels", "bumpers")
+    assert [step.name for step in barring(another_day.progress)] == ["wheels"]
+    assert another_day.person.lines(Tone.BAD) == [
+        f"Each wheel's side and direction: failed on {TODAY}, and that stands"
+    ]
+
+
+async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_done(tmp_path: Path) -> None:
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
+        await session.walk("bumpers", skipped=("wheels",))
+    assert barring(session.progress) == []
+    assert session.outcome("wheels") is Outcome.SKIPPED
+    assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
+
+
+async def test_what_was_found_on_the_simulated_robot_is_not_taken_for_another(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        rehearsal = Session(workshop, tmp_path)
+        await rehearsal.walk("identity", "modes")
+        real = Session(workshop, tmp_path)
+        real.progress = rehearsal.progress
+        real.knows(hardware_id=7)
+        with pytest.raises(
+            SettingsError, match=r"about a robot of hardware 7, but INFO_1 says hardware 21321 \(the sim"
+        ):
+            await real.walk("wheels", skipped=("sensors",))
+        assert real.person.asked == []
+        assert "sensors" not in real.progress.steps
 
 
 async def test_skipped_steps_are_noted_and_do_not_wait_any_longer(tmp_path: Path) -> None:

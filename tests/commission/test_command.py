@@ -94,6 +94,17 @@ def test_what_was_found_is_written_at_once_when_the_rest_is_skipped(type_at: Typ
     assert "NOT PASSED" in (tmp_path / "mine.yaml").read_text()
 
 
+def test_on_another_bus_it_goes_on_only_where_it_is_known_which_robot_it_was(
+    kurt2rt: CommandLine, tmp_path: Path
+) -> None:
+    earlier(tmp_path)
+    kept = load_progress(tmp_path / PROGRESS)
+    unknown = kept.findings.model_copy(update={"hardware_id": None})
+    kept.model_copy(update={"findings": unknown}).save(tmp_path / PROGRESS)
+    said = kurt2rt.refused("commission", "shared:desk", "--name", "robbie")
+    assert "was begun on bus can0, and which robot that was is not known; go on there, give another --name" in said
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [

@@ -93,6 +93,22 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
     assert "not in the CAN database, ignored: 0x123" in session.measured("identity")
 
 
+async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        other = open_bus(workshop.spec)
+
+        def join(question: Question) -> None:
+            if question.about is Asked.BEGIN:
+                other.telemetry_port().send(CODEC.message("INFO_1").pack(7, 1, 0))
+
+        session = Session(workshop, tmp_path, join)
+        await session.walk("identity")
+        other.shutdown()
+    assert session.to_do("identity") == (
+        "INFO_1 comes from hardware 7 and hardware 21321 (the simulated robot): two robots; take one off the bus",
+    )
+
+
 async def test_a_robot_without_its_second_controller_can_turn_its_wheels_all_the_same(tmp_path: Path) -> None:
     second = [frame_id(name) for name in ("INFO_2", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15", "GYRO_MC2")]
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:

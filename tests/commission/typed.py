@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import SpeedMode, load_robot
 from kurt2rt.cli.main import main
 from kurt2rt.commission.checklist import STEPS
@@ -65,7 +66,7 @@ def earlier(folder: Path, *but: str) -> None:
     steps = {
         step.name: StepRecord(outcome=Outcome.PASSED, at=TODAY, who="anna") for step in STEPS if step.name not in but
     }
-    found = Findings(speed_mode=SpeedMode.SPEED)
+    found = Findings(hardware_id=SIMULATED_HARDWARE_ID, speed_mode=SpeedMode.SPEED)
     Progress(name="robbie", base="kurt2", bus="can0", findings=found, steps=steps).save(folder / PROGRESS)
 
 
