@@ -19,8 +19,15 @@ from kurt2rt.timing.clock import Clock
 
 WAITS = "the checklist waits"
 RAN_AWAY = "the wheels ran away"
+UNANSWERED = "a side does not turn, or its encoder counts nothing"
+TURNS_SHARE = 0.1
+"""A side that reaches so much of the set point turns. Little, for the ticks of another variant of the robot are four
+times as long, and its wheels seem slow."""
 _RUNAWAY_FACTOR, _RUNAWAY_MARGIN_M_S = 2.5, 0.1
 _RUNAWAY_FRAMES = 5
+_ANSWER_S = 0.7
+"""Time for the wheels to have their speed, and 30 frames of it."""
+_ANSWER_FRAMES = 10
 _BREATH_S = 0.1
 """Before the wheels turn: the senses are fresh then, and whatever held up the loop is over."""
 _IDENTITY_S = 0.25
@@ -121,7 +128,9 @@ class Bench:
         return self._listener.hardware_id
 
     async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> Drive:
-        """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them."""
+        """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them, or
+        when nothing is counted of a side that is to turn.
+        """
         robot = await self._ready(mode)
         return await self._brake(robot, await self._order(robot, wanted, seconds))
 
@@ -132,6 +141,8 @@ class Bench:
         """
         robot = await self._ready(mode)
         drive = await self._order(robot, wanted, seconds)
+        if drive.stopped_by is None and self._unanswered(drive.heard, wanted):
+            drive = replace(drive, stopped_by=UNANSWERED)
         if drive.stopped_by is not None:
             return await self._brake(robot, drive)
         # The second guard must sleep as well: it would take the silence for a stuck program, and brake.
@@ -150,7 +161,7 @@ class Bench:
         fastest_m_s = max(abs(wanted.left_m_s), abs(wanted.right_m_s)) * _RUNAWAY_FACTOR + _RUNAWAY_MARGIN_M_S
         stopped_by = None
         robot.release()
-        for _ in range(self._ticks(seconds)):
+        for ticks in range(1, self._ticks(seconds) + 1):
             await self._tick(heard, wanted)
             health = robot.health
             if health.latched is not None:
@@ -160,7 +171,14 @@ class Bench:
             if max(abs(speeds.left_m_s), abs(speeds.right_m_s)) > fastest_m_s:
                 stopped_by = RAN_AWAY
                 break
+            if ticks == self._ticks(_ANSWER_S) and self._unanswered(heard, wanted):
+                break  # a speed loop that hears nothing of its wheels turns them faster and faster
         return Drive(heard, Heard(), self._grant.wheel_speeds, self._grant.reasons, stopped_by, None)
+
+    def _unanswered(self, heard: Heard, wanted: WheelSpeeds) -> bool:
+        """Whether a side that was told to turn is not counted to."""
+        counted = heard.wheel_speeds(self.settings, _ANSWER_FRAMES)
+        return any(abs(its) < TURNS_SHARE * abs(told) for its, told in zip(counted, wanted, strict=True))
 
     async def _brake(self, robot: Kurt2, drive: Drive) -> Drive:
         robot.emergency_stop(WAITS)

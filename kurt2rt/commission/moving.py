@@ -11,9 +11,6 @@ TEST_SPEED_M_S = 0.15
 DRIVE_S = 1.2
 STEADY_FRAMES = 30
 """At the end of a drive, when the wheels have their speed."""
-TURNS_SHARE = 0.1
-"""A side that reaches so much of the test speed turns. Little, for the ticks of another variant of the robot are four
-times as long, and its wheels seem slow."""
 
 
 async def leave_to_move(bench: Bench, text: str) -> None:

@@ -5,12 +5,11 @@ from dataclasses import dataclass, field
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
-from kurt2rt.commission.bench import RAN_AWAY, Bench, Drive
+from kurt2rt.commission.bench import RAN_AWAY, TURNS_SHARE, Bench, Drive
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.moving import (
     DRIVE_S,
     TEST_SPEED_M_S,
-    TURNS_SHARE,
     leave_to_move,
     rests,
     steady,
@@ -92,7 +91,7 @@ class _Trial:
             return f"{self.mode}: not tried out, {stood}"
         if not self.answers(robot):
             one_way = any(_fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives)
-            return f"{self.mode}: " + ("answers in one direction only" if one_way else f"no answer within {DRIVE_S} s")
+            return f"{self.mode}: " + ("answers in one direction only" if one_way else "no answer")
         told_m_s = abs(self.drives[0].granted.left_m_s)
         said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")

@@ -2,12 +2,11 @@
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from kurt2rt.commission.bench import Bench, Drive
+from kurt2rt.commission.bench import TURNS_SHARE, Bench, Drive
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.moving import (
     DRIVE_S,
     TEST_SPEED_M_S,
-    TURNS_SHARE,
     leave_to_move,
     mode_found,
     rests,
