@@ -33,6 +33,8 @@ from kurt2rt.commission.typing_person import TypingPerson
 from kurt2rt.timing.timerfd import TimerfdClock
 
 _NAMES = ", ".join(step.name for step in STEPS)
+_LEAVING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
+"""Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
 
 
 def commission(
@@ -72,7 +74,7 @@ def commission(
     You need a block that lifts all wheels, a ruler, a flat board, an hour, and
     a hand near the switch that cuts the motors. No wheel turns before you typed
     that the wheels are up, and then only after Enter, slowly, through the same
-    guard as ever. Ctrl-C brakes at any time.
+    guard as ever. Ctrl-C brakes at any time, and so does Ctrl-Z.
 
     Set the interface up first:
 
@@ -155,7 +157,7 @@ async def _walk(
 
 
 async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(signal.SIGINT, signal.SIGTERM, signal.SIGHUP) as signals:
+    with anyio.open_signal_receiver(*_LEAVING) as signals:
         task_status.started()
         async for _ in signals:
             scope.cancel()
