@@ -48,6 +48,6 @@ def print_report(progress: Progress, steps: Sequence[Step], console: Console) ->
         to_do += [f"{step.name}: {each}" for each in record.to_do]
     console.print(table)
     for each in to_do:
-        console.print(Text(each), soft_wrap=True)
+        console.print(Text(each), soft_wrap=not console.is_terminal)
     verdict = "PASSED" if passed(progress, steps) else "not passed"
     console.print(Text(f"{progress.name}: {verdict}", style="bold"), soft_wrap=True)

@@ -40,6 +40,10 @@ class SensorsStep:
         await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
         await bench.stand(SETTLE_S)
         heard = await bench.stand(_BASELINE_S)
+        if not heard.channels:
+            result = Result(findings)
+            result.to_do.append("No analog channel is heard: is the robot on? Step identity tells which frames come")
+            return result
         empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
         dead: list[str] = []
         waiting = [sensor for sensor in sensors if sensor.name not in found]

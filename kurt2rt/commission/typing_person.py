@@ -30,14 +30,14 @@ class TypingPerson:
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
         """Print a line."""
-        self._console.print(Text(_MARKS[tone] + text, style=_STYLES.get(tone, "")), soft_wrap=True)
+        self._line(_MARKS[tone] + text, _STYLES.get(tone, ""))
 
     async def answer(self, question: Question) -> str:
         """Print the question until one of its answers is typed. Raises LeftError when the input has ended."""
         choices = (*question.choices, Choice(LEAVE, "leave"))
         while True:
-            self._console.print(Text(f"  {question.text}", style="cyan"), soft_wrap=True)
-            self._console.print(Text(f"    {_shown(choices)} > "), end="", soft_wrap=True)
+            self._line(f"  {question.text}", "cyan")
+            self._line(f"    {_shown(choices)} > ", end="")
             line = await self._keyboard.line()
             if line is None:
                 self._console.print()
@@ -48,6 +48,10 @@ class TypingPerson:
             if question.free or answer in [choice.key for choice in choices]:
                 return answer
             self.tell(f"{answer!r} is no answer here.", Tone.BAD)
+
+    def _line(self, text: str, style: str = "", end: str = "\n") -> None:
+        # A terminal is wide as it is, and words stay whole; in a file a line is a line.
+        self._console.print(Text(text, style=style), end=end, soft_wrap=not self._console.is_terminal)
 
 
 def _shown(choices: Sequence[Choice]) -> str:

@@ -8,7 +8,7 @@ from kurt2rt.commission.checklist import barring
 from kurt2rt.commission.person import SKIP, Asked, Question, Tone
 from kurt2rt.commission.step import Outcome
 from tests.commission.wired_end import Wiring
-from tests.commission.workshop import BASE, Session, Workshop, with_channels
+from tests.commission.workshop import BASE, CODEC, Session, Workshop, with_channels
 
 # Sensors
 
@@ -34,6 +34,19 @@ async def test_a_dead_sensor_is_given_up_and_told(tmp_path: Path) -> None:
     assert session.progress.findings.dead_sensors == ("s5",)
     assert "No channel answered. Nearer, flat, straight before the sensor?" in session.person.lines(Tone.BAD)
     assert barring(session.progress) == []
+
+
+async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) -> None:
+    boards = [message.frame_id for message in CODEC.by_id.values() if message.name.startswith(("ADC", "BDC"))]
+    with Workshop(wiring=Wiring(silent_ids=boards)) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(channels={"s9": "BDC04"})
+        await session.walk("sensors")
+    assert Asked.HAND not in [question.about for question in session.person.asked]
+    assert session.to_do("sensors") == (
+        "No analog channel is heard: is the robot on? Step identity tells which frames come",
+    )
+    assert session.progress.findings.channels == {"s9": "BDC04"}
 
 
 async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_path: Path) -> None:

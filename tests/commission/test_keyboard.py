@@ -3,6 +3,7 @@
 import io
 import os
 import pty
+import re
 from pathlib import Path
 
 import anyio
@@ -80,3 +81,21 @@ async def test_a_question_is_asked_until_it_is_answered_and_lines_can_be_told_ap
     assert said.startswith("\nWhich?\n  TO DO: Exchange them\n")
     assert "  The wheels turn.\n    [Enter] turn them  [s] skip this step  [q] leave > " in said
     assert "'maybe' is no answer here." in said
+
+
+async def test_words_stay_whole_on_a_narrow_terminal() -> None:
+    screen = io.StringIO()
+    console = Console(file=screen, no_color=True, width=40, force_terminal=True, legacy_windows=False)
+    person = TypingPerson(io.StringIO("\n"), console)
+    person.tell("Why: Frames that are missing, slow or junk would stop the robot later.")
+    question = Question(Asked.BEGIN, "Ready?", (Choice("", "begin"), Choice("s", "skip this step")))
+    assert await person.answer(question) == ""
+    said = re.sub(r"\x1b\[\d*m", "", screen.getvalue())
+    assert [line.rstrip() for line in said.splitlines()][:5] == [
+        "  Why: Frames that are missing, slow or",
+        "junk would stop the robot later.",
+        "  Ready?",
+        "    [Enter] begin  [s] skip this step",
+        "[q] leave >",
+    ]
+    assert "leave > " in said
