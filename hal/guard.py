@@ -135,6 +135,9 @@ class Guard:
     def release(self) -> None:
         """End a latched stop; the robot stands until it is driven, and starts from zero."""
         with self._lock:
+            if self._latched == BUS_BLOCKED:
+                # Frames that were lost on the way out would count as yet to be carried for ever.
+                self._port.forget_unconfirmed()
             self._latched = None
             self._bus_trouble = ""
 

@@ -10,7 +10,7 @@ import can
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.bus_state import BusState
 from hal.codec import Codec, JunkFrameError, MessageCodec, load_codec
-from hal.guard import BUS_BLOCKED, BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
+from hal.guard import BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
 from hal.health import Health
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, Grant, Senses, WheelSpeeds
@@ -145,11 +145,8 @@ class Kurt2:
         self._guard.emergency_stop(reason)
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven. A blocked bus is opened anew."""
+        """End a latched stop; the robot still stands until it is driven."""
         self._alarm = ""
-        if self._guard.latched == BUS_BLOCKED:
-            # Frames that were lost on the way out would count as yet to be carried for ever; a new end counts anew.
-            self._reopen(self._senses.time_s)
         self._guard.release()
 
     def close(self) -> None:

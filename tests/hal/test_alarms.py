@@ -116,14 +116,27 @@ def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride
     ride.desk.carries = True
     assert ride.drive_for(0.05) == stopped(BUS_BLOCKED)  # nobody can tell it from a bus that is late
     ride.kurt2.release()
-    assert ride.openings == 2
     assert not ride.drive_for(0.05).latched
 
 
-def test_a_bus_is_opened_anew_for_that_reason_alone(ride: Ride) -> None:
-    ride.kurt2.emergency_stop("teacher")
+def test_frames_from_before_a_resume_that_are_carried_after_it_are_still_its_own(ride: Ride) -> None:
+    ride.desk.carries = False
+    ride.drive_for(0.05)
     ride.kurt2.release()
-    assert ride.openings == 1
+    ride.tick()
+    ride.desk.carry()
+    ride.desk.carries = True
+    assert not ride.drive_for(0.05).latched
+    assert ride.kurt2.health.foreign_control == 0
+    assert ride.openings == 1  # the kernel takes the frames of a closed socket for somebody else's
+
+
+def test_a_resume_after_another_stop_forgets_nothing_of_what_waits(ride: Ride) -> None:
+    ride.kurt2.emergency_stop("teacher")
+    ride.desk.carries = False
+    ride.drive_for(0.05)
+    ride.kurt2.release()
+    assert ride.tick() == stopped(BUS_BLOCKED)
 
 
 def test_one_frame_late_is_no_alarm(ride: Ride) -> None:
