@@ -17,6 +17,7 @@ _ROBOT = "#2f6db3"
 _TEXT = "#222222"
 _TEXT_SIZE = 11.0
 _MARGIN_M = 0.15
+_MOST_TICKS = 10
 
 
 def draw_world(axes: Axes, world: WorldSettings) -> None:
@@ -35,8 +36,9 @@ def draw_world(axes: Axes, world: WorldSettings) -> None:
         axes.add_patch(
             Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
         )
-    axes.set_xticks(range(math.floor(width_m) + 1))
-    axes.set_yticks(range(math.floor(height_m) + 1))
+    step_m = next(step_m for step_m in (1, 2, 5, 10, 20, 50) if max(width_m, height_m) <= _MOST_TICKS * step_m)
+    axes.set_xticks(range(0, math.floor(width_m) + 1, step_m))
+    axes.set_yticks(range(0, math.floor(height_m) + 1, step_m))
     axes.tick_params(length=0, labelsize=_TEXT_SIZE, colors=_TEXT)
     for spine in axes.spines.values():
         spine.set_visible(False)

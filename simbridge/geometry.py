@@ -25,15 +25,6 @@ def polygons_of(shape: shapely.Geometry) -> list[shapely.Polygon]:
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and not part.is_empty]
 
 
-def point_distance_m(point: Point, edge: Edge) -> float:
-    """Distance of a point from an edge."""
-    (ax, ay), (bx, by) = edge
-    dx, dy = bx - ax, by - ay
-    length2 = dx * dx + dy * dy
-    share = 0.0 if length2 == 0 else min(1.0, max(0.0, ((point[0] - ax) * dx + (point[1] - ay) * dy) / length2))
-    return math.hypot(point[0] - ax - share * dx, point[1] - ay - share * dy)
-
-
 def rectangle(centre: Point, length_m: float, width_m: float, heading_rad: float) -> tuple[Point, Point, Point, Point]:
     """Corners of a rectangle, counter-clockwise from front left; length lies along the heading."""
     cos, sin = math.cos(heading_rad), math.sin(heading_rad)

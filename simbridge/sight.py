@@ -5,8 +5,12 @@ The physics engine can answer this too, at four times the cost; rays are most of
 
 import math
 
-from simbridge.geometry import Point, edges_of, point_distance_m
+import numpy as np
+from numpy.typing import NDArray
+
+from simbridge.geometry import Point, edges_of
 from simbridge.world import World
+from simbridge.world_settings import WorldSettings
 
 _MARGIN_M = 0.25
 """Faces so much farther than any ray reaches are kept, so that they serve until the robot has gone this far."""
@@ -23,7 +27,8 @@ class Sight:
         self._keep_m = reach_m + _MARGIN_M
         self._seen_world = world.settings
         self._seen_from: Point | None = None
-        # Corner and way to the next corner of each face; centre and squared radius of each post.
+        self._every_face = _faces_of(world.settings)
+        # Corner and way to the next corner of each face nearby; centre and squared radius of each post.
         self._faces: list[tuple[float, float, float, float]] = []
         self._posts: list[tuple[float, float, float]] = []
 
@@ -58,10 +63,15 @@ class Sight:
 
     def _gather(self, centre: Point) -> None:
         world = self._world.settings
-        edges = edges_of(world.outline[:-1]) + [edge for solid in world.solids for edge in edges_of(solid)]
-        self._faces = [
-            (a[0], a[1], b[0] - a[0], b[1] - a[1]) for a, b in edges if point_distance_m(centre, (a, b)) <= self._keep_m
-        ]
+        if self._seen_world is not world:
+            self._every_face = _faces_of(world)
+        # All at once: a map may have thousands of faces, and the cycle has no more time than others.
+        corner_x, corner_y, way_x, way_y = self._every_face.T
+        dx, dy = centre[0] - corner_x, centre[1] - corner_y
+        share = np.clip((dx * way_x + dy * way_y) / (way_x**2 + way_y**2), 0.0, 1.0)
+        away_m = np.hypot(dx - share * way_x, dy - share * way_y)
+        near: list[list[float]] = self._every_face[away_m <= self._keep_m].tolist()
+        self._faces = [(x, y, along_x, along_y) for x, y, along_x, along_y in near]
         self._posts = [
             (post.x_m, post.y_m, post.radius_m**2)
             for post in world.round_obstacles
@@ -69,3 +79,9 @@ class Sight:
         ]
         self._seen_world = world
         self._seen_from = centre
+
+
+def _faces_of(world: WorldSettings) -> NDArray[np.float64]:
+    """Corner and way to the next corner of each face, (n, 4)."""
+    edges = edges_of(world.outline[:-1]) + [edge for solid in world.solids for edge in edges_of(solid)]
+    return np.array([(a[0], a[1], b[0] - a[0], b[1] - a[1]) for a, b in edges])

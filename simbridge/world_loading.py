@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import shapely
+import yaml
 
 from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, find_config, load_settings
@@ -20,9 +21,28 @@ def load(name_or_path: str, geometry: GeometrySettings) -> WorldSettings:
     source = name_or_path
     if world is None:
         path = _find(name_or_path)
-        source, world = str(path), load_settings(path, WorldSettings)
+        source, world = str(path), _read(path, geometry)
     require_drivable(world, geometry, source)
     return world
+
+
+def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
+    """A world, a map or a world on a map, told apart by their keys."""
+    keys = _keys(path)
+    if not keys & {"image", "map"} or "outline" in keys:
+        return load_settings(path, WorldSettings)
+    # Not at the top: who drives in no map needs not read images.
+    from simbridge.map_server.world import world_from_map, world_on_map
+
+    return world_from_map(path, geometry) if "image" in keys else world_on_map(path)
+
+
+def _keys(path: Path) -> set[str]:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, yaml.YAMLError, RecursionError):
+        return set()  # the loader of settings says what is wrong with it
+    return {str(key) for key in content} if isinstance(content, dict) else set()
 
 
 def _find(name_or_path: str) -> Path:

@@ -33,6 +33,8 @@ from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.scripted_lesson import RefusedError
 
 _EXTRAS = {
+    "contourpy": "simulation",
+    "PIL": "simulation",
     "pymunk": "simulation",
     "matplotlib": "simulation",
     "shapely": "simulation",

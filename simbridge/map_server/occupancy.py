@@ -1,0 +1,75 @@
+"""From the image of a map to the cells that can be driven on, as map_server reads it."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from hal.settings import SettingsError
+from simbridge.map_server.settings import MapSettings
+
+MOST_CELLS = 4096 * 4096
+
+_UNKNOWN = -1.0
+_HALF_OCCUPIED = 50.0
+"""Of an occupancy grid's 0 to 100; in mode trinary there is nothing between."""
+
+
+def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
+    """Whether each cell is known to be free: row 0 is the lowest, as y goes.
+
+    Raises SettingsError that names the map's file and the key.
+    """
+    image = source.parent / settings.image
+    try:
+        with warnings.catch_warnings():
+            # Pillow warns of images that are huge; nothing of them is read before their size is looked at.
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            opened = Image.open(image)
+        with opened:
+            width, height = opened.size
+            if width * height > MOST_CELLS:
+                raise SettingsError(
+                    f"{source}: image: {image} has {width} x {height} cells, allowed are {MOST_CELLS} at most; "
+                    "crop it to where the robot drives"
+                )
+            shade, is_opaque = _shades(opened)
+    except FileNotFoundError as error:
+        raise SettingsError(f"{source}: image: there is no {image}; the path counts from the YAML file") from error
+    except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError) as error:
+        if isinstance(error, SettingsError):
+            raise
+        raise SettingsError(f"{source}: image: {image} cannot be read ({error}); give a PGM or PNG file") from error
+    occupancy = _occupancy(shade, is_opaque, settings)
+    return np.asarray((occupancy >= 0) & (occupancy < _HALF_OCCUPIED))[::-1]
+
+
+def _shades(image: Image.Image) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Brightness from 0 to 255, the mean of the colours; and which cells are fully opaque."""
+    if image.mode == "P":
+        image = image.convert("RGBA")
+    elif image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16"):
+        image = image.convert("L")
+    values = np.asarray(image, dtype=np.float64)
+    if image.mode in ("I", "I;16"):  # 16 bits
+        values = values / 257.0
+    if values.ndim == 2:
+        return values, np.ones(values.shape, dtype=np.bool_)
+    if image.mode in ("LA", "RGBA"):
+        return values[..., :-1].mean(axis=2), values[..., -1] == 255
+    return values.mean(axis=2), np.ones(values.shape[:2], dtype=np.bool_)
+
+
+def _occupancy(shade: NDArray[np.float64], is_opaque: NDArray[np.bool_], settings: MapSettings) -> NDArray[np.float64]:
+    """What map_server publishes: 0 free, 100 occupied, -1 unknown."""
+    bright = 255.0 - shade if settings.negate else shade
+    if settings.mode == "raw":
+        return np.where(bright <= 100, bright, _UNKNOWN)
+    share = (255.0 - bright) / 255.0
+    low, high = settings.free_thresh, settings.occupied_thresh
+    between: NDArray[np.float64] | float = _UNKNOWN
+    if settings.mode == "scale":
+        between = np.where(is_opaque, 1.0 + 98.0 * (share - low) / (high - low), _UNKNOWN)
+    return np.where(share > high, 100.0, np.where(share < low, 0.0, between))

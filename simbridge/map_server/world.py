@@ -1,0 +1,115 @@
+"""Worlds from maps: the room that the robot starts in, its islands as obstacles."""
+
+import math
+from pathlib import Path
+
+import shapely
+from shapely.affinity import scale, translate
+
+from hal.robot_settings import GeometrySettings
+from hal.settings import SettingsError, load_settings
+from simbridge.map_server.occupancy import drivable_cells
+from simbridge.map_server.settings import MapSettings, MapWorldSettings
+from simbridge.map_server.starts import starts_away_from_walls, turning_places
+from simbridge.map_server.tracing import TooRaggedError, trace
+from simbridge.obstacle_settings import PolygonObstacleSettings
+from simbridge.world_settings import StartPoseSettings, WorldSettings
+
+MOST_WALLS = 5000
+_MOST_M = 200.0
+_SLIP_M = 0.06
+"""Room to spare where the robot turns."""
+
+
+def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
+    """A map as it is; start poses are found where the robot can turn, away from walls.
+
+    Raises SettingsError that names file and key.
+    """
+    floors = _floors(source, load_settings(source, MapSettings))
+    # Long and ragged as they are, few floors have room for a robot: the largest first, until no other can have more.
+    turning_m = math.hypot(geometry.outline_length_m, geometry.outline_width_m) / 2 + _SLIP_M
+    best: tuple[float, shapely.Polygon, shapely.Polygon] | None = None
+    for floor in floors:
+        if best is not None and floor.area <= best[0]:
+            break
+        places = turning_places(floor, turning_m)
+        if places is not None and (best is None or places.area > best[0]):
+            best = places.area, floor, places
+    if best is None:
+        raise SettingsError(
+            f"{source}: image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns; "
+            "see whether resolution, negate, the thresholds and mode are those of the image"
+        )
+    return _world(source, best[1], starts_away_from_walls(best[1], best[2]), infrared_rays=1)
+
+
+def world_on_map(source: Path) -> WorldSettings:
+    """A world that names its map, and its start poses in the map's frame. Raises SettingsError."""
+    chosen = load_settings(source, MapWorldSettings)
+    map_source = source.parent / chosen.map
+    if not map_source.is_file():
+        raise SettingsError(f"{source}: map: there is no {map_source}; the path counts from this file")
+    settings = load_settings(map_source, MapSettings)
+    starts = [_on_grid(start, settings) for start in chosen.start_poses]
+    first = shapely.Point(starts[0].x_m, starts[0].y_m)
+    floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
+    if floor is None:
+        raise SettingsError(f"{map_source}: image: nothing on it is free; see whether negate and the thresholds fit it")
+    return _world(source, floor, starts, infrared_rays=3 if chosen.infrared_rays == 3 else 1)
+
+
+def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
+    """What is free, the largest first, in metres from the lower left corner of the image."""
+    try:
+        cells = trace(drivable_cells(source, settings))
+    except TooRaggedError as error:
+        raise SettingsError(
+            f"{source}: image: {error}; clean the map of specks or crop it to where the robot drives, and see whether "
+            "the thresholds fit it"
+        ) from error
+    floors = [scale(each, settings.resolution, settings.resolution, origin=(0, 0)) for each in cells]
+    return sorted(floors, key=lambda each: float(each.area), reverse=True)
+
+
+def _on_grid(start: StartPoseSettings, settings: MapSettings) -> StartPoseSettings:
+    """The same pose from the lower left corner of the image, along its edges."""
+    x_m, y_m, turned_rad = settings.origin
+    dx, dy = start.x_m - x_m, start.y_m - y_m
+    cos, sin = math.cos(turned_rad), math.sin(turned_rad)
+    heading_deg = math.remainder(start.heading_deg - math.degrees(turned_rad), 360.0)
+    return StartPoseSettings.model_construct(x_m=dx * cos + dy * sin, y_m=dy * cos - dx * sin, heading_deg=heading_deg)
+
+
+def _world(source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings], infrared_rays: int) -> WorldSettings:
+    walls = len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
+    if walls > MOST_WALLS:
+        raise SettingsError(
+            f"{source}: image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most; "
+            "crop the map to where the robot drives, or clean it of specks"
+        )
+    west_m, south_m, east_m, north_m = floor.bounds
+    width_m, height_m = east_m - west_m, north_m - south_m
+    if max(width_m, height_m) > _MOST_M:
+        raise SettingsError(
+            f"{source}: resolution: the free space is {width_m:.0f} m x {height_m:.0f} m, allowed are {_MOST_M:.0f} m; "
+            "crop the map to where the robot drives"
+        )
+    shifted = translate(floor, -west_m, -south_m)
+    return WorldSettings(
+        name=source.stem,
+        size_m=(width_m, height_m),
+        infrared_rays=3 if infrared_rays == 3 else 1,
+        outline=_corners(shifted.exterior),
+        polygon_obstacles=tuple(
+            PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])
+            for i, ring in enumerate(shifted.interiors, start=1)
+        ),
+        start_poses=tuple(
+            each.model_copy(update={"x_m": each.x_m - west_m, "y_m": each.y_m - south_m}) for each in starts
+        ),
+    )
+
+
+def _corners(ring: shapely.LinearRing) -> tuple[tuple[float, float], ...]:
+    return tuple((float(x), float(y)) for x, y in ring.coords)

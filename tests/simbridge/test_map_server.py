@@ -1,0 +1,278 @@
+"""Maps of ROS's map_server as worlds."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+import shapely.affinity
+import yaml
+from numpy.typing import NDArray
+from PIL import Image
+
+from hal.settings import SettingsError
+from simbridge.map_server.occupancy import drivable_cells
+from simbridge.map_server.settings import MapSettings
+from simbridge.map_server.tracing import trace
+from simbridge.pose import Pose
+from simbridge.world_settings import WorldSettings, load_world
+from tests.simbridge.rig import ROBOT, Rig
+
+CELL_M = 0.05
+FREE, UNKNOWN, OCCUPIED = 254, 205, 0
+PLAIN = {
+    "image": "flat.pgm",
+    "resolution": CELL_M,
+    "origin": [-10.0, -7.5, 0.0],
+    "negate": 0,
+    "occupied_thresh": 0.65,
+    "free_thresh": 0.196,
+}
+L_SHAPE = shapely.Polygon([(40, 30), (60, 30), (60, 34), (44, 34), (44, 50), (40, 50)])
+FLAT = shapely.Polygon(
+    [(10, 10), (90, 10), (90, 50), (70, 50), (70, 70), (10, 70)],
+    [L_SHAPE.exterior, shapely.box(20, 58, 21, 60).exterior],
+)
+"""In cells: a room with a corner cut out, an island that bends inwards, and a small one."""
+
+Shades = NDArray[np.uint8]
+
+
+def drawn(free: shapely.Geometry, width: int = 100, height: int = 80) -> Shades:
+    """Image of what is free and unknown elsewhere, first row on top as images are."""
+    x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    return np.where(shapely.contains_xy(free, x, y), FREE, UNKNOWN).astype(np.uint8)[::-1]
+
+
+def write_p2(path: Path, shades: Shades) -> None:
+    rows = "\n".join(" ".join(str(shade) for shade in row) for row in shades)
+    path.write_text(f"P2\n# by hand\n{shades.shape[1]} {shades.shape[0]}\n255\n{rows}\n", encoding="ascii")
+
+
+def write_p5(path: Path, shades: Shades) -> None:
+    path.write_bytes(f"P5 {shades.shape[1]} {shades.shape[0]} 255\n".encode() + shades.tobytes())
+
+
+def write_png(path: Path, shades: Shades) -> None:
+    Image.fromarray(shades).save(path)
+
+
+def write_map(folder: Path, shades: Shades | None = None, **change: object) -> str:
+    """A map's YAML file and its image; returns the path."""
+    settings = {**PLAIN, **change}
+    write_p5(folder / str(settings["image"]), drawn(FLAT) if shades is None else shades)
+    path = folder / "flat.yaml"
+    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    return str(path)
+
+
+def floor_of(world: WorldSettings) -> shapely.Polygon:
+    assert isinstance(world.free_space, shapely.Polygon)
+    return world.free_space
+
+
+@pytest.mark.parametrize(("name", "write"), [("flat2.pgm", write_p2), ("flat5.pgm", write_p5), ("flat.png", write_png)])
+def test_walls_parallel_to_the_grid_come_back_where_they_were_drawn(
+    name: str, write: Callable[[Path, Shades], None], tmp_path: Path
+) -> None:
+    write(tmp_path / name, drawn(FLAT))
+    path = tmp_path / "flat.yaml"
+    path.write_text(yaml.safe_dump({**PLAIN, "image": name}), encoding="utf-8")
+    world = load_world(str(path), ROBOT)
+    assert world.name == "flat"
+    assert world.size_m == pytest.approx((4.0, 3.0))
+    wanted = shapely.affinity.scale(shapely.affinity.translate(FLAT, -10, -10), CELL_M, CELL_M, origin=(0, 0))
+    assert floor_of(world).hausdorff_distance(wanted) == pytest.approx(0.0, abs=1e-9)
+    assert [len(island.corners) for island in world.polygon_obstacles] in ([6, 4], [4, 6])
+    assert world.infrared_rays == 1
+
+
+@pytest.mark.parametrize("turn_deg", [*range(7, 90, 7), 45])
+def test_slanted_walls_come_back_within_a_cell_and_in_few_pieces(turn_deg: int) -> None:
+    floor = shapely.box(30, 30, 130, 90).difference(shapely.box(60, 50, 90, 70))
+    floor = shapely.affinity.rotate(floor, turn_deg)
+    (traced,) = trace(drawn(floor, 160, 160)[::-1] == FREE)
+    walls = floor.boundary.difference(shapely.MultiPoint(shapely.get_coordinates(floor)).buffer(2.0))
+    places = [line.interpolate(i / 50, normalized=True) for line in shapely.get_parts(walls) for i in range(51)]
+    assert max(traced.boundary.distance(place) for place in places) < 1.05
+    assert traced.symmetric_difference(floor).area <= 0.35 * floor.length
+    assert traced.boundary.hausdorff_distance(floor.boundary) <= 1.5, "corners"
+    assert len(shapely.get_coordinates(traced)) <= 70
+
+
+def test_what_is_one_cell_thick_stays() -> None:
+    wall = shapely.box(0, 20, 30, 21)
+    speck = shapely.box(35, 5, 36, 6)
+    floor = shapely.box(0, 0, 40, 40).difference(wall | speck)
+    (traced,) = trace(drawn(floor, 40, 40)[::-1] == FREE)
+    assert traced.equals(floor)
+
+
+def test_the_robot_drives_on_a_map_and_sees_its_walls(tmp_path: Path) -> None:
+    world = load_world(write_map(tmp_path), ROBOT)
+    with Rig(world) as rig:
+        rig.robot.place(Pose(0.6, 1.3, 0.0))
+        rig.run(0.5)
+        # To the L's left side, 1.5 m from the room's left wall.
+        rig.drive(20, 20, 8.0)
+        assert rig.robot.collisions > 0
+        assert rig.robot.pose.x_m == pytest.approx(1.5 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
+
+
+def test_start_poses_are_found_away_from_walls_and_always_the_same(tmp_path: Path) -> None:
+    path = write_map(tmp_path)
+    world = load_world(path, ROBOT)
+    assert load_world(path, ROBOT) == world
+    floor = floor_of(world)
+    assert len(world.start_poses) == 8
+    for start in world.start_poses:
+        at = shapely.Point(start.x_m, start.y_m)
+        away_m = floor.boundary.distance(at)
+        assert away_m > 0.33
+        left = shapely.affinity.translate(at, *(away_m * part for part in left_of(start.heading_deg)))
+        assert floor.boundary.distance(left) < 1e-6
+
+
+def left_of(heading_deg: float) -> tuple[float, float]:
+    heading_rad = math.radians(heading_deg)
+    return -math.sin(heading_rad), math.cos(heading_rad)
+
+
+def test_of_several_rooms_it_takes_the_one_with_most_room_to_drive(tmp_path: Path) -> None:
+    shades = drawn(FLAT, 300, 80)
+    # Larger, but a corridor that the robot cannot turn in.
+    shades[0:8, 5:295] = FREE
+    shades[8:70, 100:110] = FREE
+    assert load_world(write_map(tmp_path, shades), ROBOT).size_m == pytest.approx((4.0, 3.0))
+
+
+def world_on(folder: Path, **change: object) -> str:
+    path = folder / "mine.yaml"
+    start = {"x_m": -8.9, "y_m": -5.5, "heading_deg": 90.0}
+    path.write_text(yaml.safe_dump({"map": "flat.yaml", "start_poses": [start], **change}), encoding="utf-8")
+    return str(path)
+
+
+def test_start_poses_of_ones_own_are_in_the_frame_of_the_map(tmp_path: Path) -> None:
+    write_map(tmp_path)
+    world = load_world(world_on(tmp_path, infrared_rays=3), ROBOT)
+    assert (world.name, world.infrared_rays) == ("mine", 3)
+    (start,) = world.start_poses
+    # The room begins 10 cells right of and above the map's lower left corner, (-10, -7.5).
+    assert (start.x_m, start.y_m, start.heading_deg) == pytest.approx((0.6, 1.5, 90.0))
+
+
+def test_a_map_that_is_turned_turns_the_start_poses(tmp_path: Path) -> None:
+    write_map(tmp_path, origin=[2.0, 1.0, math.pi / 2])
+    start = {"x_m": 2.0 - 2.0, "y_m": 1.0 + 1.1, "heading_deg": 180.0}
+    world = load_world(world_on(tmp_path, start_poses=[start]), ROBOT)
+    (found,) = world.start_poses
+    assert (found.x_m, found.y_m, found.heading_deg) == pytest.approx((0.6, 1.5, 90.0))
+
+
+@pytest.mark.parametrize(
+    ("mode", "negate", "shades", "drivable"),
+    [
+        ("trinary", 0, [254, 206, 205, 100, 0], [True, True, False, False, False]),
+        ("trinary", 1, [0, 49, 50, 100, 254], [True, True, False, False, False]),
+        ("trinary", False, [254, 205, 0], [True, False, False]),
+        ("scale", 0, [254, 205, 160, 120, 0], [True, True, True, False, False]),
+        ("raw", 0, [0, 49, 50, 100, 101, 255], [True, True, False, False, False, False]),
+    ],
+)
+def test_shades_mean_what_map_server_says(
+    mode: str, negate: object, shades: list[int], drivable: list[bool], tmp_path: Path
+) -> None:
+    settings = MapSettings.model_validate_json(
+        json.dumps({**PLAIN, "mode": mode, "negate": negate, "free_thresh": 0.196})
+    )
+    write_p5(tmp_path / "flat.pgm", np.array([shades], dtype=np.uint8))
+    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [drivable]
+
+
+def test_colours_count_by_their_mean_and_see_through_cells_of_a_scale_are_unknown(tmp_path: Path) -> None:
+    colours = np.array([[[254, 254, 254, 255], [255, 255, 150, 255], [160, 160, 160, 255], [160, 160, 160, 128]]])
+    Image.fromarray(colours.astype(np.uint8)).save(tmp_path / "flat.png")
+    for mode, wanted in (("trinary", [True, True, False, False]), ("scale", [True, True, True, False])):
+        settings = MapSettings.model_validate_json(json.dumps({**PLAIN, "image": "flat.png", "mode": mode}))
+        assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [wanted]
+
+
+def test_sixteen_bits_and_a_palette_are_read_too(tmp_path: Path) -> None:
+    settings = MapSettings.model_validate_json(json.dumps({**PLAIN, "image": "flat.png"}))
+    Image.fromarray(np.array([[65535, 52685, 0]], dtype=np.uint16)).save(tmp_path / "flat.png")
+    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
+    Image.fromarray(np.array([[255, 205, 0]], dtype=np.uint8)).convert("P").save(tmp_path / "flat.png")
+    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
+
+
+def test_cells_that_meet_at_a_corner_only_are_apart() -> None:
+    free = np.zeros((40, 40), dtype=np.bool_)
+    free[2:20, 2:20] = free[20:38, 20:38] = True
+    free[8:12, 8:12] = free[12:14, 12:14] = False
+    traced = trace(free)
+    assert all(polygon.is_valid for polygon in traced)
+    assert sum(polygon.area for polygon in traced) == pytest.approx(free.sum(), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"image": "none.pgm"}, r"flat\.yaml: image: there is no .*none\.pgm"),
+        ({"resolution": 0.0}, r"flat\.yaml: resolution: .*greater than 0"),
+        ({"origin": [0.0, 0.0]}, r"flat\.yaml: origin"),
+        ({"free_thresh": 0.7}, r"flat\.yaml: .*free_thresh must be below occupied_thresh, 0.65"),
+        ({"mode": "cubic"}, r"flat\.yaml: mode: .*'trinary', 'scale' or 'raw'"),
+        ({"resolutoin": 0.1}, r"flat\.yaml: resolutoin: no such key"),
+        ({"negate": 1}, r"flat\.yaml: image: no free space that the robot fits into, 0.67 m wide"),
+        ({"resolution": 0.001}, r"flat\.yaml: image: no free space that the robot fits into"),
+        ({"image": "junk.pgm"}, r"flat\.yaml: image: .*junk\.pgm cannot be read"),
+        ({"image": "cut.pgm"}, r"flat\.yaml: image: .*cut\.pgm cannot be read"),
+        ({"image": "huge.pgm"}, r"flat\.yaml: image: .*huge\.pgm has 10000 x 10000 cells"),
+    ],
+)
+def test_a_map_that_cannot_be_is_refused_with_file_and_key(
+    change: dict[str, object], complaint: str, tmp_path: Path
+) -> None:
+    path = write_map(tmp_path)
+    (tmp_path / "junk.pgm").write_bytes(b"P5 this is not")
+    (tmp_path / "cut.pgm").write_bytes(b"P5 100 80 255\n" + bytes(100))
+    (tmp_path / "huge.pgm").write_bytes(b"P5 10000 10000 255\n")
+    Path(path).write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
+    with pytest.raises(SettingsError, match=complaint):
+        load_world(path, ROBOT)
+
+
+def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> None:
+    dice = np.random.default_rng(1)
+    for side, share, complaint in (
+        (1200, 0.3, "meet along"),
+        (600, 0.05, "areas and islands"),
+        (400, 0.01, "its walls have"),
+    ):
+        shades = np.where(dice.random((side, side)) < share, OCCUPIED, FREE).astype(np.uint8)
+        with pytest.raises(SettingsError, match=rf"flat\.yaml: image: .*{complaint}.* crop"):
+            load_world(write_map(tmp_path, shades), ROBOT)
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"map": "none.yaml"}, r"mine\.yaml: map: there is no .*none\.yaml"),
+        ({"start_poses": []}, r"mine\.yaml: start_poses"),
+        (
+            {"start_poses": [{"x_m": -7.8, "y_m": -5.9, "heading_deg": 0.0}]},
+            r"mine\.yaml: start_poses.0: the robot is 0.000 m from a wall",
+        ),
+        ({"size_m": [1, 1]}, r"mine\.yaml: size_m: no such key; allowed here: map, infrared_rays, start_poses"),
+    ],
+)
+def test_a_world_on_a_map_is_refused_with_file_and_key(
+    change: dict[str, object], complaint: str, tmp_path: Path
+) -> None:
+    write_map(tmp_path)
+    with pytest.raises(SettingsError, match=complaint):
+        load_world(world_on(tmp_path, **change), ROBOT)
