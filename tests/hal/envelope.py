@@ -132,7 +132,7 @@ class _Rules:
         self._latch("ticks ceased", ceased)
         first, sent = played.first_frame[:, tick], played.first_of_drive[:, tick] - played.first_frame[:, tick]
         self._never("a stop does not send a brake at once", sent != stop.astype(int) + again + ceased, tick)
-        self._expect_brakes("a stop sends something else than a brake", first, np.zeros_like(sent), sent, tick)
+        self._expect_brakes("a stop sends something else than a brake", first, sent, np.full_like(sent, -1), tick)
 
     def _check_driving(self, tick: int) -> None:
         """One set point where nothing is latched, and a brake as soon as something is."""
@@ -142,23 +142,28 @@ class _Rules:
         self._latch("bus blocked", free & (played.waiting[:, tick] >= 2))
         tells = self._latched == ""
         first, sent = played.first_of_drive[:, tick], played.end[:, tick] - played.first_of_drive[:, tick]
-        # A stop in the middle of sending brakes by itself, and so does the tick that sees it.
-        self._never("not one frame a tick", sent != np.where(tells, 1 + 2 * signal + refuses, 1 + signal), tick)
-        self._expect_brakes("latched, and no brake goes out", first, tells.astype(int), sent, tick)
-        at = np.minimum(first, len(self._played.payloads) - 1)
-        self._never("a frame is no set point of the robot's mode", tells & ~self._frames.set_points[at], tick)
         now_s = streams.now_s[:, tick]
         reasons = _reasons_to_stand(streams, self._last_s, tick, _SLACK_S)
+        stay = np.logical_or.reduce(list(reasons.values()))
+        early = tells & ~stay & streams.early_signal[:, tick]
+        for interval in self._intervals:
+            interval.stand(early)
+        # A stop in the middle of a tick brakes by itself, and so does the tick that sees it.
+        expected = np.where(tells, 1 + 2 * signal + 2 * early + refuses, 1 + signal)
+        self._never("not one frame a tick", sent != expected, tick)
+        # A stop while it decides brakes before the set point goes out, and again behind it.
+        self._expect_brakes("latched, and no brake goes out", first, sent, np.where(tells, early, -1), tick)
+        at = np.minimum(first + early, len(self._played.payloads) - 1)
+        self._never("a frame is no set point of the robot's mode", tells & ~self._frames.set_points[at], tick)
         longest_s = 2.0 * streams.robot.can.cycle_s
         elapsed_s = np.nan_to_num(np.clip(now_s - self._last_s, 0.0, longest_s))
         front, rear = self._pressed(BumperEnd.FRONT, tick), self._pressed(BumperEnd.REAR, tick)
-        stay = np.logical_or.reduce(list(reasons.values()))
         moment = _Moment(tick, tells, stay, front, rear, elapsed_s, at)
         self._check_standing(moment, reasons)
         left = self._check_side(moment, 0)
         right = self._check_side(moment, 1)
         self._latch("bus lost", tells & refuses)
-        self._latch(SIGNAL, signal)
+        self._latch(SIGNAL, signal | early)
         self._check_grant(moment, left, right, _reasons_to_stand(streams, self._last_s, tick, -_SLACK_S))
         self._last_s = np.where(tells & np.isfinite(now_s), now_s, self._last_s)
 
@@ -168,10 +173,10 @@ class _Rules:
         for interval in self._intervals:
             interval.stand(where)
 
-    def _expect_brakes(self, rule: str, first: Bytes, after: Bytes, count: Bytes, tick: int) -> None:
-        """All of `count` frames from the first on are brakes, those before `after` excepted."""
+    def _expect_brakes(self, rule: str, first: Bytes, count: Bytes, but: Bytes, tick: int) -> None:
+        """All of `count` frames from the first on are brakes, but the one of that number."""
         for offset in range(int(count.max(initial=0))):
-            here = np.flatnonzero((offset >= after) & (offset < count))
+            here = np.flatnonzero((offset != but) & (offset < count))
             wrong = np.zeros(len(first), dtype=bool)
             wrong[here] = ~self._frames.brakes[first[here] + offset]
             self._never(rule, wrong, tick)

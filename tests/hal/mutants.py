@@ -1,9 +1,10 @@
 """Changes to the guard's code that no test notices, held against those that are known to change nothing.
 
 `make mutants` runs mutmut over the guard, its frames, the watchdog and what they stand on: one small change at a time,
-and the tests of hal have to fail. mutmut 3 because it is kept up, forks a process in which everything is imported already, and
-runs only the tests that reach the changed function: five mutants a second on an idle machine. cosmic-ray starts pytest
-anew for each, which is seconds for one. mutmut leaves out what stands behind a decorator, properties for instance.
+and the tests of hal have to fail. mutmut 3 because it is kept up, forks a process in which everything is imported
+already, and runs only the tests that reach the changed function: five mutants a second on an idle machine. cosmic-ray
+starts pytest anew for each, which is seconds for one. mutmut leaves out what stands behind a decorator, properties for
+instance.
 """
 
 import re

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hal.bus import CanBus
 from hal.frame import Frame
-from hal.guard import Guard
+from hal.guard import BUS_BLOCKED, Guard
 from hal.robot import Grant, Senses, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import TICKS_CEASED, Watchdog
@@ -35,13 +35,18 @@ class SlowBus:
         """Which of them did not."""
         self.waiting = 0
         """Frames that were taken and are not confirmed yet."""
-        self._carried = 0
+        self._carried = self._forgotten = 0
         self._confirmation = Frame(1, b"")
         self._confirmation.is_rx = False
 
     def carry(self) -> None:
         """Carry what waits: its confirmations can be received now."""
-        self._carried += self.waiting
+        self._carried += self.waiting + self._forgotten
+        self.waiting = self._forgotten = 0
+
+    def forget(self) -> None:
+        """What waits counts no more, though it is carried one day."""
+        self._forgotten += self.waiting
         self.waiting = 0
 
     def now_s(self) -> float | None:
@@ -69,6 +74,18 @@ class SlowBus:
 
     def shutdown(self) -> None:
         pass
+
+
+class InterruptedSenses(Senses):
+    """A signal handler of the same thread runs while the guard reads the bumpers."""
+
+    interrupt: Callable[[], None] | None = None
+
+    @property
+    def bumpers(self) -> int:
+        if self.interrupt is not None:
+            self.interrupt()
+        return self[6]
 
 
 def _is_control(msg: can.Message) -> bool:
@@ -157,9 +174,8 @@ def _play_one(
     watchdog = Watchdog(guard, streams.robot.guard.ticks_ceased_s, lambda: watchdog_s)
     attempts = end.attempts
     # What is rare is asked for in one go: the test's time is spent in the loop below.
-    eventful = (
-        streams.stop[at] | streams.release[at] | streams.stop_again[at] | streams.signal[at] | streams.refuses[at]
-    ).tolist()
+    events = (streams.stop, streams.release, streams.stop_again, streams.early_signal, streams.signal, streams.refuses)
+    eventful = np.logical_or.reduce([flags[at] for flags in events]).tolist()
 
     def interrupt() -> None:
         guard.emergency_stop(SIGNAL)
@@ -186,6 +202,8 @@ def _play_one(
             if streams.stop[at, tick]:
                 guard.emergency_stop(FIRST)
             if streams.release[at, tick]:
+                if guard.latched == BUS_BLOCKED:
+                    end.forget()  # as the guard does, for frames that were lost would wait for ever
                 guard.release()
             if streams.stop_again[at, tick]:
                 guard.emergency_stop(AGAIN)
@@ -193,6 +211,9 @@ def _play_one(
             guard.emergency_stop(TICKS_CEASED)
         if eventful[tick]:
             end.interrupt = interrupt if streams.signal[at, tick] else None
+            if streams.early_signal[at, tick]:
+                senses = InterruptedSenses(*senses)
+                senses.interrupt = interrupt
         waiting, first_of_drive = end.waiting, len(attempts)
         grants.append(guard.drive(wanted, senses, decided_at_s, now_s))
         noted.append((first, first_of_drive, len(attempts), waiting, guard.latched or ""))

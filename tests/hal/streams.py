@@ -46,6 +46,8 @@ class Streams:
     stop_again: Flags
     hangs: Flags
     """The tick does not beat the watchdog."""
+    early_signal: Flags
+    """A signal handler stops the robot while the tick decides, just after it has read everything but the bumpers."""
     signal: Flags
     """A signal handler stops the robot while the tick's frame is being sent."""
     refuses: Flags
@@ -78,7 +80,8 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
     stormy = chance.streams(0.2)
     confirms = bool(chance.generator.random() < 0.5)
     stalls = chance.spells(0.2, starts=0.05, ends=0.2)
-    refuses = chance.spells(0.15, starts=0.02, ends=0.5)
+    signal = chance.ticks(0.002)
+    refuses = ~signal & chance.spells(0.15, starts=0.02, ends=0.5)
     lag_s = chance.pick(
         (0.6, np.zeros(chance.shape)),
         (0.2, chance.generator.uniform(0.0, 0.4 * limits.stale_infrared_s, chance.shape)),
@@ -109,7 +112,8 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
         release=chance.ticks(0.1) | (stormy & chance.ticks(0.4)),
         stop_again=stormy & chance.ticks(0.1),
         hangs=chance.spells(0.15, starts=0.02, ends=0.1),
-        signal=chance.ticks(0.002) & ~refuses,
+        early_signal=chance.ticks(0.002) & ~refuses & ~signal,
+        signal=signal,
         refuses=refuses,
     )
 

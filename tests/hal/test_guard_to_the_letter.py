@@ -37,6 +37,13 @@ def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:
     assert driver.drive(0.9, -0.9, FRONT).reasons == (words.SPEED_LIMIT, words.FRONT_BUMPER, words.SLEW_LIMIT)
 
 
+def test_a_stop_that_is_over_before_the_next_tick_starts_from_zero_too(driver: Driver) -> None:
+    driver.drive_for(1.0, 0.5, -0.5)
+    driver.guard.emergency_stop("teacher")
+    driver.guard.release()
+    assert driver.drive(0.5, -0.5).wheel_speeds == (0.01, -0.01)
+
+
 def test_the_bus_gives_no_trouble_before_it_fails_nor_after_a_release(driver: Driver, ends: Ends) -> None:
     assert driver.guard.bus_trouble == ""
     ends[0].shutdown()
