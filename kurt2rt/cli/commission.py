@@ -104,6 +104,7 @@ def commission(
     if target.exists() and not force:
         raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
     wanted, skipped = _named(only, "--only"), _named(skip, "--skip")
+    person = _in_one_line(who or _user())
     base = load_robot(robot_settings)
     path = Path("var", "commission", f"{name}.json")
     progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), anew)
@@ -116,7 +117,7 @@ def commission(
             _tell(
                 console, f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
             )
-    taken = anyio.run(_walk, bus, base, progress, path, chosen, skipped, who or _user(), console)
+    taken = anyio.run(_walk, bus, base, progress, path, chosen, skipped, person, console)
     print_report(taken, STEPS, console)
     report = path.with_suffix(".txt")
     write_durably(report, as_text(taken, STEPS))
@@ -221,6 +222,14 @@ def _user() -> str:
         return getpass.getuser()
     except (KeyError, OSError):  # a user without a name, as in a container
         return "somebody"
+
+
+def _in_one_line(who: str) -> str:
+    """A name as it can stand in a comment of the settings file."""
+    name = " ".join(who.split())
+    if not name or not name.isprintable():
+        raise typer.BadParameter("a name on one line", param_hint="--who")
+    return name
 
 
 def _tell(console: Console, text: str) -> None:

@@ -88,11 +88,24 @@ def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tm
 def test_what_was_found_is_written_at_once_when_the_rest_is_skipped(type_at: Type, tmp_path: Path) -> None:
     earlier(tmp_path, "sensors", "infrared")
     with Workshop() as workshop:
-        said = type_at(Typed(), workshop.spec, "--name", "robbie", "--skip", "sensors,infrared", "--out", "mine.yaml")
+        said = type_at(
+            Typed(),
+            workshop.spec,
+            "--name",
+            "robbie",
+            "--skip",
+            "sensors,infrared",
+            "--out",
+            "mine.yaml",
+            "--who",
+            "ber\nt",
+        )
     assert said.exit_code == 0
     assert "robbie: not passed" in said.out
     assert (tmp_path / "mine.yaml").read_text().startswith("# robbie, commissioned with ")
     assert "NOT PASSED" in (tmp_path / "mine.yaml").read_text()
+    assert "# sensors: skipped, " in (tmp_path / "mine.yaml").read_text()
+    assert " UTC, ber t\n" in (tmp_path / "mine.yaml").read_text()
 
 
 def test_on_another_bus_it_goes_on_only_where_it_is_known_which_robot_it_was(
@@ -129,6 +142,7 @@ def test_what_cannot_be_begun_is_said_in_one_line(
         (("can0", "--name", "My Robot"), "up to 40 of a-z, 0-9 and -"),
         (("can0", "--only", "identity,dance"), "no step dance; there are: identity, lifted, modes, wheels, stop"),
         (("can0", "--skip", "dance"), "no step dance"),
+        (("can0", "--who", "an\x1bna"), "a name on one line"),
         (("can0", "--out", "mine.txt"), "a settings file ends in .yaml"),
         (("can0", "--out", "mine.yaml"), "mine.yaml is there already; --force overwrites it"),
         ((), "Missing argument"),
