@@ -145,7 +145,9 @@ class Kurt2:
         self._guard.emergency_stop(reason)
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven."""
+        """End a latched stop; the robot still stands until it is driven. While the bus is lost it stays stopped."""
+        if self._bus_lost:
+            return  # readings from just before would do for some ticks
         self._alarm = ""
         self._guard.release()
 

@@ -223,6 +223,23 @@ def test_a_lost_bus_is_told_before_other_troubles(ride: Ride) -> None:
     assert "receiving failed" in ride.kurt2.health.trouble
 
 
+def test_who_resumes_while_the_bus_is_lost_gains_nothing(ride: Ride, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: float | None) -> None:
+        raise can.CanOperationError("the interface was down for a moment")
+
+    ride.drive_for(0.5)
+    monkeypatch.setattr(ride.desk, "recv", fail)  # sending works again
+    assert ride.tick() == stopped(BUS_LOST)
+    ride.kurt2.release()  # the readings are 10 ms old
+    for _ in range(10):
+        assert ride.tick() == stopped(BUS_LOST)
+    ride.sleep(1.0)
+    ride.tick()  # opens the bus anew
+    assert ride.tick() == stopped(BUS_LOST)
+    ride.kurt2.release()
+    assert not ride.tick().latched
+
+
 # Wheels
 
 

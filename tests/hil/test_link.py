@@ -67,7 +67,6 @@ def test_a_moment_down_is_long_enough_to_stop(drive: Drive, link: Link) -> None:
     drive.until_it_drives()
 
 
-@pytest.mark.xfail(strict=True, reason="until the readings are stale the guard grants what is wanted")
 def test_a_resume_moves_nothing_while_nothing_is_heard(drive: Drive, link: Link) -> None:
     link.down()
     drive.tick()
