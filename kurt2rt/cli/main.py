@@ -106,18 +106,24 @@ def main() -> None:
             if extra is None:
                 raise
             _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")
-        except _ONE_LINERS as error:
-            _complain(str(error))
-        except BaseExceptionGroup as group:
-            # A task group wraps even the one error that ended it.
-            errors = _leaves(group)
-            if len(errors) != 1 or not isinstance(errors[0], _ONE_LINERS):
+        except (*_ONE_LINERS, OSError, BaseExceptionGroup) as error:
+            text = _in_one_line(error)
+            if text is None:
                 raise
-            _complain(str(errors[0]))
-        except OSError as error:
-            if error.errno not in _MENDED_BY_ANOTHER_PATH:
-                raise
-            _complain(f"{error}; give a path that can be written, on a disk with room")
+            _complain(text)
+
+
+def _in_one_line(error: BaseException) -> str | None:
+    """What is wrong and what to do; None when the user cannot mend it."""
+    if isinstance(error, BaseExceptionGroup):
+        # A task group wraps even the one error that ended it.
+        errors = _leaves(error)
+        return _in_one_line(errors[0]) if len(errors) == 1 else None
+    if isinstance(error, _ONE_LINERS):
+        return str(error)
+    if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:
+        return f"{error}; give a path that can be written, on a disk with room"
+    return None
 
 
 def _leaves(group: BaseExceptionGroup[BaseException]) -> list[BaseException]:

@@ -45,12 +45,10 @@ class Progress(Settings):
 
 
 def load_progress(path: Path) -> Progress:
-    """Read what `save` wrote. Raises SettingsError that says what to do, FileNotFoundError."""
+    """Read what `save` wrote. Raises SettingsError that says what to do, OSError."""
     try:
         return Progress.model_validate_json(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise
-    except (OSError, UnicodeDecodeError, ValidationError) as error:
+    except (UnicodeDecodeError, ValidationError) as error:
         first = " ".join(str(error).split())[:120]
         raise SettingsError(f"{path}: cannot be used ({first}); begin anew with --anew") from error
 
