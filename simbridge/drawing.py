@@ -27,11 +27,14 @@ def draw_world(axes: Axes, world: WorldSettings) -> None:
     axes.set_ylim(-_MARGIN_M, height_m + _MARGIN_M)
     axes.set_aspect("equal")
     axes.set_facecolor(_WALL)
-    axes.add_patch(
+    outline = axes.add_patch(
         Polygon(world.outline, closed=True, facecolor="white", edgecolor=_WALL_EDGE, linewidth=1.0, zorder=0)
     )
     for corners in world.solids:
-        axes.add_patch(Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1))
+        solid = axes.add_patch(
+            Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+        )
+        solid.set_clip_path(outline)  # many a wall begins within the one that it leans against
     for post in world.round_obstacles:
         axes.add_patch(
             Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)

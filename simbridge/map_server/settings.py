@@ -37,5 +37,6 @@ class MapWorldSettings(Settings):
 
     map: str
     """The map's YAML file, relative to this one."""
-    infrared_rays: Literal[1, 3] = 1
+    infrared_rays: Literal[1, 3] | None = None
+    """Default: 3 when something on the map is thinner than the gap between two sensors."""
     start_poses: Annotated[tuple[StartPoseSettings, ...], Field(min_length=1)]

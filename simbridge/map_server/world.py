@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Literal
 
 import shapely
 from shapely.affinity import scale, translate
@@ -17,6 +18,8 @@ from simbridge.world_settings import StartPoseSettings, WorldSettings
 
 MOST_WALLS = 5000
 _MOST_M = 200.0
+_THIN_M = 0.09
+"""The gap between two side sensors; the legs of a chair would often be missed by one ray for each."""
 _SLIP_M = 0.06
 """Room to spare where the robot turns."""
 
@@ -41,7 +44,7 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
             f"{source}: image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns; "
             "see whether resolution, negate, the thresholds and mode are those of the image"
         )
-    return _world(source, best[1], starts_away_from_walls(best[1], best[2]), infrared_rays=1)
+    return _world(source, best[1], starts_away_from_walls(best[1], best[2]), _rays_for(best[1]))
 
 
 def world_on_map(source: Path) -> WorldSettings:
@@ -56,7 +59,7 @@ def world_on_map(source: Path) -> WorldSettings:
     floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
     if floor is None:
         raise SettingsError(f"{map_source}: image: nothing on it is free; see whether negate and the thresholds fit it")
-    return _world(source, floor, starts, infrared_rays=3 if chosen.infrared_rays == 3 else 1)
+    return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
 
 
 def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
@@ -81,7 +84,9 @@ def _on_grid(start: StartPoseSettings, settings: MapSettings) -> StartPoseSettin
     return StartPoseSettings.model_construct(x_m=dx * cos + dy * sin, y_m=dy * cos - dx * sin, heading_deg=heading_deg)
 
 
-def _world(source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings], infrared_rays: int) -> WorldSettings:
+def _world(
+    source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings], infrared_rays: Literal[1, 3]
+) -> WorldSettings:
     walls = len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
     if walls > MOST_WALLS:
         raise SettingsError(
@@ -99,7 +104,7 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings]
     return WorldSettings(
         name=source.stem,
         size_m=(width_m, height_m),
-        infrared_rays=3 if infrared_rays == 3 else 1,
+        infrared_rays=infrared_rays,
         outline=_corners(shifted.exterior),
         polygon_obstacles=tuple(
             PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])
@@ -109,6 +114,12 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings]
             each.model_copy(update={"x_m": each.x_m - west_m, "y_m": each.y_m - south_m}) for each in starts
         ),
     )
+
+
+def _rays_for(floor: shapely.Polygon) -> Literal[1, 3]:
+    boxes = [ring.bounds for ring in floor.interiors]
+    thin = any(min(east_m - west_m, north_m - south_m) < _THIN_M for west_m, south_m, east_m, north_m in boxes)
+    return 3 if thin else 1
 
 
 def _corners(ring: shapely.LinearRing) -> tuple[tuple[float, float], ...]:

@@ -34,7 +34,7 @@ PLAIN = {
 L_SHAPE = shapely.Polygon([(40, 30), (60, 30), (60, 34), (44, 34), (44, 50), (40, 50)])
 FLAT = shapely.Polygon(
     [(10, 10), (90, 10), (90, 50), (70, 50), (70, 70), (10, 70)],
-    [L_SHAPE.exterior, shapely.box(20, 58, 21, 60).exterior],
+    [L_SHAPE.exterior, shapely.box(20, 57, 22, 60).exterior],
 )
 """In cells: a room with a corner cut out, an island that bends inwards, and a small one."""
 
@@ -147,6 +147,16 @@ def test_of_several_rooms_it_takes_the_one_with_most_room_to_drive(tmp_path: Pat
     shades[0:8, 5:295] = FREE
     shades[8:70, 100:110] = FREE
     assert load_world(write_map(tmp_path, shades), ROBOT).size_m == pytest.approx((4.0, 3.0))
+
+
+def test_the_shipped_map_is_a_flat_whose_chair_has_thin_legs() -> None:
+    world = load_world("maps/flat", ROBOT)
+    assert world.name == "flat"
+    assert world.infrared_rays == 3
+    legs = [each for each in world.polygon_obstacles if shapely.Polygon(each.corners).area == pytest.approx(CELL_M**2)]
+    assert len(legs) == 4
+    # It may start in every room.
+    assert len({(start.x_m > 4.0, start.y_m > 3.2, start.y_m < 1.9) for start in world.start_poses}) >= 5
 
 
 def world_on(folder: Path, **change: object) -> str:
