@@ -96,7 +96,7 @@ class Kurt2:
             try:
                 if analog is not None:
                     if data != analog.last_payload and self._read_analog(analog, data):
-                        analog.board.alive_at_s = now_s
+                        analog.board.still_s = 0.0
                         changed = True
                     analog.received_at_s = at_s
                 elif frame_id == self._encoder.frame_id:

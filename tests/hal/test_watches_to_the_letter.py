@@ -92,8 +92,9 @@ def test_two_looks_at_the_same_time_forget_nothing() -> None:
 def test_a_board_is_frozen_after_just_the_time_it_may_repeat_itself() -> None:
     watch = InfraredWatch(("ADC00", "BDC00"), 1.0)
     assert watch.freeze(50.0, driving=False) == ""
-    watch.board_of("BDC00").alive_at_s = 50.5
+    assert watch.freeze(50.5, driving=True) == ""
+    watch.board_of("BDC00").still_s = 0.0
     assert watch.freeze(51.0 - 2**-20, driving=True) == ""
     assert watch.freeze(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
-    watch.board_of("ADC00").alive_at_s = 51.5
+    watch.board_of("ADC00").still_s = 0.0
     assert watch.freeze(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
