@@ -12,6 +12,7 @@ from kurt2rt.commission.step import Result
 
 DISTANCES_M = (0.10, 0.15, 0.20, 0.30, 0.40, 0.50, 0.60)
 _MEASURE_S = 1.0
+_LEAST_FAR_M = 0.4
 _SECOND_LOOKS = 3
 
 
@@ -61,6 +62,12 @@ class RulerStep:
         result.note(f"nothing in view: {floor:.0f} counts")
         near_m = min(each.distance_m for each in readings)
         far_m = _far_m(law, floor, max(each.distance_m for each in readings))
+        if far_m < _LEAST_FAR_M:
+            result.to_do.append(
+                f"With nothing in view the sensor says as much as before a board at {far_m:.2f} m: clear a metre "
+                "around the robot, then repeat this step"
+            )
+            return result
         result.note(f"distances from {near_m:.2f} to {far_m:.2f} m can be told apart")
         result.findings = findings.model_copy(
             update={

@@ -178,6 +178,21 @@ async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) 
     assert session.to_do("infrared")[0].startswith("No law was fitted: ")
 
 
+async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
+    def stand_in_the_way(question: Question) -> str | None:
+        if question.about is not Asked.CLEAR:
+            return None
+        workshop.hold_before("s11", 0.2)
+        return ""
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, stand_in_the_way)
+        await session.walk("infrared")
+    (told,) = session.to_do("infrared")
+    assert told.startswith("With nothing in view the sensor says as much as before a board at 0.2")
+    assert session.progress.findings.law is None
+
+
 async def test_a_sensor_that_does_not_exist_is_asked_for_again(tmp_path: Path) -> None:
     answers = iter(["s99", "s1"])
 
