@@ -31,6 +31,8 @@ def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Co
             table.add_row("\n".join(target.split("_", 1)).replace("_", " "), *row)
     console.print(table)
     console.print(
+        "stands: until the fault is over at least. asks: stands because it does not know the situation. stutters: "
+        "stands for moments. drives: never stands.\n"
         "ms: from the fault's beginning to the standstill at the robot's end of the bus, the worst of all seeds. "
         "Below it, what it needs besides the end of the fault to drive on: a teacher's resume, a new press of his "
         "hand, a new start of the program.\n"

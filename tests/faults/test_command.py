@@ -45,6 +45,8 @@ def test_some_cases_print_their_matrix_and_write_json(app: typer.Typer, tmp_path
     assert exit_code == 0, said
     assert "2 cases, 4 trials, 0 not as they must be" in said
     assert "tick hung" in said
+    for word in ("stands: until the fault is over", "asks: stands because", "stutters: stands", "drives: never stands"):
+        assert word in said
     report = json.loads(file.read_text(encoding="utf-8"))
     (hung,) = report["stop_times"]
     assert hung["trials"] == 2
