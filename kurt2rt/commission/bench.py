@@ -149,6 +149,8 @@ class Bench:
         robot.watchdog.stop()
         try:
             silent = await self._until_rest(drive, silent_s, None)
+            # An alarm has braked: that is not the controller's merit.
+            silent = replace(silent, stopped_by=_stopped_by(robot))
         finally:
             robot.emergency_stop(WAITS)
             if self._second_guard:
@@ -163,9 +165,8 @@ class Bench:
         robot.release()
         for ticks in range(1, self._ticks(seconds) + 1):
             await self._tick(heard, wanted)
-            health = robot.health
-            if health.latched is not None:
-                stopped_by = f"{health.latched} ({health.trouble})" if health.trouble else health.latched
+            stopped_by = _stopped_by(robot)
+            if stopped_by is not None:
                 break
             speeds = heard.wheel_speeds(self.settings, _RUNAWAY_FRAMES)
             if max(abs(speeds.left_m_s), abs(speeds.right_m_s)) > fastest_m_s:
@@ -233,3 +234,11 @@ class Bench:
         robot.sense(now_s)
         if wanted is not None:
             self._grant = robot.drive(wanted, now_s, now_s)
+
+
+def _stopped_by(robot: Kurt2) -> str | None:
+    """Why the robot is to stay stopped; None when it is not."""
+    health = robot.health
+    if health.latched is None:
+        return None
+    return f"{health.latched} ({health.trouble})" if health.trouble else health.latched

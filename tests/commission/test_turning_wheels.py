@@ -280,3 +280,18 @@ async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
     assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
     assert session.outcome("modes") is Outcome.FAILED
+
+
+async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_controllers_watchdog(
+    tmp_path: Path,
+) -> None:
+    never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
+    with Workshop(never) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        workshop.stranger = open_bus(workshop.spec)
+        workshop.stranger_waits_s = 2 * DRIVE_S + 0.2  # some cycles after the second drive
+        await session.walk("stop")
+    (told,) = session.to_do("stop")
+    assert FOREIGN_CONTROL in told
+    assert session.progress.findings.controller_watchdog_s is None

@@ -55,7 +55,8 @@ class Workshop:
         )
         self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
         self.stranger: CanBus | None = None
-        """Somebody else, who sends CONTROL as soon as a wheel turns."""
+        """Somebody else, who sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
+        self.stranger_waits_s = 0.0
         self._hand_m = _PARKED_M
         self._hand_radius_m = hand_radius_m
         self._peaks = [0.0, 0.0]
@@ -69,6 +70,8 @@ class Workshop:
     def step(self) -> None:
         self.robot.step()
         if self.stranger is not None and any(self.robot.wheel_speeds):
+            self.stranger_waits_s -= self.true.can.cycle_s
+        if self.stranger is not None and self.stranger_waits_s < 0.0:
             self.stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
             self.stranger.shutdown()
             self.stranger = None
