@@ -2,6 +2,8 @@
 
 import errno
 import sys
+from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
 import typer
@@ -11,26 +13,13 @@ from threadpoolctl import threadpool_limits
 from hal.bus import BusError
 from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
-from kurt2rt.cli.bench import bench
-from kurt2rt.cli.commission import commission
-from kurt2rt.cli.demo import demo
-from kurt2rt.cli.doctor import doctor
-from kurt2rt.cli.exam import exam
-from kurt2rt.cli.faults import faults
-from kurt2rt.cli.knowledge import knowledge
-from kurt2rt.cli.lesson import lesson
-from kurt2rt.cli.pair import pair
-from kurt2rt.cli.run import run
-from kurt2rt.cli.sim import sim
-from kurt2rt.cli.teach import teach
-from kurt2rt.experiments.curriculum import LessonLostError
+from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError
 from kurt2rt.page.error import PageError
 from kurt2rt.recording.error import RecordingError
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.scripted_lesson import RefusedError
+from kurt2rt.teaching.answer import NoAnswerError, RefusedError
 
 _EXTRAS = {
     "contourpy": "simulation",
@@ -72,27 +61,45 @@ _MENDED_BY_ANOTHER_PATH = {
     errno.EROFS,
 }
 
-app = typer.Typer(
-    help="Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
+_COMMANDS = (
+    "demo",
+    "run",
+    "sim",
+    "teach",
+    "pair",
+    "lesson",
+    "exam",
+    "knowledge",
+    "commission",
+    "faults",
+    "bench",
+    "doctor",
+)
+"""Each is a function, or a group of its own, of that name in its module of kurt2rt.cli."""
+
+
+_HELP = (
+    "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
     "Begin with `kurt2rt run --page`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
     "scripted teacher teach it wall following and examines it, in a minute. "
-    "`kurt2rt doctor` says what this machine offers for the real one.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
+    "`kurt2rt doctor` says what this machine offers for the real one."
 )
-app.command()(demo)
-app.command()(run)
-app.command()(sim)
-app.command()(teach)
-app.command()(pair)
-app.command()(lesson)
-app.command()(exam)
-app.add_typer(knowledge, name="knowledge")
-app.command()(commission)
-app.command()(faults)
-app.command()(bench)
-app.command()(doctor)
+
+
+def command_line(words: Sequence[str]) -> typer.Typer:
+    """The commands, or only the one that `words` begin with.
+
+    Each brings its own packages, and as long as a robot's program takes to start, the robot stands.
+    """
+    app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+    app.callback(help=_HELP)(lambda: None)  # a group, also where there is but one command
+    for name in words[:1] if words and words[0] in _COMMANDS else _COMMANDS:
+        command = getattr(import_module(f"kurt2rt.cli.{name}"), name)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command(name)(command)
+    return app
 
 
 def main() -> None:
@@ -100,7 +107,7 @@ def main() -> None:
     # One thread: a product with some hundred rows is over before a second one wakes, and the loop needs its core.
     with threadpool_limits(limits=1):
         try:
-            app()
+            command_line(sys.argv[1:])()
         except ModuleNotFoundError as error:
             extra = _EXTRAS.get(error.name or "")
             if extra is None:

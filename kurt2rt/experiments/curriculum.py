@@ -6,6 +6,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult, teach
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
@@ -16,10 +17,6 @@ from kurt2rt.tasks.settings import TaskSettings
 
 Report = Callable[[str, float, float], None]
 """Progress of a long job: what, simulated seconds done, simulated seconds in all."""
-
-
-class LessonLostError(RuntimeError):
-    """Lessons could not be saved; the message says why and what to do."""
 
 
 @dataclass(frozen=True, slots=True)

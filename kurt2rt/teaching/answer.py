@@ -9,6 +9,10 @@ class NoAnswerError(Exception):
     """Nobody answered in time. It is not known whether the command counted: look at the lessons."""
 
 
+class RefusedError(Exception):
+    """The robot does not take what the scripted teacher cannot do without. One line."""
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
     """The robot's answer. A refusal is one, too."""

@@ -11,7 +11,7 @@ from kurt2rt.channel.state import State
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.commands import Command, Correct, Teach
 from kurt2rt.teaching.scripted_teacher import Picture, teacher_of
@@ -155,7 +155,3 @@ async def _must(robot: TeacherClient, give: Callable[[], Awaitable[Answer]], don
         if tries > 1 and done(await _picture(robot, got.tick)):
             return got
         raise RefusedError(f"the robot refuses the scripted teacher: {got.text}")
-
-
-class RefusedError(Exception):
-    """The robot does not take what the scripted teacher cannot do without. One line."""

@@ -1,14 +1,14 @@
 import pytest
 import typer
 
-from kurt2rt.cli.main import app
+from kurt2rt.cli.main import command_line
 from tests.cli.helpers import CommandLine
 
 
 def commands() -> dict[tuple[str, ...], list[str]]:
     """Every command by its words, with the names of its options and arguments."""
     found: dict[tuple[str, ...], list[str]] = {}
-    waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(app))]
+    waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(command_line(())))]
     while waiting:
         words, command = waiting.pop()
         found[words] = [name for each in getattr(command, "params") for name in _names(each)]  # noqa: B009

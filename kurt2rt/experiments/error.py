@@ -1,0 +1,5 @@
+"""What can go wrong with an experiment."""
+
+
+class LessonLostError(RuntimeError):
+    """Lessons could not be saved; the message says why and what to do."""
