@@ -164,15 +164,17 @@ def test_a_stopped_writer_stops_nobody_else(name: str) -> None:
 
 
 def test_two_processes_are_heard_in_one_order_by_all(name: str) -> None:
-    one, other = SharedBus(name), SharedBus(name)
+    ahead, one, other = SharedBus(name), SharedBus(name), SharedBus(name)
     with writing(name, 0x10), writing(name, 0x11):
-        listener = Listener(one)
+        listener = Listener(ahead)
         for sender in (0x10, 0x11, 0x10, 0x11):
             listener.take_until_from(sender)
     heard = [[(frame.arbitration_id, bytes(frame.data)) for frame in waiting(bus)] for bus in (one, other)]
     length = min(map(len, heard))
-    assert {sender for sender, _ in heard[0][-length:]} == {0x10, 0x11}
     assert heard[0][-length:] == heard[1][-length:]
+    # Of what is kept all may be from one writer, when the other one had to wait for a processor.
+    assert one.lost or {sender for sender, _ in heard[0]} == {0x10, 0x11}
+    ahead.shutdown()
     one.shutdown()
     other.shutdown()
 
