@@ -7,7 +7,7 @@ import shapely
 
 from simbridge.geometry import Point, edges_of, polygons_of
 from simbridge.obstacle_settings import PolygonObstacleSettings, WallSettings
-from simbridge.world_generator.drivable import is_drivable
+from simbridge.world_generator.drivable import FOLLOWING_M, is_drivable
 
 _SHORTEST_WALL_M = 0.3
 """Shorter ones fall between two sensors."""
@@ -47,7 +47,7 @@ class RoomPlan:
             any(math.dist(a, b) < _SHORTEST_WALL_M for a, b in pairwise(rounded))
             or not outline.is_valid
             or outline.bounds != (0.0, 0.0, self.width_m, self.height_m)
-            or not is_drivable(outline)
+            or not is_drivable(outline, FOLLOWING_M)
         ):
             return False
         self.corners = rounded
@@ -75,7 +75,9 @@ class RoomPlan:
         shape, floor = shapely.Polygon(corners), self.floor
         seen_m2: float = floor.intersection(shape).area
         left = floor.difference(shape)
-        return seen_m2 >= _LEAST_SEEN * shape.area and is_drivable(left) and _has_islands_out_of_sight(left)
+        if seen_m2 < _LEAST_SEEN * shape.area:
+            return False
+        return is_drivable(left, FOLLOWING_M) and _has_islands_out_of_sight(left)
 
 
 def _has_islands_out_of_sight(floor: shapely.Geometry) -> bool:

@@ -8,7 +8,7 @@ import shapely
 
 from hal.settings import SettingsError
 from simbridge.world_generator.dice import Dice
-from simbridge.world_generator.drivable import TURNING_M, is_drivable
+from simbridge.world_generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
 from simbridge.world_settings import WorldSettings, load_world
 from tests.simbridge.left_wall import left_clearances_m
 from tests.simbridge.rig import ROBOT, Rig
@@ -32,7 +32,7 @@ def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
     for seed in some:
         world = generated(f"rooms-{seed}")
         floor = world.free_space
-        assert is_drivable(floor), world.name
+        assert is_drivable(floor, FOLLOWING_M), world.name
         centres = floor.buffer(-TURNING_M + 0.002)
         assert len(world.start_poses) >= 8
         for start, pose in enumerate(world.start_poses):
@@ -99,7 +99,7 @@ def has_a_square(world: WorldSettings) -> bool:
 
 def test_the_same_seed_is_the_same_world_everywhere() -> None:
     # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
-    assert [digest("rooms-17"), digest("streets-3")] == ["814b6389eb60dc6e", "6635d1be71c0b592"]
+    assert [digest("rooms-17"), digest("streets-3")] == ["38d54f9daa54236a", "6635d1be71c0b592"]
 
 
 def test_other_seeds_are_other_worlds() -> None:
@@ -136,7 +136,7 @@ def test_a_plain_wall_follower_laps_a_generated_room() -> None:
 
 @pytest.mark.deep
 def test_a_plain_wall_follower_makes_its_way_round_nearly_all_rooms() -> None:
-    # It knows nothing of sharp corners, at which it may brush a wall.
+    # It may hit the end of a wall between its three front sensors, and turn the wrong way then.
     lapped = 0
     for seed in range(100):
         world = generated(f"rooms-{seed}")
@@ -145,4 +145,4 @@ def test_a_plain_wall_follower_makes_its_way_round_nearly_all_rooms() -> None:
             while rig.robot.time_s < 150.0 and rig.robot.laps < 1.0:
                 rig.drive(*follow(rig), 0.05)
             lapped += rig.robot.laps >= 1.0
-    assert lapped >= 90
+    assert lapped >= 95
