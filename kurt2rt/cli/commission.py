@@ -183,7 +183,7 @@ def _conclude(console: Console, progress: Progress, base: RobotSettings, target:
         return
     _tell(console, f"written: {target}")
     _tell(console, f"use it: robot: {target} in a copy of config/runtime/default.yaml, then")
-    _tell(console, f"        kurt2rt run --robot {progress.bus} --settings THAT.yaml")
+    _tell(console, f"        kurt2rt run --robot {progress.bus} --settings THAT.yaml", to_copy=True)
 
 
 def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
@@ -232,5 +232,6 @@ def _in_one_line(who: str) -> str:
     return name
 
 
-def _tell(console: Console, text: str) -> None:
-    console.print(text, markup=False, highlight=False, soft_wrap=True)
+def _tell(console: Console, text: str, *, to_copy: bool = False) -> None:
+    """On a terminal words stay whole; a line to copy stays one line."""
+    console.print(text, markup=False, highlight=False, soft_wrap=to_copy or not console.is_terminal)
