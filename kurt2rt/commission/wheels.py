@@ -18,6 +18,7 @@ from kurt2rt.commission.step import Result
 from kurt2rt.commission.wiring import Motion, Side, Trial, one, parse_seen, what_to_rewire
 
 _UNEQUAL_SHARE = 0.25
+_YES = "y"
 
 
 class WheelsStep:
@@ -76,8 +77,10 @@ def _sign(speed_m_s: float) -> int:
 
 
 async def _seen(bench: Bench, ordered: Motion, counted: Motion) -> Motion:
-    """What a person saw. Where the encoders disagree with the order, Enter alone is no answer."""
-    as_ordered = (Choice("", f"yes, {ordered}"),) if counted == ordered else ()
+    """What a person saw. Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, where
+    the encoders disagree with the order.
+    """
+    as_ordered = (Choice(_YES, f"yes, {ordered}"),) if counted == ordered else ()
     text = (
         f"Did the wheels turn: {ordered}? If not, type which did: left, right or both, forward or back; or none."
         if as_ordered
@@ -86,9 +89,10 @@ async def _seen(bench: Bench, ordered: Motion, counted: Motion) -> Motion:
     question = Question(Asked.SEEN, text, as_ordered, free=True)
     while True:
         answer = await bench.ask(question)
-        if answer == "" and as_ordered:
+        if answer == _YES and as_ordered:
             return ordered
         seen = parse_seen(answer)
         if seen is not None:
             return seen
-        bench.tell("Two words, please, such as: left forward. Or: none.", Tone.BAD)
+        yes = ", or y" if as_ordered else ""
+        bench.tell(f"Two words, please, such as: left forward. Or: none{yes}.", Tone.BAD)

@@ -197,8 +197,19 @@ async def test_two_mistakes_that_hide_each_other_from_the_encoders_are_seen_by_t
     assert first.startswith("ordered left forward, seen right forward, encoders left forward")
 
 
-async def test_where_encoders_disagree_enter_alone_is_no_answer(tmp_path: Path) -> None:
-    hurried = iter(["", "dunno", "left", "left forward"])
+async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None:
+    hurried = iter(["", "y"])
+
+    def hurry(question: Question) -> str | None:
+        return next(hurried, None) if question.about is Asked.SEEN else None
+
+    session = await turned(tmp_path, "wheels", instead=hurry)
+    assert session.person.lines(Tone.BAD) == ["Two words, please, such as: left forward. Or: none, or y."]
+    assert session.outcome("wheels") is Outcome.PASSED
+
+
+async def test_where_encoders_disagree_yes_is_no_answer(tmp_path: Path) -> None:
+    hurried = iter(["y", "dunno", "left", "left forward"])
 
     def hurry(question: Question) -> str | None:
         return next(hurried, None) if question.about is Asked.SEEN else None
