@@ -7,7 +7,7 @@ import shapely
 from shapely.ops import nearest_points
 
 from simbridge.geometry import polygons_of
-from simbridge.world_settings import StartPoseSettings
+from simbridge.pose import Pose
 
 _STARTS = 8
 _APART_M = 0.5
@@ -22,7 +22,7 @@ def turning_places(floor: shapely.Polygon, turning_m: float) -> shapely.Polygon 
     return max(pieces, key=lambda piece: float(piece.area), default=None)
 
 
-def starts_away_from_walls(floor: shapely.Polygon, places: shapely.Polygon) -> list[StartPoseSettings]:
+def starts_away_from_walls(floor: shapely.Polygon, places: shapely.Polygon) -> list[Pose]:
     """Up to 8 poses in `places`, each with the nearest wall on the left; the same ones on every call."""
     candidates = _lattice(places)
     walls = floor.boundary
@@ -50,8 +50,6 @@ def _lattice(places: shapely.Polygon) -> np.ndarray[tuple[int, int], np.dtype[np
     return np.stack([x[within], y[within]], axis=1)
 
 
-def _facing_along(walls: shapely.Geometry, x_m: float, y_m: float) -> StartPoseSettings:
+def _facing_along(walls: shapely.Geometry, x_m: float, y_m: float) -> Pose:
     on_wall, _ = nearest_points(walls, shapely.Point(x_m, y_m))
-    heading_rad = math.atan2(on_wall.y - y_m, on_wall.x - x_m) - math.pi / 2
-    degrees = math.degrees(math.remainder(heading_rad, 2 * math.pi))
-    return StartPoseSettings(x_m=x_m, y_m=y_m, heading_deg=degrees)
+    return Pose(x_m, y_m, math.atan2(on_wall.y - y_m, on_wall.x - x_m) - math.pi / 2)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Literal
 
 import shapely
+from pydantic import ValidationError
 from shapely.affinity import scale, translate
 
 from hal.robot_settings import GeometrySettings
@@ -14,6 +15,7 @@ from simbridge.map_server.settings import MapSettings, MapWorldSettings
 from simbridge.map_server.starts import starts_away_from_walls, turning_places
 from simbridge.map_server.tracing import TooRaggedError, trace
 from simbridge.obstacle_settings import PolygonObstacleSettings
+from simbridge.pose import Pose
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 
 MOST_WALLS = 5000
@@ -54,7 +56,7 @@ def world_on_map(source: Path) -> WorldSettings:
     if not map_source.is_file():
         raise SettingsError(f"{source}: map: there is no {map_source}; the path counts from this file")
     settings = load_settings(map_source, MapSettings)
-    starts = [_on_grid(start, settings) for start in chosen.start_poses]
+    starts = [_on_grid(start.pose, settings) for start in chosen.start_poses]
     first = shapely.Point(starts[0].x_m, starts[0].y_m)
     floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
     if floor is None:
@@ -75,18 +77,15 @@ def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
     return sorted(floors, key=lambda each: float(each.area), reverse=True)
 
 
-def _on_grid(start: StartPoseSettings, settings: MapSettings) -> StartPoseSettings:
+def _on_grid(start: Pose, settings: MapSettings) -> Pose:
     """The same pose from the lower left corner of the image, along its edges."""
     x_m, y_m, turned_rad = settings.origin
     dx, dy = start.x_m - x_m, start.y_m - y_m
     cos, sin = math.cos(turned_rad), math.sin(turned_rad)
-    heading_deg = math.remainder(start.heading_deg - math.degrees(turned_rad), 360.0)
-    return StartPoseSettings.model_construct(x_m=dx * cos + dy * sin, y_m=dy * cos - dx * sin, heading_deg=heading_deg)
+    return Pose(dx * cos + dy * sin, dy * cos - dx * sin, start.heading_rad - turned_rad)
 
 
-def _world(
-    source: Path, floor: shapely.Polygon, starts: list[StartPoseSettings], infrared_rays: Literal[1, 3]
-) -> WorldSettings:
+def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_rays: Literal[1, 3]) -> WorldSettings:
     walls = len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
     if walls > MOST_WALLS:
         raise SettingsError(
@@ -101,19 +100,28 @@ def _world(
             "crop the map to where the robot drives"
         )
     shifted = translate(floor, -west_m, -south_m)
-    return WorldSettings(
-        name=source.stem,
-        size_m=(width_m, height_m),
-        infrared_rays=infrared_rays,
-        outline=_corners(shifted.exterior),
-        polygon_obstacles=tuple(
-            PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])
-            for i, ring in enumerate(shifted.interiors, start=1)
-        ),
-        start_poses=tuple(
-            each.model_copy(update={"x_m": each.x_m - west_m, "y_m": each.y_m - south_m}) for each in starts
-        ),
-    )
+    try:
+        return WorldSettings(
+            name=source.stem,
+            size_m=(width_m, height_m),
+            infrared_rays=infrared_rays,
+            outline=_corners(shifted.exterior),
+            polygon_obstacles=tuple(
+                PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])
+                for i, ring in enumerate(shifted.interiors, start=1)
+            ),
+            start_poses=tuple(
+                StartPoseSettings(
+                    x_m=start.x_m - west_m,
+                    y_m=start.y_m - south_m,
+                    heading_deg=math.degrees(math.remainder(start.heading_rad, 2 * math.pi)),
+                )
+                for start in starts
+            ),
+        )
+    except ValidationError as error:
+        key = ".".join(str(part) for part in error.errors()[0]["loc"]) or "(whole file)"
+        raise SettingsError(f"{source}: {key}: {error.errors()[0]['msg']}") from error
 
 
 def _rays_for(floor: shapely.Polygon) -> Literal[1, 3]:

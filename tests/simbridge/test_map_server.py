@@ -31,6 +31,7 @@ PLAIN = {
     "occupied_thresh": 0.65,
     "free_thresh": 0.196,
 }
+START = {"x_m": -8.9, "y_m": -5.5, "heading_deg": 90.0}
 L_SHAPE = shapely.Polygon([(40, 30), (60, 30), (60, 34), (44, 34), (44, 50), (40, 50)])
 FLAT = shapely.Polygon(
     [(10, 10), (90, 10), (90, 50), (70, 50), (70, 70), (10, 70)],
@@ -159,10 +160,21 @@ def test_the_shipped_map_is_a_flat_whose_chair_has_thin_legs() -> None:
     assert len({(start.x_m > 4.0, start.y_m > 3.2, start.y_m < 1.9) for start in world.start_poses}) >= 5
 
 
+def test_a_room_far_from_the_corner_of_its_map_is_a_world_like_others(tmp_path: Path) -> None:
+    shades = np.full((80, 3000), UNKNOWN, dtype=np.uint8)
+    shades[:, -100:] = drawn(FLAT)
+    near, far = tmp_path / "near", tmp_path / "far"
+    near.mkdir()
+    far.mkdir()
+    there = load_world(write_map(far, shades, resolution=0.1), ROBOT)
+    here = load_world(write_map(near, resolution=0.1), ROBOT)
+    for one, other in zip(there.start_poses, here.start_poses, strict=True):
+        assert (one.x_m, one.y_m) == pytest.approx((other.x_m, other.y_m), abs=1e-6)
+
+
 def world_on(folder: Path, **change: object) -> str:
     path = folder / "mine.yaml"
-    start = {"x_m": -8.9, "y_m": -5.5, "heading_deg": 90.0}
-    path.write_text(yaml.safe_dump({"map": "flat.yaml", "start_poses": [start], **change}), encoding="utf-8")
+    path.write_text(yaml.safe_dump({"map": "flat.yaml", "start_poses": [START], **change}), encoding="utf-8")
     return str(path)
 
 
@@ -239,6 +251,7 @@ def test_cells_that_meet_at_a_corner_only_are_apart() -> None:
         ({"resolutoin": 0.1}, r"flat\.yaml: resolutoin: no such key"),
         ({"negate": 1}, r"flat\.yaml: image: no free space that the robot fits into, 0.67 m wide"),
         ({"resolution": 0.001}, r"flat\.yaml: image: no free space that the robot fits into"),
+        ({"image": "."}, r"flat\.yaml: image: .* cannot be read"),
         ({"image": "junk.pgm"}, r"flat\.yaml: image: .*junk\.pgm cannot be read"),
         ({"image": "cut.pgm"}, r"flat\.yaml: image: .*cut\.pgm cannot be read"),
         ({"image": "huge.pgm"}, r"flat\.yaml: image: .*huge\.pgm has 10000 x 10000 cells"),
@@ -254,6 +267,14 @@ def test_a_map_that_cannot_be_is_refused_with_file_and_key(
     Path(path).write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     with pytest.raises(SettingsError, match=complaint):
         load_world(path, ROBOT)
+
+
+def test_a_map_wider_than_a_world_may_be_is_refused(tmp_path: Path) -> None:
+    shades = np.full((300, 300), FREE, dtype=np.uint8)
+    with pytest.raises(
+        SettingsError, match=r"flat\.yaml: resolution: the free space is 240 m x 240 m, allowed are 200 m"
+    ):
+        load_world(write_map(tmp_path, shades, resolution=0.8), ROBOT)
 
 
 def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> None:
@@ -273,6 +294,8 @@ def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> No
     [
         ({"map": "none.yaml"}, r"mine\.yaml: map: there is no .*none\.yaml"),
         ({"start_poses": []}, r"mine\.yaml: start_poses"),
+        ({"start_poses": [START, START]}, r"mine\.yaml: .*start_poses.0 and start_poses.1 are alike"),
+        ({"map": "mine.yaml"}, r"mine\.yaml: map: no such key; allowed here: image, resolution"),
         (
             {"start_poses": [{"x_m": -7.8, "y_m": -5.9, "heading_deg": 0.0}]},
             r"mine\.yaml: start_poses.0: the robot is 0.000 m from a wall",
