@@ -47,7 +47,7 @@ class Grant(NamedTuple):
     reasons: tuple[str, ...]
     """Why they differ from what was asked for, in the guard's words; empty when they do not."""
     latched: bool
-    """True while the robot stays stopped until `release` is called (emergency stop, ticks ceased, bus lost)."""
+    """True while the robot stays stopped until `release` is called (emergency stop, ticks ceased, an alarm)."""
 
 
 class Robot(Protocol):
@@ -66,7 +66,7 @@ class Robot(Protocol):
         ...
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven."""
+        """End a latched stop; the robot still stands until it is driven. It may stay stopped: `Grant.latched` tells."""
         ...
 
     def close(self) -> None:
