@@ -26,6 +26,9 @@ from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.short_turns import short_turns
 from kurt2rt.timing.timerfd import TimerfdClock
 
+_ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
+"""Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
+
 
 @dataclass(frozen=True, slots=True)
 class Openness:
@@ -51,7 +54,7 @@ async def serve(
     duration_s: float | None,
     stopped: bool = False,
 ) -> Status | None:
-    """Run until SIGTERM, SIGINT or SIGHUP, or for `duration_s`; the wheels stand before anything else ends.
+    """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
     `stopped`: stand until the teacher says resume, as after a stop.
@@ -118,7 +121,7 @@ async def _channel(
 
 
 async def _end_on_signal(runtime: Runtime, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT, signal.SIGHUP) as signals:
+    with anyio.open_signal_receiver(*_ENDING) as signals:
         task_status.started()
         async for _ in signals:
             runtime.scheduler.end()

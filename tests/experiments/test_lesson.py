@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.curriculum import LessonLostError
+from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal

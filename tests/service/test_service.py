@@ -35,7 +35,7 @@ def events_in(knowledge: Path) -> list[str]:
         return [event.origin.command_id for event in journal.events()]
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGTSTP])
 async def test_answers_become_lessons_the_robot_drives_by_them_and_stands_at_the_end(
     tmp_path: Path, number: signal.Signals
 ) -> None:

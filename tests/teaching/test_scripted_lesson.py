@@ -20,7 +20,8 @@ from kurt2rt.channel.requests import (
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.scripted_lesson import RefusedError, teach_by_script
+from kurt2rt.teaching.answer import RefusedError
+from kurt2rt.teaching.scripted_lesson import teach_by_script
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO
 
