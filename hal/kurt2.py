@@ -20,6 +20,8 @@ from hal.wheel_watch import WheelWatch
 
 CLOSED = "closed"
 REOPEN_PERIOD_S = 1.0
+_CLOCKS_DIFFER_S = 0.01
+"""A frame that is stamped later than this after the present has no age: the wall clock was set back, or worse."""
 
 
 class _AnalogFrame:
@@ -72,8 +74,8 @@ class Kurt2:
         """Take everything that arrived, without waiting, and return the newest values.
 
         A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk
-        in it changes nothing, not even its age: a channel that stays broken becomes stale, and the guard stands. A lost
-        bus raises nothing; the senses age. What must stop the robot at once does so here.
+        in it, or from the future, changes nothing, not even its age: a channel that stays broken becomes stale, and
+        the guard stands. A lost bus raises nothing; the senses age. What must stop the robot at once does so here.
         """
         messages, bus_now_s = self._drain(now_s)
         if now_s < self._senses.time_s:
@@ -91,7 +93,13 @@ class Kurt2:
                 continue
             data = message.data
             frame_id = message.arbitration_id
-            at_s = now_s if bus_now_s is None else now_s - max(0.0, bus_now_s - message.timestamp)
+            at_s = now_s
+            if bus_now_s is not None:
+                at_s -= bus_now_s - message.timestamp
+                if not at_s <= now_s + _CLOCKS_DIFFER_S and frame_id != CONTROL_ID:  # not a number, too
+                    self._junk += 1
+                    continue
+                at_s = min(at_s, now_s)
             analog = self._analog.get(frame_id)
             try:
                 if analog is not None:
