@@ -44,12 +44,14 @@ class ExamResult:
     action_changes_per_s: float
     trail: tuple[Position, ...]
     unknown_positions: tuple[Position, ...]
+    alarm: str = ""
+    """Why the guard stopped the robot for good, which ends the exam; empty when it did not."""
 
     def succeeded(self, teachers_laps: float, laps_share: float) -> bool:
-        """No collision, not stuck, and enough of the laps that the teacher's own policy makes."""
+        """No collision, no alarm, not stuck, and enough of the laps that the teacher's own policy makes."""
         # Where the teacher gets nowhere either, standing still is no success.
         enough = self.laps > 0.0 and self.laps >= laps_share * teachers_laps
-        return self.collisions == 0 and not self.stuck and enough
+        return self.collisions == 0 and not self.stuck and not self.alarm and enough
 
 
 async def examine(
@@ -80,9 +82,10 @@ async def examine(
     unknown = changes = ticks = 0
     stuck = asking = False
     action: str | None = None
+    alarm = ""
 
     def after_tick(record: TickRecord) -> None:
-        nonlocal unknown, changes, ticks, stuck, asking, action
+        nonlocal unknown, changes, ticks, stuck, asking, action, alarm
         decision = record.decision
         ticks = record.tick
         unknown += decision.asking
@@ -91,7 +94,10 @@ async def examine(
         asking = decision.asking
         changes += decision.action != action
         action = decision.action
-        if way.none_since_window(arena.position):
+        if record.grant.latched:  # nobody is there to say Go
+            alarm = record.grant.reasons[0]
+            runtime.scheduler.end()
+        elif way.none_since_window(arena.position):
             stuck = True
             runtime.scheduler.end()
         if record.tick % TRAIL_STRIDE == 0:
@@ -112,4 +118,5 @@ async def examine(
         action_changes_per_s=changes / (ticks * period_s),
         trail=tuple(trail),
         unknown_positions=tuple(unknown_positions),
+        alarm=alarm,
     )

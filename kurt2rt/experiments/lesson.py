@@ -38,6 +38,8 @@ class LessonResult:
     ask_positions: tuple[Position, ...]
     ledger: Ledger = field(compare=False, repr=False)
     """Where the time of its last ticks went, on the machine that ran it."""
+    alarms: int = 0
+    """How often the guard stopped the robot for good, and its teacher said Go."""
 
 
 async def teach(
@@ -69,15 +71,20 @@ async def teach(
     trail: list[Position] = []
     ask_positions: list[Position] = []
     asking = False
-    rescues = 0
+    rescues = alarms = latched_ticks = 0
 
     def after_tick(record: TickRecord) -> None:
-        nonlocal asking, rescues
+        nonlocal asking, rescues, alarms, latched_ticks
         if record.tick == corrections_from:
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
         command = teacher.watch(picture_of(record))
         if command is not None:
             runtime.inbox.put(command)
+        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
+        if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
+            runtime.inbox.put(teacher.go())
+            latched_ticks = 0
+            alarms += 1
         if record.decision.asking and not asking:
             ask_positions.append(arena.position)
         asking = record.decision.asking
@@ -109,4 +116,5 @@ async def teach(
         trail=tuple(trail),
         ask_positions=tuple(ask_positions),
         ledger=runtime.ledger,
+        alarms=alarms,
     )

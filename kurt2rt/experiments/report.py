@@ -7,6 +7,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
+from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.tasks.settings import TaskSettings
 
 
@@ -22,6 +23,8 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     taught.add_row("asks", str(lesson.asks), "")
     taught.add_row("corrections", str(lesson.corrections), "")
     taught.add_row("rescues by hand", str(lesson.rescues), "")
+    if lesson.alarms:
+        taught.add_row("alarms of the guard", str(lesson.alarms), "")
 
     return Group(taught, render_exams(result.exams, task)) if result.exams else taught
 
@@ -38,11 +41,18 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             f"{exam.laps:.2f}",
             f"{each.teacher.laps:.2f}",
             str(exam.collisions),
-            f"after {exam.duration_s:.0f} s" if exam.stuck else "no",
+            _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
             "[green]yes[/]" if each.succeeded else "[red]no[/]",
         )
     return driven
+
+
+def _early_end(exam: ExamResult, stuck: str) -> str:
+    """Why and when an exam ended before its time; empty when it did not. `stuck`: what is said where no alarm was."""
+    if not exam.stuck and not exam.alarm:
+        return ""
+    return f"{exam.alarm or stuck}{' after' if exam.alarm else ''} {exam.duration_s:.0f} s"
 
 
 def label_of(world: str) -> str:
@@ -85,7 +95,8 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         cells = []
         for each in result.exams:
             exam = each.learned
-            end = f", stuck at {exam.duration_s:.0f} s" if exam.stuck else ""
+            early = _early_end(exam, "stuck at")
+            end = f", {early}" if early else ""
             colour = "green" if each.succeeded else "red"
             cells.append(f"[{colour}]{exam.laps:.1f} of {each.teacher.laps:.1f}, {exam.collisions}{end}[/]")
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
@@ -116,7 +127,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             f"{passed} of {len(exams)}",
             f"{low:.0%} to {high:.0%}",
             str(sum(each.learned.collisions > 0 for each in exams)),
-            str(sum(each.learned.stuck for each in exams)),
+            str(sum(each.learned.stuck or bool(each.learned.alarm) for each in exams)),
             f"{quartiles([each.learned.laps for each in exams])[1]:.2f}",
             f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
         )

@@ -9,7 +9,7 @@ from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
-from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
+from kurt2rt.teaching.commands import Command, Correct, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
 _NAME = "scripted teacher"
@@ -78,6 +78,10 @@ class ScriptedTeacher:
         """Begin a phase: what to tell the robot."""
         self.phase = phase
         return SetPhase(self._next_id(), _NAME, phase)
+
+    def go(self) -> Command:
+        """The robot shall drive again after an alarm: what to tell it."""
+        return Resume(self._next_id(), _NAME)
 
     def watch(self, picture: Picture, ticks: int = 1) -> Command | None:
         """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""

@@ -1,0 +1,64 @@
+"""The guard stops the robot for good in the middle of a lesson, or of an exam."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
+from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.experiments.report import render_exams
+from kurt2rt.simulated import SimulatedArena, SimulatedStage
+from tests.experiments.helpers import ROBOT, short_task
+from tests.experiments.test_report import printed
+
+TASK = short_task(exam_s=20.0)
+ALARM_CYCLE = 500
+
+
+@dataclass(frozen=True)
+class StageWithAnAlarm(SimulatedStage):
+    """The guard latches in the 500th cycle, as it does when the bus is lost."""
+
+    def open(self, world: str, seed: int, purpose: str) -> SimulatedArena:
+        arena = super().open(world, seed, purpose)
+        step, cycles = arena.step, 0
+
+        def step_on() -> None:
+            nonlocal cycles
+            cycles += 1
+            if cycles == ALARM_CYCLE:
+                arena.robot.emergency_stop("bus lost")
+            step()
+
+        arena.step = step_on  # type: ignore[method-assign]
+        return arena
+
+
+STAGE = StageWithAnAlarm(ROBOT)
+
+
+def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
+    async def lesson() -> LessonResult:
+        result, _ = await run_lesson(STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None)
+        return result
+
+    result = anyio.run(lesson)
+    assert result.alarms == 1
+    at_the_alarm, a_second_later, end = (result.trail[at] for at in (52, 59, -1))
+    assert at_the_alarm == a_second_later
+    assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
+
+
+def test_an_exam_ends_and_says_why() -> None:
+    async def exam() -> tuple[WorldResult, ...]:
+        return await run_exams(STAGE, ROBOT, TASK, [], ("a",), seed=1, report=lambda *_: None)
+
+    (result,) = anyio.run(exam)
+    drive = result.teacher
+    assert drive.alarm == "bus lost"
+    assert drive.duration_s == ALARM_CYCLE / 100
+    assert not drive.stuck
+    assert not drive.succeeded(teachers_laps=drive.laps, laps_share=0.8)
+    rows = printed(render_exams([WorldResult(drive, drive, succeeded=False)], TASK))
+    assert any("bus lost after 5 s" in row for row in rows)
