@@ -200,6 +200,8 @@ def status_line(status: Status, health: Health) -> str:
         doing = f"{decision.action} by RLA {decision.rla_id}{near}"
     elif decision.asking:
         doing = "stands and asks" + ("" if match is None else f", nearest RLA {match.rla.rla_id}{near}")
+    elif runtime.school.stopped_because or record.grant.latched:
+        doing = f"stands until Go: {runtime.school.stopped_because or record.grant.reasons[0]}"
     else:
         doing = f"stands: {decision.cause.value}"
     lateness = runtime.ledger.lateness()

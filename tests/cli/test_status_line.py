@@ -39,6 +39,13 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
     assert status_line(status, WELL).split(" | ")[-1].startswith("missed")
 
 
+def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
+    desk = Desk()
+    desk.runtime.school.stop("the robot program was started")
+    line = status_line(Status(desk.record, desk.runtime, 0, None, ""), WELL)
+    assert "stands until Go: the robot program was started" in line
+
+
 def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: Status) -> None:
     assert status_line(status, PASSIVE).endswith(" | bus can0: error-passive, 130 errors")
 
