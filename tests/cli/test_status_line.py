@@ -42,7 +42,7 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
 def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
     desk = Desk()
     desk.runtime.school.stop("the robot program was started")
-    line = status_line(Status(desk.record, desk.runtime, 0, None, ""), WELL)
+    line = status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 
 
