@@ -33,6 +33,7 @@ class Jobs:
         return lambda _: None
 
 
+@pytest.mark.deep
 async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(untaught: Subject, tmp_path: Path) -> None:
     jobs = Jobs()
     benches = [bench for bench in Bench if bench is not Bench.CHANNEL]  # its processes take seconds: test_channel.py

@@ -154,6 +154,7 @@ def _must_have_kept_control(seen: Seen) -> None:
         assert (told["failed"], told["failures"]) == (0, 0)
 
 
+@pytest.mark.deep
 async def test_a_teacher_is_answered_while_junk_pours_in(tmp_path: Path) -> None:
     seen = await _cheap_robot(tmp_path, 0.0, 3.0)
     _report("short", seen)

@@ -85,6 +85,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
     assert actions_in(copy)[0] == actions_in(knowledge)[0] == "stand"
 
 
+@pytest.mark.deep
 def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: Path) -> None:
     words = ("run", "--auto", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
     with running(*words, folder=tmp_path) as robot:
@@ -97,6 +98,7 @@ def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: 
     assert actions_in(tmp_path / "mine.knowledge")
 
 
+@pytest.mark.deep
 def test_the_terminal_and_the_page_are_open_side_by_side(tmp_path: Path) -> None:
     words = ("run", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
     with running(*words, folder=tmp_path) as robot:

@@ -22,6 +22,7 @@ def without_counts(result: CurriculumResult) -> CurriculumResult:
     return replace(result, lesson=replace(result.lesson, statistics=COUNTED_APART))
 
 
+@pytest.mark.deep
 def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> None:
     (tmp_path / "here").mkdir()
     (tmp_path / "there").mkdir()

@@ -13,6 +13,7 @@ from tests.hil.machine.packages import need
 from tests.hil.machine.trouble import MachineError
 
 _CONFIGURATION = Path(__file__).with_name("small_kernel.config")
+_PATCH = Path(__file__).with_name("small_kernel.patch")
 _SOURCES = Path("/usr/src")
 _SOURCE_NAMES = "linux-source-*.tar.xz"
 _SIGNS = {
@@ -23,6 +24,7 @@ _SIGNS = {
     "flex": "flex",
     "bison": "bison",
     "bc": "bc",
+    "patch": "patch",
     "xz": "xz-utils",
 }
 _BUILD_BYTES = 2 << 30
@@ -30,7 +32,7 @@ _LOG_LINES = 20
 
 
 def small_kernel(*, install: bool = False) -> Path:
-    """The kernel of this configuration: from the cache, or built now, in three minutes on two processors.
+    """The kernel of this configuration and patch: from the cache, or built now, in three minutes on two processors.
 
     Raises MachineError that names missing packages or says why it cannot be built; OSError.
     """
@@ -63,7 +65,7 @@ def _newest_source() -> Path | None:
 
 
 def _place(cache: Path, source: Path) -> Path:
-    """Where the kernel of a source and this configuration lies."""
+    """Where the kernel of a source, this configuration and this patch lies."""
     package = source.name.removesuffix(".tar.xz")
     try:
         told = subprocess.run(
@@ -75,7 +77,7 @@ def _place(cache: Path, source: Path) -> Path:
 
 
 def _fingerprint() -> str:
-    return hashlib.sha256(_CONFIGURATION.read_bytes()).hexdigest()[:12]
+    return hashlib.sha256(_CONFIGURATION.read_bytes() + _PATCH.read_bytes()).hexdigest()[:12]
 
 
 def _build(source: Path, kernel: Path) -> None:
@@ -86,6 +88,7 @@ def _build(source: Path, kernel: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="building.", dir=kernel.parent) as name:
         folder = Path(name)
         _do(["tar", "-C", name, "--strip-components=1", "-xf", str(source)], folder)
+        _do(["patch", "--quiet", "-p1", "-i", str(_PATCH)], folder)
         make = ["make", "-s", "ARCH=um", f"-j{len(os.sched_getaffinity(0))}"]
         _do([*make, f"KCONFIG_ALLCONFIG={_CONFIGURATION}", "allnoconfig"], folder)
         got = set((folder / ".config").read_text(encoding="utf-8").splitlines())
