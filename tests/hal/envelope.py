@@ -145,11 +145,11 @@ class _Rules:
         now_s = streams.now_s[:, tick]
         reasons = _reasons_to_stand(streams, self._last_s, tick, _SLACK_S)
         stay = np.logical_or.reduce(list(reasons.values()))
-        early = tells & ~stay & streams.early_signal[:, tick]
+        early = played.interrupted[:, tick]
         for interval in self._intervals:
             interval.stand(early)
         # A stop in the middle of a tick brakes by itself, and so does the tick that sees it.
-        expected = np.where(tells, 1 + 2 * signal + 2 * early + refuses, 1 + signal)
+        expected = np.where(tells, 1 + 2 * signal + 2 * early + refuses, 1 + signal + early)
         self._never("not one frame a tick", sent != expected, tick)
         # A stop while it decides brakes before the set point goes out, and again behind it.
         self._expect_brakes("latched, and no brake goes out", first, sent, np.where(tells, early, -1), tick)

@@ -109,6 +109,8 @@ class Played:
     """Number after the tick's last frame."""
     waiting: Bytes
     """Frames that wait unconfirmed when the tick comes to drive."""
+    interrupted: Flags
+    """An early signal came, for the guard read the bumpers."""
     granted_left_m_s: Floats
     granted_right_m_s: Floats
     reasons: Bytes
@@ -124,8 +126,9 @@ class Played:
     """Frames that are no classic data frames of CONTROL's identifier and length; they have a payload of noughts."""
 
 
-_Noted = tuple[int, int, int, int, str]
-"""Beside a grant: the tick's frames (first, first of drive, end), how many wait, why the guard is latched."""
+_Noted = tuple[int, int, int, int, bool, str]
+"""Beside a grant: the tick's frames (first, first of drive, end), how many wait, whether an early signal came, why the
+guard is latched."""
 
 
 def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
@@ -139,7 +142,7 @@ def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
     granted = np.array([grant.wheel_speeds for grant in grants], dtype=float)
     numbers: dict[tuple[str, ...], int] = {}
     reasons = [numbers.setdefault(grant.reasons, len(numbers)) for grant in grants]
-    counts = np.array([note[:4] for note in noted], dtype=np.int64).reshape(*shape, 4)
+    counts = np.array([note[:5] for note in noted], dtype=np.int64).reshape(*shape, 5)
     strange = [frame for frame in end.attempts if not _is_control(frame)]
     payloads = [bytes(8) if frame in strange else bytes(frame.data) for frame in end.attempts]
     refused = np.zeros(len(payloads), dtype=bool)
@@ -151,6 +154,7 @@ def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
         first_of_drive=counts[:, :, 1],
         end=counts[:, :, 2],
         waiting=counts[:, :, 3],
+        interrupted=counts[:, :, 4] != 0,
         granted_left_m_s=granted[:, 0].reshape(shape),
         granted_right_m_s=granted[:, 1].reshape(shape),
         reasons=np.array(reasons, dtype=np.int64).reshape(shape),
@@ -177,7 +181,14 @@ def _play_one(
     events = (streams.stop, streams.release, streams.stop_again, streams.early_signal, streams.signal, streams.refuses)
     eventful = np.logical_or.reduce([flags[at] for flags in events]).tolist()
 
+    interrupted = False
+
     def interrupt() -> None:
+        guard.emergency_stop(SIGNAL)
+
+    def interrupt_early() -> None:
+        nonlocal interrupted
+        interrupted = True
         guard.emergency_stop(SIGNAL)
 
     for tick, (wanted, senses, decided_at_s, now_s, watchdog_s, carries, hangs) in enumerate(
@@ -213,12 +224,12 @@ def _play_one(
             end.interrupt = interrupt if streams.signal[at, tick] else None
             if streams.early_signal[at, tick]:
                 senses = InterruptedSenses(*senses)
-                senses.interrupt = interrupt
+                senses.interrupt = interrupt_early
         waiting, first_of_drive = end.waiting, len(attempts)
         grants.append(guard.drive(wanted, senses, decided_at_s, now_s))
-        noted.append((first, first_of_drive, len(attempts), waiting, guard.latched or ""))
+        noted.append((first, first_of_drive, len(attempts), waiting, interrupted, guard.latched or ""))
         if eventful[tick]:
-            end.refuses = False
+            end.refuses = interrupted = False
         if not hangs:
             watchdog.beat()
     return guard.send_failures
