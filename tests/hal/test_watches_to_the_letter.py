@@ -98,3 +98,10 @@ def test_a_board_is_frozen_after_just_the_time_it_may_repeat_itself() -> None:
     assert watch.freeze(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
     watch.board_of("ADC00").still_s = 0.0
     assert watch.freeze(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
+
+
+def test_the_time_before_the_first_look_is_no_time_of_repeating() -> None:
+    watch = InfraredWatch(("ADC00",), 1.0)
+    assert watch.freeze(50.0, driving=True) == ""
+    assert watch.freeze(50.5, driving=True) == ""
+    assert watch.freeze(51.0, driving=True) != ""
