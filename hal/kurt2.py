@@ -53,6 +53,7 @@ class Kurt2:
         channels = tuple(sensor.channel for sensor in settings.infrared.sensors)
         self._infrared_watch: Final = InfraredWatch(channels, settings.guard.frozen_infrared_s)
         self._wheel_watch: Final = WheelWatch(settings)
+        self._pause_s: Final = settings.guard.ticks_ceased_s
         codec = load_codec(settings.can.database)
         self._analog = _analog_frames(channels, codec, self._infrared_watch)
         self._encoder = codec.message("ENCODER")
@@ -78,6 +79,7 @@ class Kurt2:
         the guard stands. A lost bus raises nothing; the senses age. What must stop the robot at once does so here.
         """
         messages, bus_now_s = self._drain(now_s)
+        paused = now_s - self._senses.time_s > self._pause_s
         if now_s < self._senses.time_s:
             self._forget_ages()
         left_ticks = right_ticks = encoder_frames = error_frames = foreign_control = 0
@@ -134,7 +136,7 @@ class Kurt2:
             self._bumpers,
             now_s - self._bumpers_at_s,
         )
-        self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off)
+        self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off, paused=paused)
         return self._senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
@@ -184,8 +186,12 @@ class Kurt2:
             latched=self._guard.latched,
         )
 
-    def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool) -> None:
-        """Stop for what the newest senses show; `bus_off`: it was off since the last ones, if only for a moment."""
+    def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool, paused: bool) -> None:
+        """Stop for what the newest senses show.
+
+        `bus_off`: it was off since the last ones, if only for a moment; `paused`: nobody looked for long, and nobody
+        drove, so what came meanwhile came all at once.
+        """
         senses = self._senses
         if bus_off or self._bus_state.off:
             self._stop(BUS_OFF)
@@ -196,7 +202,7 @@ class Kurt2:
         )
         if disobedience:
             self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders and their cables")
-        freeze = self._infrared_watch.freeze(senses.time_s, driving=self._told != STANDSTILL)
+        freeze = self._infrared_watch.freeze(senses.time_s, driving=self._told != STANDSTILL and not paused)
         if freeze:
             self._stop(INFRARED_FROZEN, freeze)
 

@@ -318,6 +318,15 @@ def test_a_robot_that_stands_may_wait_on_a_still_board_and_drives_a_second_with_
     assert 699 <= latched.index(True) <= 702  # a second in two parts
 
 
+def test_a_second_in_which_nobody_looked_is_no_second_of_a_still_board(ride: Ride) -> None:
+    for _ in range(10):
+        ride.tick()
+    ride.sleep(1.5)
+    ride.desk.arrive(*ride.frames())
+    assert INFRARED_FROZEN not in ride.decide().reasons
+    assert ride.tick().reasons != (INFRARED_FROZEN,)
+
+
 def test_after_a_resume_a_frozen_board_stops_it_at_once_and_one_that_lives_does_not(ride: Ride) -> None:
     latched = []
     for _ in range(120):

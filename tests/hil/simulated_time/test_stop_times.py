@@ -84,9 +84,6 @@ def test_a_runtime_that_was_stopped_for_a_second_brakes_first_and_takes_nothing_
     assert turn["infrared_age_s"] >= 0.5
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a second without a tick counts as a second in which the boards repeat themselves"
-)
 def test_a_runtime_that_was_stopped_for_a_second_says_so(play: Play) -> None:
     played = play(Story(4.0, runtime_stopped_s=2.0))
     assert [turn["reasons"] for turn in played.runtime["turns"]] == [[TICKS_CEASED]]
