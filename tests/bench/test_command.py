@@ -17,6 +17,7 @@ def app() -> typer.Typer:
     return app
 
 
+@pytest.mark.deep
 def test_one_benchmark_prints_its_table_and_writes_json(app: typer.Typer, tmp_path: Path) -> None:
     file = tmp_path / "results.json"
     arguments = ["--only", "match", "--quick", "--json", str(file), "--folder", str(tmp_path)]

@@ -412,6 +412,7 @@ async def _must_stand_from(at_work: RobotAtWork, tick: int) -> None:
     assert at_work.moved_since(tick + REACH_TICKS) == []
 
 
+@pytest.mark.deep
 async def test_a_program_that_hangs_or_is_killed_leaves_a_robot_that_stands(tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work:
         async with _driver(at_work) as process:

@@ -60,6 +60,7 @@ def kill_over_and_over(knowledge: Path, kills: int, chance: random.Random) -> No
     assert len(set(acknowledged)) == len(acknowledged)
 
 
+@pytest.mark.deep
 def test_no_acknowledged_lesson_is_lost_in_three_kills(tmp_path: Path) -> None:
     kill_over_and_over(tmp_path / "knowledge", 3, random.Random(2004))
 

@@ -215,6 +215,7 @@ def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Cl
     phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("size", [PORTRAIT, SMALL, LANDSCAPE, LAPTOP], ids=["portrait", "small", "landscape", "laptop"])
 def test_the_list_of_keys_leaves_stop_and_go_free(a_phone: Phone, room: Classroom, size: tuple[int, int]) -> None:
     phone = a_phone
