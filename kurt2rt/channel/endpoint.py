@@ -128,9 +128,16 @@ class Endpoint:
     """An open port. Keep it: when it is collected, the port closes."""
 
     def __init__(
-        self, context: aiocoap.Context, port: int, gate: Gate, counters: Counters, failures: _Failures
+        self,
+        context: aiocoap.Context,
+        opened: _Socket,
+        port: int,
+        gate: Gate,
+        counters: Counters,
+        failures: _Failures,
     ) -> None:
         self._context = context
+        self._socket = opened
         self._gate = gate
         self._failures = failures
         self.counters = counters
@@ -152,6 +159,9 @@ class Endpoint:
 
     async def close(self) -> None:
         """Close the port and end what is being answered."""
+        self._socket.gate = None
+        # Answers that have not begun begin now: one that is ended before leaves a complaint of Python on the screen.
+        await asyncio.sleep(0)
         await self._context.shutdown()
 
 
@@ -190,7 +200,8 @@ async def open_endpoint(
     )
     (tokens,) = context.request_interfaces
     answered.tokens = tokens
-    tokens.token_interface.message_interface.gate = gate
+    opened: _Socket = tokens.token_interface.message_interface
+    opened.gate = gate
     end_all = tokens.dispatch_error
 
     def dispatch_error(error: Exception, remote: Any) -> None:
@@ -199,7 +210,7 @@ async def open_endpoint(
             end_all(error, remote)
 
     tokens.dispatch_error = dispatch_error
-    return Endpoint(context, bound.getsockname()[1], gate, counters, failures)
+    return Endpoint(context, opened, bound.getsockname()[1], gate, counters, failures)
 
 
 def _bound(host: str, port: int) -> socket.socket:
