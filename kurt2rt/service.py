@@ -1,6 +1,5 @@
 """The service: the runtime in real time, until somebody ends it."""
 
-import signal
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
+from kurt2rt.ending import ENDING
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
@@ -25,9 +25,6 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.short_turns import short_turns
 from kurt2rt.timing.timerfd import TimerfdClock
-
-_ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
-"""Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +118,7 @@ async def _channel(
 
 
 async def _end_on_signal(runtime: Runtime, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(*_ENDING) as signals:
+    with anyio.open_signal_receiver(*ENDING) as signals:
         task_status.started()
         async for _ in signals:
             runtime.scheduler.end()

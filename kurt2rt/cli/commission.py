@@ -2,7 +2,6 @@
 
 import getpass
 import re
-import signal
 import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -25,16 +24,16 @@ from kurt2rt.commission.checklist import STEPS, Checklist, barring, open_steps, 
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.listener import Listener
 from kurt2rt.commission.person import LeftError
-from kurt2rt.commission.progress import Progress, load_progress, write_durably
+from kurt2rt.commission.progress import Progress, load_progress
 from kurt2rt.commission.report import as_text, print_report
 from kurt2rt.commission.robot_file import write_robot_file
 from kurt2rt.commission.step import Outcome, Step
 from kurt2rt.commission.typing_person import TypingPerson
+from kurt2rt.durable import write_durably
+from kurt2rt.ending import ENDING
 from kurt2rt.timing.timerfd import TimerfdClock
 
 _NAMES = ", ".join(step.name for step in STEPS)
-_LEAVING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
-"""Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
 
 
 def commission(
@@ -158,7 +157,7 @@ async def _walk(
 
 
 async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(*_LEAVING) as signals:
+    with anyio.open_signal_receiver(*ENDING) as signals:
         task_status.started()
         async for _ in signals:
             scope.cancel()

@@ -1,6 +1,5 @@
 """How far a commissioning has come, in a file: it may take days, and nobody types all of it twice."""
 
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Self
@@ -10,7 +9,7 @@ from pydantic import Field, ValidationError
 from hal.settings import Settings, SettingsError
 from kurt2rt.commission.findings import Findings
 from kurt2rt.commission.step import Outcome
-from kurt2rt.durable import sync_folder
+from kurt2rt.durable import write_durably
 
 
 class StepRecord(Settings):
@@ -51,15 +50,3 @@ def load_progress(path: Path) -> Progress:
     except (UnicodeDecodeError, ValidationError) as error:
         first = " ".join(str(error).split())[:120]
         raise SettingsError(f"{path}: cannot be used ({first}); begin anew with --anew") from error
-
-
-def write_durably(path: Path, text: str) -> None:
-    """A file that is there whole after a power cut, or as it was before. Raises OSError."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    fresh = path.with_name(path.name + ".new")
-    with fresh.open("w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    fresh.replace(path)
-    sync_folder(path.parent)

@@ -13,9 +13,10 @@ from pydantic import ValidationError
 from hal.robot_settings import BumperSettings, RobotSettings, SpeedMode, load_robot
 from hal.settings import SettingsError
 from kurt2rt.commission.findings import Findings
-from kurt2rt.commission.progress import Progress, write_durably
+from kurt2rt.commission.progress import Progress
 from kurt2rt.commission.report import passed
 from kurt2rt.commission.step import Step
+from kurt2rt.durable import write_durably
 
 
 def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
