@@ -9,6 +9,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import BinaryIO
 
+from kurt2rt.durable import sync_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.error import KnowledgeError, explained
 
@@ -96,11 +97,7 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
             file.flush()
             os.fsync(file.fileno())
         unborn.rename(path)
-        folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
+        sync_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(
             f"{path}: cannot be created ({error}); give a path in a folder that may be written and has room"
