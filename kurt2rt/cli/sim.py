@@ -73,7 +73,7 @@ def sim(
             "nobody outside this program hears a virtual bus; give shared:NAME", param_hint="--bus"
         )
     # Here, because a robot carries no simulator: the packages it needs are an extra.
-    from kurt2rt.cli.sim_desk import Desk, Keyboard, News, StatusLine
+    from kurt2rt.cli.sim_desk import Desk, News, StatusLine, TypedLines
     from kurt2rt.simulated_ground import SimulatedGround
     from simbridge.standalone import StandaloneRobot
     from simbridge.world_settings import load_world
@@ -104,7 +104,7 @@ def sim(
         desk = Desk(
             standalone, ground_plan, SimulatedGround(standalone.robot, ground_plan, settings.geometry, simulation)
         )
-        keyboard, news, line = Keyboard(sys.stdin), News(standalone), StatusLine(standalone)
+        keyboard, news, line = TypedLines(sys.stdin), News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if seconds is None else time.monotonic() + seconds
         status_at_s = time.monotonic() + _STATUS_S
         while not end.came:

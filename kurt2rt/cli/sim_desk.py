@@ -66,7 +66,7 @@ class Desk:
         return _done(lambda: self._ground.put_robot(*pose), there)
 
 
-class Keyboard:
+class TypedLines:
     """Lines that were typed, as they come, without waiting for them."""
 
     def __init__(self, lines: TextIO) -> None:

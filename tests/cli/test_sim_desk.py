@@ -9,7 +9,7 @@ import pytest
 
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
-from kurt2rt.cli.sim_desk import HELP, Desk, Keyboard, News, StatusLine
+from kurt2rt.cli.sim_desk import HELP, Desk, News, StatusLine, TypedLines
 from kurt2rt.simulated_ground import SimulatedGround
 from simbridge.standalone import StandaloneRobot
 from simbridge.world_settings import load_world
@@ -135,7 +135,7 @@ def test_the_status_line_tells_where_it_is_and_what_it_was_told(table: Table) ->
 
 
 def test_lines_are_there_when_they_are_looked_for() -> None:
-    keyboard = Keyboard(io.StringIO("lift\nlower\n"))
+    keyboard = TypedLines(io.StringIO("lift\nlower\n"))
     keyboard.thread.join(30.0)
     assert keyboard.ended
     assert list(keyboard.typed()) == ["lift\n", "lower\n"]
