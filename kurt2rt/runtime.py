@@ -10,6 +10,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.level import Level
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import TeachingEvent
@@ -33,6 +34,7 @@ class Runtime:
     task: TaskSettings
     definition: SituationDefinition
     level: BasicLevel
+    wanted: Wanted
     school: School
     inbox: TeacherInbox
     statistics: StatisticsCounter
@@ -52,13 +54,15 @@ def build_runtime(
     statistics: StatisticsCounter | None = None,
     level_override: Level | None = None,
     attended: bool = False,
+    wanted: Wanted | None = None,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
     `statistics` goes on from what was counted before. `level_override` puts another layer at the wheels, with
     knowledge and teaching unchanged behind it: the teacher's own policy, for instance, to see what it would reach.
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
-    Raises hal.settings.SettingsError, and UnknownActionError for knowledge that the repertoire cannot act out.
+    `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
+    Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
@@ -68,7 +72,8 @@ def build_runtime(
     system.apply_all(events)
     period_s = settings.can.cycle_s
     repertoire = load_repertoire(task.repertoire, settings)
-    level = BasicLevel(system, repertoire, round(task.learning.minimum_action_s / period_s))
+    wanted = wanted or Wanted(task.behaviours)
+    level = BasicLevel(system, repertoire, round(task.learning.minimum_action_s / period_s), wanted)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = load_repertoire(task.repertoire, settings)
     school = School(
@@ -93,4 +98,4 @@ def build_runtime(
         stale_infrared_s=settings.guard.stale_infrared_s,
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
-    return Runtime(settings, task, definition, level, school, inbox, statistics, ledger, tick, scheduler)
+    return Runtime(settings, task, definition, level, wanted, school, inbox, statistics, ledger, tick, scheduler)

@@ -56,7 +56,7 @@ async def serve(
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
     `stopped`: stand until the teacher says resume, as after a stop.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
-    ChannelError.
+    UnknownBehaviourError, ChannelError.
     """
     path = Path(service.knowledge)
     with TimerfdClock() as clock:

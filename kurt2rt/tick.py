@@ -41,6 +41,8 @@ class TickRecord(NamedTuple):
     grant: Grant
     results: tuple[CommandResult, ...]
     """What became of the teacher's commands that this tick took."""
+    behaviour: str = ""
+    """The taught behaviour that was wanted."""
 
 
 class Tick:
@@ -107,7 +109,8 @@ class Tick:
             if event is not None:
                 events.append(event)
         decision = self._decide(tick, situation, senses, blind=blind)
-        self._school.recent.remember(tick, situation, decision, blind=blind)
+        behaviour = self._school.wanted.behaviour
+        self._school.recent.remember(tick, situation, decision, behaviour, blind=blind)
         mark(Stage.DECIDE)
 
         # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.
@@ -126,7 +129,7 @@ class Tick:
         for event in events:
             self._keeper.submit(event)
         mark(Stage.PUBLISH)
-        return TickRecord(tick, now_s, senses, situation, decision, grant, tuple(results))
+        return TickRecord(tick, now_s, senses, situation, decision, grant, tuple(results), behaviour)
 
     def _decide(self, tick: int, situation: Situation, senses: Senses, *, blind: bool) -> Decision:
         school, authority = self._school, self._school.authority

@@ -11,6 +11,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -83,7 +84,7 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
-        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3)
+        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=Wanted())
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
         self.ledger = Ledger()

@@ -10,6 +10,9 @@ class ReferencePolicy(Protocol):
     unlearnable.
     """
 
-    def choose(self, infrared_counts: tuple[int, ...]) -> str:
-        """Name of the action to take, of the repertoire. `infrared_counts`: as in Senses."""
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        """Name of the action to take, of the repertoire. `infrared_counts`: as in Senses.
+
+        `behaviour`: the taught behaviour that is wanted, empty where the task has only one.
+        """
         ...

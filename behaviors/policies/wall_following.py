@@ -44,7 +44,7 @@ class WallFollowing:
         self._left = itemgetter(*(sensors[name] for name in ("s1", "s3", "s4", "s2")))  # from front to back
         self._baseline_m = infrared.sensors[sensors["s1"]].x_m - infrared.sensors[sensors["s2"]].x_m
 
-    def choose(self, infrared_counts: tuple[int, ...]) -> str:
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Name of the action."""
         want = self._settings
         distance_m = self._distance_m

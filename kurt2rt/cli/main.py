@@ -16,7 +16,7 @@ from kurt2rt.channel.error import ChannelError
 from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.layers.basic_level import UnknownActionError
+from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
 from kurt2rt.page.error import PageError
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.teaching.answer import NoAnswerError, RefusedError
@@ -37,6 +37,7 @@ _ONE_LINERS = (
     SettingsError,
     KnowledgeError,
     UnknownActionError,
+    UnknownBehaviourError,
     BusError,
     LessonLostError,
     ChannelError,

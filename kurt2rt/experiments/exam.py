@@ -11,6 +11,7 @@ from kurt2rt.experiments.lesson import TRAIL_STRIDE
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
@@ -67,15 +68,19 @@ async def examine(
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy."""
     period_s = settings.can.cycle_s
+    wanted = Wanted(task.behaviours)
     level: Level | None = None
     if by_teacher:
         level = PolicyLevel(
             build_policy(task.policy, settings.infrared),
             load_repertoire(task.repertoire, settings),
             round(task.learning.minimum_action_s / period_s),
+            wanted,
         )
     clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level)
+    runtime = build_runtime(
+        arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted
+    )
     way = WayMade(task.exam.stuck_after_s, period_s)
     trail: list[Position] = []
     unknown_positions: list[Position] = []

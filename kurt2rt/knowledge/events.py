@@ -19,15 +19,17 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 
-EVENT_VERSION = 2
+EVENT_VERSION = 3
 """Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
 
-Version 1 knew created, replaced and deleted, with the same fields.
+Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
+behaviour: all RLAs belonged to one without a name.
 """
 
+_BEHAVIOURS_SINCE = 3
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
-    "created": ("rla_id", "condition", "action", "radius", *_ORIGIN),
+    "created": ("rla_id", "condition", "action", "radius", "behaviour", *_ORIGIN),
     "replaced": ("rla_id", "action", "instead_of", *_ORIGIN),
     "deleted": ("rla_id", *_ORIGIN),
     "rewarded": ("rla_id", "value", "decided_at_tick", *_ORIGIN),
@@ -66,6 +68,7 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
                 "condition": list(rla.condition),
                 "action": rla.action,
                 "radius": rla.radius,
+                "behaviour": rla.behaviour,
             }
         case ActionReplaced(rla_id, action, instead_of, _):
             own = {"kind": "replaced", "rla_id": rla_id, "action": action, "instead_of": instead_of}
@@ -91,6 +94,10 @@ def _event(content: object) -> TeachingEvent:
     if version > EVENT_VERSION:
         raise ValueError(f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}")
     kind = _text(content, "kind")
+    if version < _BEHAVIOURS_SINCE and kind == "created":
+        if "behaviour" in content:
+            raise ValueError(f"created has no 'behaviour' in version {version}")
+        content = {**content, "behaviour": ""}
     if kind not in _FIELDS:
         raise ValueError(f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
     foreign = sorted(content.keys() - {"version", "kind", *_FIELDS[kind]})
@@ -122,7 +129,8 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
             numbers = tuple(_number(each, "condition") for each in condition)
             radius = _value(content, "radius")
             own_radius = None if radius is None else _number(radius, "radius")
-            return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin))
+            behaviour = _text(content, "behaviour")
+            return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin, behaviour))
         case "replaced":
             return ActionReplaced(rla_id, _text(content, "action"), _text(content, "instead_of"), origin)
         case "rewarded":

@@ -1,9 +1,10 @@
-"""The basic level: one RLA system over the 72-D situation, its actions taken from the repertoire."""
+"""The basic level: RLAs over the 72-D situation, of the taught behaviour that is wanted; actions of the repertoire."""
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.held_action import HeldAction
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import RlaRewarded, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.rla.rla_system import Match, RlaSystem
@@ -13,11 +14,21 @@ class UnknownActionError(ValueError):
     """Knowledge names an action that the repertoire does not have."""
 
 
+class UnknownBehaviourError(ValueError):
+    """Knowledge names a taught behaviour that the task does not have."""
+
+
 class BasicLevel:
     """Winner takes all, with a minimum time per action against dithering between neighbours."""
 
-    def __init__(self, system: RlaSystem, repertoire: Repertoire, minimum_action_ticks: int) -> None:
+    def __init__(self, system: RlaSystem, repertoire: Repertoire, minimum_action_ticks: int, wanted: Wanted) -> None:
+        """Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask."""
         for rla in system.rlas:
+            if rla.behaviour not in wanted.behaviours:
+                raise UnknownBehaviourError(
+                    f"RLA {rla.rla_id} belongs to the taught behaviour {rla.behaviour!r}, which the task lacks; "
+                    f"add it there, or teach with the task it came from: {', '.join(map(repr, wanted.behaviours))}"
+                )
             if rla.action not in repertoire:
                 raise UnknownActionError(
                     f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
@@ -25,6 +36,8 @@ class BasicLevel:
                 )
         self.system = system
         self.repertoire = repertoire
+        self.wanted = wanted
+        self._pursued = wanted.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._rla_id: int | None = None
 
@@ -36,7 +49,10 @@ class BasicLevel:
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
-        match = self.system.match(situation.vector)
+        if self._pursued != self.wanted.behaviour:
+            self._pursued = self.wanted.behaviour
+            self._held.yield_next()
+        match = self.system.match(situation.vector, self._pursued)
         if stand_because is not None:
             return self._stand(stand_because, match)
         if match is None or not match.known:

@@ -5,20 +5,28 @@ from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.held_action import HeldAction
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 
 
 class PolicyLevel:
     """Drives as the policy says, with the same minimum time per action as a taught level."""
 
-    def __init__(self, policy: ReferencePolicy, repertoire: Repertoire, minimum_action_ticks: int) -> None:
+    def __init__(
+        self, policy: ReferencePolicy, repertoire: Repertoire, minimum_action_ticks: int, wanted: Wanted
+    ) -> None:
         self._policy = policy
+        self._wanted = wanted
+        self._pursued = wanted.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
-        """The policy's action."""
+        """The policy's action for the behaviour that is wanted."""
+        if self._pursued != self._wanted.behaviour:
+            self._pursued = self._wanted.behaviour
+            self._held.yield_next()
         if stand_because is not None:
             self._held.stand()
             return Decision(STANDSTILL, stand_because, None, None, None)
-        self._held.choose(self._policy.choose(senses.infrared_counts))
+        self._held.choose(self._policy.choose(senses.infrared_counts, self._pursued))
         return Decision(self._held.step(senses), Cause.TEACHER, self._held.name, None, None)

@@ -22,7 +22,7 @@ def lesson_text(lesson: Lesson) -> str:
     """A lesson in a few words, for a teacher."""
     match lesson:
         case RlaCreated(rla):
-            return f"RLA {rla.rla_id} taught: {rla.action}"
+            return f"{rla.title} taught: {rla.action}"
         case ActionReplaced(rla_id, action, instead_of, _):
             return f"RLA {rla_id} corrected: {action} instead of {instead_of}"
         case RlaDeleted(rla_id, _):

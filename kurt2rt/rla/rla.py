@@ -43,6 +43,13 @@ class Rla:
     """Own confidence radius; None: that of the system."""
     origin: Origin
     """Who taught the action it has now, and when."""
+    behaviour: str = ""
+    """The taught behaviour it belongs to: it answers only while that one is wanted. Empty where a task has only one."""
+
+    @property
+    def title(self) -> str:
+        """How it is spoken of, such as RLA 17, or RLA 17 of turn_left."""
+        return f"RLA {self.rla_id} of {self.behaviour}" if self.behaviour else f"RLA {self.rla_id}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,12 @@
-"""The RLA system: a set of RLAs, of which the nearest one inside its radius answers a situation (paper, III)."""
+"""The RLA system: a set of RLAs, of which the nearest one inside its radius answers a situation (paper, III).
+
+Where a task teaches several behaviours there is one such system for each, and one history of lessons for all.
+"""
 
 import hashlib
 from bisect import bisect_left
 from collections.abc import Iterable
-from operator import attrgetter
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,8 +27,6 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
-
-_RLA_ID = attrgetter("rla_id")
 
 
 class Match(NamedTuple):
@@ -56,8 +57,28 @@ class UnfitEventError(ValueError):
     """A teaching event does not fit the knowledge it should change."""
 
 
+class _Contest:
+    """The RLAs of one taught behaviour, by their ids: the same rows as in the index of their conditions."""
+
+    def __init__(self, dimensions: int) -> None:
+        self.ids: list[int] = []  # oldest first
+        self.index = ConditionIndex(dimensions)
+
+    def enter(self, rla_id: int, condition: tuple[float, ...]) -> None:
+        """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
+        position = bisect_left(self.ids, rla_id)
+        self.index.insert(position, condition)
+        self.ids.insert(position, rla_id)
+
+    def leave(self, rla_id: int) -> None:
+        """Take out one that is there."""
+        position = bisect_left(self.ids, rla_id)
+        self.index.remove(position)
+        del self.ids[position]
+
+
 class RlaSystem:
-    """The fold of teaching events; winner takes all by Euclidean distance."""
+    """The fold of teaching events; winner takes all by Euclidean distance, among the RLAs of one taught behaviour."""
 
     def __init__(self, dimensions: int, radius: float, weights: NDArray[np.float64] | None = None) -> None:
         """`weights`, shape (dimensions,): how much each feature counts in a distance; all count 1 unless given."""
@@ -66,8 +87,8 @@ class RlaSystem:
         self.weights = np.ones(dimensions) if weights is None else weights
         self.teaching_ticks = 0
         """How long all sessions that have ended lasted, together."""
-        self._rlas: list[Rla] = []  # oldest first, and so in the order of their ids
-        self._index = ConditionIndex(dimensions)
+        self._rlas: dict[int, Rla] = {}
+        self._contests: dict[str, _Contest] = {}
         self._last_id = 0
         self._appraisals: dict[int, Appraisal] = {}
         self._book = LessonBook()
@@ -79,8 +100,8 @@ class RlaSystem:
 
     @property
     def rlas(self) -> tuple[Rla, ...]:
-        """All living RLAs, oldest first."""
-        return tuple(self._rlas)
+        """All living RLAs of all behaviours, oldest first."""
+        return tuple(self._rlas[rla_id] for rla_id in sorted(self._rlas))
 
     @property
     def next_id(self) -> int:
@@ -89,8 +110,7 @@ class RlaSystem:
 
     def get(self, rla_id: int) -> Rla | None:
         """The living RLA of that id."""
-        position = self._position(rla_id)
-        return None if position is None else self._rlas[position]
+        return self._rlas.get(rla_id)
 
     def appraisal(self, rla_id: int) -> Appraisal:
         """What teachers thought of an RLA; none and none where nobody said so."""
@@ -119,13 +139,17 @@ class RlaSystem:
         """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
         return self._book.why_not_undo(command_id)
 
-    def match(self, situation: NDArray[np.float64]) -> Match | None:
-        """The nearest RLA to a situation vector (d,), and the one behind it; None when nothing was taught yet."""
-        nearest = self._index.nearest(situation * self.weights)
-        if nearest is None:
+    def match(self, situation: NDArray[np.float64], behaviour: str = "") -> Match | None:
+        """The RLA of a taught behaviour nearest to a situation vector (d,), and the one behind it.
+
+        None when nothing was taught for that behaviour yet.
+        """
+        contest = self._contests.get(behaviour)
+        nearest = None if contest is None else contest.index.nearest(situation * self.weights)
+        if contest is None or nearest is None:
             return None
-        rla = self._rlas[nearest.position]
-        runner_up = self._rlas[nearest.runner_up] if nearest.runner_up >= 0 else None
+        rla = self._rlas[contest.ids[nearest.position]]
+        runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = self.radius if rla.radius is None else rla.radius
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
@@ -154,10 +178,11 @@ class RlaSystem:
             self.apply(event)
 
     def knowledge_hash(self) -> str:
-        """Fingerprint of what the system knows: ids, conditions, actions and radii, not who taught them or when."""
+        """Fingerprint of what the system knows: ids, behaviours, conditions, actions, radii; not who taught or when."""
         digest = hashlib.sha256()
-        for rla in self._rlas:
-            digest.update(f"{rla.rla_id} {rla.action} {rla.radius!r} ".encode())
+        for rla in self.rlas:
+            of = f"of {rla.behaviour} " if rla.behaviour else ""
+            digest.update(f"{rla.rla_id} {of}{rla.action} {rla.radius!r} ".encode())
             digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
 
@@ -167,20 +192,16 @@ class RlaSystem:
                 if rla.rla_id <= self._last_id:
                     raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
                 try:
-                    self._index.append(self._weighted(rla.condition))
+                    self._enter(rla)
                 except ValueError as error:
                     raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
-                self._rlas.append(rla)
                 self._last_id = rla.rla_id
             case ActionReplaced(rla_id, action, _, origin):
-                position = self._living(rla_id)
-                old = self._rlas[position]
-                self._rlas[position] = Rla(old.rla_id, old.condition, action, old.radius, origin)
+                old = self._living(rla_id)
+                self._rlas[rla_id] = replace(old, action=action, origin=origin)
                 self._before[origin.command_id] = old
             case RlaDeleted(rla_id, origin):
-                position = self._living(rla_id)
-                self._index.remove(position)
-                self._before[origin.command_id] = self._rlas.pop(position)
+                self._before[origin.command_id] = self._leave(self._living(rla_id))
             case RlaRewarded(rla_id, value, _, _):
                 self._living(rla_id)
                 if value not in (1, -1):
@@ -191,16 +212,12 @@ class RlaSystem:
         """Undo a lesson after which nothing that stands happened to its RLA."""
         match lesson:
             case RlaCreated(rla):
-                position = self._living(rla.rla_id)
-                self._index.remove(position)
-                del self._rlas[position]
+                self._leave(self._living(rla.rla_id))
             case ActionReplaced(rla_id, _, _, origin):
-                self._rlas[self._living(rla_id)] = self._before.pop(origin.command_id)
+                self._living(rla_id)
+                self._rlas[rla_id] = self._before.pop(origin.command_id)
             case RlaDeleted(_, origin):
-                old = self._before.pop(origin.command_id)
-                position = bisect_left(self._rlas, old.rla_id, key=_RLA_ID)
-                self._index.insert(position, self._weighted(old.condition))
-                self._rlas.insert(position, old)
+                self._enter(self._before.pop(origin.command_id))
             case RlaRewarded(rla_id, value, _, _):
                 self._count(rla_id, value, -1)
 
@@ -215,13 +232,19 @@ class RlaSystem:
             raise ValueError(f"condition has {len(condition)} values, this system matches {self.dimensions}")
         return tuple((np.array(condition, dtype=np.float64) * self.weights).tolist())
 
-    def _position(self, rla_id: int) -> int | None:
-        position = bisect_left(self._rlas, rla_id, key=_RLA_ID)
-        found = position < len(self._rlas) and self._rlas[position].rla_id == rla_id
-        return position if found else None
+    def _enter(self, rla: Rla) -> None:
+        condition = self._weighted(rla.condition)
+        contest = self._contests.get(rla.behaviour) or _Contest(self.dimensions)
+        contest.enter(rla.rla_id, condition)
+        self._contests[rla.behaviour] = contest
+        self._rlas[rla.rla_id] = rla
 
-    def _living(self, rla_id: int) -> int:
-        position = self._position(rla_id)
-        if position is None:
+    def _leave(self, rla: Rla) -> Rla:
+        self._contests[rla.behaviour].leave(rla.rla_id)
+        return self._rlas.pop(rla.rla_id)
+
+    def _living(self, rla_id: int) -> Rla:
+        rla = self._rlas.get(rla_id)
+        if rla is None:
             raise UnfitEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
-        return position
+        return rla

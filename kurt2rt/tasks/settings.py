@@ -3,13 +3,20 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from behaviors.policies.wall_following import WallFollowingSettings
 from hal.settings import Settings, find_config, load_settings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
+
+
+def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
+    if len(set(names)) < len(names):
+        raise ValueError("each name may stand here once")
+    return names
 
 
 class LearningSettings(Settings):
@@ -77,6 +84,8 @@ class TaskSettings(Settings):
     name: str
     situation: str
     repertoire: str
+    behaviours: Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_each_once)] = ("",)
+    """What is taught, each with RLAs of its own; the first is wanted at the start. One without a name when absent."""
     learning: LearningSettings
     policy: WallFollowingSettings
     teaching: TeachingSettings

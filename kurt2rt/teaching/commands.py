@@ -121,6 +121,15 @@ class Undo:
 
 
 @dataclass(frozen=True, slots=True)
+class Pursue:
+    """Follow another taught behaviour from now on: only its RLAs answer, and lessons are about it."""
+
+    command_id: str
+    teacher: str
+    behaviour: str
+
+
+@dataclass(frozen=True, slots=True)
 class SetPhase:
     """The training phase from now on."""
 
@@ -196,6 +205,7 @@ Command = (
     | DeleteRla
     | Reward
     | Undo
+    | Pursue
     | SetPhase
     | BeginSession
     | EndSession

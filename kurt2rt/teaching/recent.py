@@ -8,7 +8,7 @@ from kurt2rt.perception.perception import Situation
 
 
 class RecentDecisions:
-    """Situation and deciding RLA of the last `capacity` ticks, in memory that does not grow."""
+    """Situation, deciding RLA and wanted behaviour of the last `capacity` ticks, in memory that does not grow."""
 
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:
         self._capacity = capacity
@@ -17,17 +17,24 @@ class RecentDecisions:
         self._situations = np.full((capacity, dimensions), np.nan)
         self._seeing = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
+        self._behaviours = [""] * capacity
         self.newest = -1
         """Tick of the newest decision; -1 before the first."""
 
-    def remember(self, tick: int, situation: Situation, decision: Decision, *, blind: bool) -> None:
-        """Keep what was decided in a tick; the oldest is forgotten. A `blind` robot was in no situation."""
+    def remember(
+        self, tick: int, situation: Situation, decision: Decision, behaviour: str = "", *, blind: bool
+    ) -> None:
+        """Keep what was decided in a tick, and for which taught behaviour; the oldest is forgotten.
+
+        A `blind` robot was in no situation.
+        """
         row = tick % self._capacity
         self.newest = tick
         self._ticks[row] = tick
         self._seeing[row] = not blind
         self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
+        self._behaviours[row] = behaviour
 
     def knows(self, tick: int) -> bool:
         """Whether that tick is kept: it ran, and not too long ago."""
@@ -45,3 +52,7 @@ class RecentDecisions:
     def rla(self, tick: int) -> int | None:
         """The RLA that drove in a tick that is known."""
         return self._rlas[tick % self._capacity]
+
+    def behaviour(self, tick: int) -> str:
+        """The taught behaviour that was wanted in a tick that is known."""
+        return self._behaviours[tick % self._capacity]

@@ -32,6 +32,7 @@ from kurt2rt.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    Pursue,
     ReplaceAction,
     Resume,
     Reward,
@@ -64,6 +65,7 @@ class School:
         taken_command_ids: Iterable[str],
     ) -> None:
         self._level = level
+        self.wanted = level.wanted
         self.authority = authority
         self.recent = RecentDecisions(level.system.dimensions)
         self._insert_beyond_share = insert_beyond_share
@@ -179,6 +181,8 @@ class School:
                     self._refuse(self._stopped_since(command))
                 self.phase = command.phase
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
+            case Pursue(behaviour=behaviour):
+                return self._pursue(behaviour), None
             case RunBehaviour():
                 return self._run(command, tick), None
             case BeginSession() | EndSession():
@@ -189,8 +193,8 @@ class School:
                 self._require_action(command.action)
                 return self._replace(command, command.rla_id, tick)
             case DeleteRla():
-                self._require_rla(command.rla_id)
-                return f"RLA {command.rla_id} deleted", RlaDeleted(command.rla_id, self._origin(command, tick))
+                title = self._require_rla(command.rla_id).title
+                return f"{title} deleted", RlaDeleted(command.rla_id, self._origin(command, tick))
             case Reward():
                 return self._reward(command, tick)
             case Undo():
@@ -206,6 +210,13 @@ class School:
             _let_go(command.teacher) if command.hold is not None else f"{command.teacher} said stop", command.teacher
         )
         return "the robot stands until it is told to resume"
+
+    def _pursue(self, behaviour: str) -> str:
+        try:
+            self.wanted.pursue(behaviour)
+        except ValueError as error:
+            raise _RefusedError(str(error)) from error
+        return f"{behaviour or 'the only behaviour'} is wanted"
 
     def _pass_on(self, before: str | None) -> None:
         """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""
@@ -238,26 +249,27 @@ class School:
 
     def _lesson(self, command: Teach | Correct, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
         self._require_action(command.action)
-        meant = situation.vector
+        meant, behaviour = situation.vector, self.wanted.behaviour
         if command.decision_tick is not None:
             self._require_known(command.decision_tick)
             if not self.recent.saw(command.decision_tick):
                 raise _RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
             meant = self.recent.situation(command.decision_tick)
+            behaviour = self.recent.behaviour(command.decision_tick)
         # On the very condition of an RLA a second one would never win: the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
             self.corrections += 1
             replace_within_share = self._insert_beyond_share
-        nearest = self._level.system.match(meant)
+        nearest = self._level.system.match(meant, behaviour)
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
-            return self._create(command, meant, tick)
+            return self._create(command, meant, behaviour, tick)
         if nearest.rla.action == command.action:
-            return f"RLA {nearest.rla.rla_id} says {command.action} already", None
+            return f"{nearest.rla.title} says {command.action} already", None
         return self._replace(command, nearest.rla.rla_id, tick)
 
     def _create(
-        self, command: Teach | Correct, meant: NDArray[np.float64], tick: int
+        self, command: Teach | Correct, meant: NDArray[np.float64], behaviour: str, tick: int
     ) -> tuple[str, TeachingEvent | None]:
         rla = Rla(
             rla_id=self._level.system.next_id,
@@ -265,15 +277,16 @@ class School:
             action=command.action,
             radius=None,
             origin=self._origin(command, tick),
+            behaviour=behaviour,
         )
-        return f"RLA {rla.rla_id} taught: {rla.action}", RlaCreated(rla)
+        return f"{rla.title} taught: {rla.action}", RlaCreated(rla)
 
     def _replace(
         self, command: Teach | Correct | ReplaceAction, rla_id: int, tick: int
     ) -> tuple[str, TeachingEvent | None]:
         rla = self._require_rla(rla_id)
         event = ActionReplaced(rla_id, command.action, rla.action, self._origin(command, tick))
-        return f"RLA {rla_id} corrected: {command.action} instead of {rla.action}", event
+        return f"{rla.title} corrected: {command.action} instead of {rla.action}", event
 
     def _reward(self, command: Reward, tick: int) -> tuple[str, TeachingEvent]:
         meant = command.decision_tick
@@ -283,9 +296,9 @@ class School:
         rla_id = self.recent.rla(meant)
         if rla_id is None:
             raise _RefusedError("no RLA drove the robot then; there is nothing to reward or to punish")
-        self._require_rla(rla_id)
+        title = self._require_rla(rla_id).title
         word = "rewarded" if command.value > 0 else "punished"
-        return f"RLA {rla_id} {word}", RlaRewarded(rla_id, command.value, meant, self._origin(command, tick))
+        return f"{title} {word}", RlaRewarded(rla_id, command.value, meant, self._origin(command, tick))
 
     def _undo(self, command: Undo, tick: int) -> tuple[str, TeachingEvent]:
         lesson = command.lesson or self._level.system.last_standing_lesson

@@ -22,12 +22,23 @@ class Picture(NamedTuple):
     driving: bool
     action: str | None
     infrared_counts: tuple[int, ...]
+    behaviour: str = ""
+    """The taught behaviour that is wanted."""
+    rla_id: int | None = None
+    """The RLA whose action drives."""
 
 
 def picture_of(record: TickRecord) -> Picture:
     """What a tick looks like to a teacher."""
     decision = record.decision
-    return Picture(decision.asking, decision.driving, decision.action, record.senses.infrared_counts)
+    return Picture(
+        decision.asking,
+        decision.driving,
+        decision.action,
+        record.senses.infrared_counts,
+        record.behaviour,
+        decision.rla_id,
+    )
 
 
 def teacher_of(
@@ -72,6 +83,7 @@ class ScriptedTeacher:
         self._ticks_asked = 0
         self._ticks_otherwise = 0
         self._wanted: str | None = None
+        self._behaviour = ""
         self.phase = Phase.SUPERVISED
 
     def enter(self, phase: Phase) -> Command:
@@ -85,6 +97,9 @@ class ScriptedTeacher:
 
     def watch(self, picture: Picture, ticks: int = 1) -> Command | None:
         """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""
+        if picture.behaviour != self._behaviour:  # what was asked, and what was wrong, is over
+            self._behaviour = picture.behaviour
+            self._ticks_asked = self._ticks_otherwise = 0
         if picture.asking or self._ticks_asked > 0:
             # Once asked the teacher answers, also when noise has meanwhile let the robot drive on for a moment.
             self._ticks_otherwise = 0
@@ -98,7 +113,7 @@ class ScriptedTeacher:
         return self._correct(picture, ticks)
 
     def _correct(self, picture: Picture, ticks: int) -> Command | None:
-        wanted = self._policy.choose(picture.infrared_counts)
+        wanted = self._policy.choose(picture.infrared_counts, picture.behaviour)
         if wanted == picture.action:
             self._ticks_otherwise = 0
             return None
@@ -112,7 +127,7 @@ class ScriptedTeacher:
         return Correct(self._next_id(), _NAME, self._choose(picture))
 
     def _choose(self, picture: Picture) -> str:
-        right = self._policy.choose(picture.infrared_counts)
+        right = self._policy.choose(picture.infrared_counts, picture.behaviour)
         if self._chance.random() >= self._error_rate:
             return right
         return self._chance.choice([action for action in self._actions if action != right])

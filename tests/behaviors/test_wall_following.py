@@ -26,13 +26,13 @@ def wall_on_the_left(front_m: float, back_m: float | None = None) -> dict[str, f
 @given(st.tuples(*[st.one_of(st.integers(0, 1023), st.sampled_from((0, 70, 71, 549, 550, 551, 1023)))] * 18))
 @settings(max_examples=300)
 def test_it_names_an_action_of_the_repertoire_whatever_the_sensors_show(infrared_counts: tuple[int, ...]) -> None:
-    assert POLICY.choose(infrared_counts) in ACTIONS
+    assert POLICY.choose(infrared_counts, "") in ACTIONS
 
 
 @given(st.lists(st.tuples(*[st.integers(60, 560)] * 18), min_size=1, max_size=8))
 def test_it_has_no_memory(views: list[tuple[int, ...]]) -> None:
     fresh = build_policy(TASK.policy, ROBOT.infrared)
-    assert [POLICY.choose(view) for view in views] == [fresh.choose(view) for view in reversed(views)][::-1]
+    assert [POLICY.choose(view, "") for view in views] == [fresh.choose(view, "") for view in reversed(views)][::-1]
 
 
 @pytest.mark.parametrize(
@@ -58,4 +58,4 @@ def test_it_has_no_memory(views: list[tuple[int, ...]]) -> None:
     ],
 )
 def test_what_a_consistent_person_would_say(distances_m: dict[str, float], action: str) -> None:
-    assert POLICY.choose(counts(**distances_m)) == action
+    assert POLICY.choose(counts(**distances_m), "") == action

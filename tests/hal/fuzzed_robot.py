@@ -16,6 +16,7 @@ from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.tick import TickRecord
@@ -51,6 +52,7 @@ class FuzzedRobot:
             build_policy(task.policy, ROBOT.infrared),
             load_repertoire(task.repertoire, ROBOT),
             round(task.learning.minimum_action_s / TICK_S),
+            Wanted(),
         )
         clock = LockstepClock(self._step)
         runtime = build_runtime(self.kurt2, ROBOT, task, [], NothingIsTaught(), clock, level_override=level)

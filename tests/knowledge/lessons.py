@@ -1,11 +1,13 @@
 """Lessons for the tests of this folder. Light to import: the killed children of test_kill.py start with it."""
 
+import json
 import sqlite3
 from contextlib import closing
 from pathlib import Path
 
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla import (
     ActionReplaced,
@@ -18,6 +20,7 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     SessionBegun,
     SessionEnded,
+    TeachingEvent,
 )
 
 BINDING = KnowledgeBinding(
@@ -68,6 +71,13 @@ def begun(path: Path, lessons: int = 3) -> Path:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(number) for number in range(1, lessons + 1)])
     return path
+
+
+def as_written_by(version: int, event: TeachingEvent) -> str:
+    """An event's text as an older kurt2rt wrote it, which knew no taught behaviours."""
+    content = json.loads(encode_event(event)) | {"version": version}
+    content.pop("behaviour", None)
+    return json.dumps(content, separators=(",", ":"))
 
 
 def tamper(path: Path, *statements: str) -> None:

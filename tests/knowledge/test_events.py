@@ -1,5 +1,6 @@
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,14 +22,14 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
-from tests.knowledge.lessons import created, deleted, replaced, rewarded, session, undone
+from tests.knowledge.lessons import as_written_by, created, deleted, replaced, rewarded, session, undone
 
 texts = st.text(st.characters(codec="utf-8"), max_size=20)
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 ids = st.integers(1, 2**62)
 origins = st.builds(Origin, texts, texts, st.sampled_from(Phase), st.integers(0, 2**62))
 conditions = st.lists(numbers, max_size=80).map(tuple)
-rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins)
+rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins, texts)
 events = st.one_of(
     st.builds(RlaCreated, rlas),
     st.builds(ActionReplaced, ids, texts, texts, origins),
@@ -72,7 +73,7 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("version", 3, "its version 3 is of a newer kurt2rt"),
+        ("version", 4, "its version 4 is of a newer kurt2rt"),
         ("version", True, "version must be a whole number"),
         (
             "kind",
@@ -91,6 +92,8 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
         ("condition", [float("nan")], "condition must be made of finite numbers"),
         ("condition", [10**400], "too large"),
         ("radius", "wide", "radius must be made of finite numbers"),
+        ("behaviour", None, "behaviour must be a text"),
+        ("version", 2, "created has no 'behaviour' in version 2"),
         ("mood", "good", "created has no 'mood'"),
     ],
 )
@@ -121,12 +124,19 @@ def test_each_field_of_the_other_events_is_checked(event: TeachingEvent, key: st
         decode_event(json.dumps(content), "row 1")
 
 
+@pytest.mark.parametrize("version", [1, 2])
 @pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1)])
-def test_the_events_of_version_1_are_still_read(event: TeachingEvent) -> None:
-    text = encode_event(event)
-    assert '"version":2' in text
+def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, version: int) -> None:
+    text = as_written_by(version, event)
+    assert "behaviour" not in text
 
-    assert decode_event(text.replace('"version":2', '"version":1'), "row 1") == event
+    assert decode_event(text, "row 1") == event
+
+
+def test_what_an_rla_belongs_to_is_kept() -> None:
+    event = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
+
+    assert decode_event(encode_event(event), "here") == event
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,10 @@ import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, entry, replaced, tamper
+from tests.knowledge.lessons import BINDING, STAMP, as_written_by, begun, created, deleted, entry, replaced, tamper
 
 
 def test_what_was_taught_is_there_after_closing(path: Path) -> None:
@@ -70,7 +69,7 @@ def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) 
 
 def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
     """A row as the first kurt2rt wrote it."""
-    text = encode_event(event).replace('"version":2', '"version":1')
+    text = as_written_by(1, event)
     command_id = event.origin.command_id
     row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
     journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)
@@ -130,7 +129,6 @@ def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
     look = """
 import os, sys
 from pathlib import Path
-from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 os.getuid() or os.setuid(65534)
 print(len(Journal.read_only(Path(sys.argv[1])).events()))

@@ -5,6 +5,7 @@ import numpy as np
 from hal.robot import Senses, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -32,11 +33,12 @@ class Counted:
 class SmallLevel:
     """A BasicLevel with the actions a, b and c, and one tick in a call."""
 
-    def __init__(self, *events: TeachingEvent) -> None:
+    def __init__(self, *events: TeachingEvent, behaviours: tuple[str, ...] = ("",)) -> None:
         self.actions = {name: Counted() for name in "abc"}
         system = RlaSystem(1, RADIUS)
         system.apply_all(events)
-        self.level = BasicLevel(system, self.actions, MINIMUM_TICKS)
+        self.wanted = Wanted(behaviours)
+        self.level = BasicLevel(system, self.actions, MINIMUM_TICKS, self.wanted)
 
     def at(self, place: float, stand_because: Cause | None = None) -> Decision:
         return self.level.decide(situation(place), sensed(), stand_because)

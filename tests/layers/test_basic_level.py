@@ -7,6 +7,7 @@ import pytest
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError
 from kurt2rt.layers.decision import Cause
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.layers.helpers import MINIMUM_TICKS, Counted, SmallLevel
 from tests.rla.helpers import created, deleted, replaced
@@ -137,4 +138,4 @@ def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
     system = RlaSystem(1, 10.0)
     system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
     with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
-        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5)
+        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, Wanted())

@@ -3,14 +3,15 @@
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.layers.wanted import Wanted
 from tests.layers.helpers import MINIMUM_TICKS, Counted, sensed, situation
 
 
 class NearIsB:
-    """Says b where the first count is high."""
+    """Says b where the first count is high; for the behaviour `other` the other way round."""
 
-    def choose(self, infrared_counts: tuple[int, ...]) -> str:
-        return "b" if infrared_counts[0] > 300 else "a"
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        return "b" if (infrared_counts[0] > 300) != (behaviour == "other") else "a"
 
 
 FAR, NEAR = sensed(100), sensed(500)
@@ -21,14 +22,14 @@ def driven(level: PolicyLevel, senses: Senses, stand_because: Cause | None = Non
 
 
 def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
-    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS)
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, Wanted())
     assert driven(level, FAR)[1:] == (Cause.TEACHER, "a", None, None)
     assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
 
 
 def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     actions = {"a": Counted(), "b": Counted()}
-    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS)
+    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, Wanted())
     driven(level, FAR)
     assert driven(level, FAR, Cause.STOPPED) == (STANDSTILL, Cause.STOPPED, None, None, None)
     assert driven(level, NEAR).action == "b"

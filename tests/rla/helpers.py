@@ -24,8 +24,10 @@ def created(
     action: str = "forward",
     radius: float | None = None,
     command_id: str | None = None,
+    behaviour: str = "",
 ) -> RlaCreated:
-    return RlaCreated(Rla(rla_id, condition, action, radius, origin(command_id or f"lesson-{rla_id}", rla_id)))
+    taught = origin(command_id or f"lesson-{rla_id}", rla_id)
+    return RlaCreated(Rla(rla_id, condition, action, radius, taught, behaviour))
 
 
 def replaced(rla_id: int, action: str, instead_of: str, command_id: str | None = None) -> ActionReplaced:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -70,7 +71,7 @@ class Run:
 
     def __init__(self, clock: HandClock) -> None:
         small = definition(READINGS)
-        level = BasicLevel(RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1)
+        level = BasicLevel(RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1, Wanted())
         self.clock = clock
         self.ledger = Ledger(capacity=100)
         school = School(

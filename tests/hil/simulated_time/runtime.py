@@ -20,6 +20,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import load_task
@@ -48,7 +49,10 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
     policy = build_policy(task.policy, settings.infrared)
     period_s = settings.can.cycle_s
     level = Hanging(
-        policy, load_repertoire(task.repertoire, settings), round(task.learning.minimum_action_s / period_s)
+        policy,
+        load_repertoire(task.repertoire, settings),
+        round(task.learning.minimum_action_s / period_s),
+        Wanted(),
     )
     level.hangs_at = hangs_at
     robot = Kurt2(settings, open_bus(bus))
