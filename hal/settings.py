@@ -96,7 +96,8 @@ def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
 def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
     key = ".".join(str(part) for part in problem["loc"]) or "(whole file)"
     if problem["type"] == "extra_forbidden":
-        return f"{key}: no such key; allowed here: {', '.join(_keys_at(schema, problem['loc'][:-1]))}"
+        allowed = problem.get("ctx", {}).get("allowed") or ", ".join(keys_at(schema, problem["loc"][:-1]))
+        return f"{key}: no such key; allowed here: {allowed}"
     if problem["type"] == "missing":
         return f"{key}: this key is missing"
     if problem["type"] == "union_tag_not_found":
@@ -105,7 +106,7 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
     return f"{key}: {problem['msg']} (found {shown if len(shown) <= 60 else shown[:57] + '...'})"
 
 
-def _keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:
+def keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:
     """Names of the keys that a nested place allows, as far as the schema's annotations tell."""
     here: list[type[BaseModel]] = [schema]
     for part in location:

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
-from kurt2rt.experiments.arena import Position
+from kurt2rt.experiments.arena import Plan, Position, Post, Street
+from kurt2rt.experiments.arena import Pose as TruePose
 from kurt2rt.simulated_ground import SimulatedGround
 from simbridge.drawing import draw_world
+from simbridge.free_poses import FreePoses
+from simbridge.nearest import Nearest
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
@@ -37,6 +40,8 @@ class SimulatedArena:
         self._line = open_line(wire, self._cycle_s, noise_seed)
         self.simulation = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
         self.robot = Kurt2(settings, self._line.notebook_end)
+        self._nearest = Nearest(self.simulation.world)
+        self._free = FreePoses(self.simulation.world, settings)
         self._starts = [start.pose for start in self._world.start_poses]
         self.simulation.place(chance.choice(self._starts))
 
@@ -45,6 +50,27 @@ class SimulatedArena:
         """True position."""
         pose = self.simulation.pose
         return Position(pose.x_m, pose.y_m)
+
+    @property
+    def pose(self) -> TruePose:
+        """True pose."""
+        return TruePose(*self.simulation.pose)
+
+    @property
+    def plan(self) -> Plan:
+        """What a course may go by, with walls where they stand now."""
+        world = self.simulation.world.settings
+        return Plan(
+            posts=tuple(Post(post.x_m, post.y_m, post.radius_m) for post in world.round_obstacles),
+            streets=tuple(Street(street.from_m, street.to_m, street.width_m) for street in world.streets),
+            junctions=tuple(world.junctions),
+        )
+
+    @property
+    def nearest_m(self) -> float:
+        """From the robot's centre to the nearest wall or obstacle."""
+        pose = self.simulation.pose
+        return self._nearest.away_m((pose.x_m, pose.y_m))
 
     @property
     def collisions(self) -> int:
@@ -77,6 +103,10 @@ class SimulatedArena:
             return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
 
         self.simulation.place(min(self._starts, key=squared_distance))
+
+    def reposition(self, chance: random.Random, *, in_sight: bool) -> None:
+        """Set the robot down elsewhere."""
+        self.simulation.place(self._free.draw(chance) if in_sight else chance.choice(self._starts))
 
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:

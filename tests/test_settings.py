@@ -144,8 +144,8 @@ def test_the_files_to_be_spoilt_are_right_before(tmp_path: Path) -> None:
 def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(place: Place, tmp_path: Path) -> None:
     right = str(place.path[-1])
     line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
-    if right == "kind" and isinstance(place.path[-2], int):  # it says which schema the item has
-        assert line.startswith(f"{place.path[0]}.{place.path[1]}: the key 'kind' is missing")
+    if right == "kind":  # it says which schema the item has
+        assert line.startswith(f"{'.'.join(map(str, place.path[:-1]))}: the key 'kind' is missing")
         return
     assert named(line)[-1] == f"{right}x"
     assert set(map(str, place.path[:-1])) <= set(named(line))

@@ -1,6 +1,10 @@
 """The contract of a reference policy."""
 
+from abc import abstractmethod
 from typing import Protocol
+
+from hal.robot_settings import InfraredSettings
+from hal.settings_by_kind import KindSettings
 
 
 class ReferencePolicy(Protocol):
@@ -16,3 +20,11 @@ class ReferencePolicy(Protocol):
         `behaviour`: the taught behaviour that is wanted, empty where the task has only one.
         """
         ...
+
+
+class PolicySettings(KindSettings):
+    """Base of the settings of every policy: a class named after its file in this folder, which is the kind."""
+
+    @abstractmethod
+    def build(self, infrared: InfraredSettings) -> ReferencePolicy:
+        """The policy, for a robot with these sensors."""

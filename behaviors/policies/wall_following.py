@@ -5,14 +5,14 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import InfraredSettings
-from hal.settings import Settings
 
 Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
 
-class WallFollowingSettings(Settings):
+class WallFollowingSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face."""
 
     kind: Literal["wall_following"]
@@ -28,6 +28,10 @@ class WallFollowingSettings(Settings):
     """A wall farther than this is no longer a wall beside the robot."""
     heading_weight_m: Annotated[float, Field(ge=0, le=1)]
     """Metres of error that one radian of heading error counts for."""
+
+    def build(self, infrared: InfraredSettings) -> ReferencePolicy:
+        """The policy."""
+        return WallFollowing(self, infrared)
 
 
 class WallFollowing:

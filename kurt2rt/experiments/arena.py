@@ -1,5 +1,7 @@
 """What an experiment needs of the place where the robot drives; the composition root knows who provides it."""
 
+import random
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from hal.robot import Robot
@@ -15,6 +17,40 @@ class Position(NamedTuple):
     y_m: float
 
 
+class Pose(NamedTuple):
+    """Where the robot is and which way it looks: counter-clockwise from the x axis, not wrapped."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+
+class Post(NamedTuple):
+    """A round obstacle."""
+
+    x_m: float
+    y_m: float
+    radius_m: float
+
+
+class Street(NamedTuple):
+    """A straight street by its middle line."""
+
+    from_m: tuple[float, float]
+    to_m: tuple[float, float]
+    width_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a course may go by, from above."""
+
+    posts: tuple[Post, ...]
+    streets: tuple[Street, ...]
+    junctions: tuple[tuple[float, float], ...]
+    """Where two streets meet, or one ends at another."""
+
+
 class Arena(Protocol):
     """A robot in a world, watched from above. Only the experimenter sees this; neither runtime nor teacher does."""
 
@@ -26,6 +62,21 @@ class Arena(Protocol):
     @property
     def position(self) -> Position:
         """True position."""
+        ...
+
+    @property
+    def pose(self) -> Pose:
+        """True pose."""
+        ...
+
+    @property
+    def plan(self) -> Plan:
+        """What stands where, and where streets lead."""
+        ...
+
+    @property
+    def nearest_m(self) -> float:
+        """From the robot's centre to the nearest wall or obstacle."""
         ...
 
     @property
@@ -49,6 +100,13 @@ class Arena(Protocol):
 
     def rescue(self) -> None:
         """Lift the robot and set it down, standing, at the nearest start pose."""
+        ...
+
+    def reposition(self, chance: random.Random, *, in_sight: bool) -> None:
+        """Lift the robot and set it down, standing, elsewhere: at some start pose, or anywhere free `in_sight`.
+
+        In sight is where a sensor sees something: a post, where the world has posts, else anything.
+        """
         ...
 
     def close(self) -> None:

@@ -116,5 +116,5 @@ async def run_exams(
     for world in worlds:
         learned = await drive(world, by_teacher=False)
         teacher = await drive(world, by_teacher=True)
-        results.append(WorldResult(learned, teacher, learned.succeeded(teacher.laps, task.exam.laps_share)))
+        results.append(WorldResult(learned, teacher, learned.succeeded(teacher.progress, task.exam.success)))
     return tuple(results)

@@ -34,7 +34,8 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
         _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
         verdict = "success" if each.succeeded else "failed"
         panel.set_title(
-            f"Exam in world {label_of(exam.world)}: {exam.laps:.1f} laps, {exam.collisions} collisions, {verdict}"
+            f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
+            f"{verdict}"
         )
     for panel in axes[panels:]:
         panel.set_axis_off()

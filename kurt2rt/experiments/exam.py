@@ -1,20 +1,22 @@
 """An exam: the robot drives in a world without its teacher, in lockstep."""
 
+import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
+from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.lesson import TRAIL_STRIDE
-from kurt2rt.experiments.progress import WayMade
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tasks.settings import SuccessSettings, TaskSettings
+from kurt2rt.teaching.commands import Pursue
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 
@@ -37,7 +39,10 @@ class ExamResult:
     seed: int
     duration_s: float
     """Of the drive, to its end or to where the robot was stuck."""
-    laps: float
+    progress: float
+    unit: str
+    """What progress is counted in."""
+    way_m: float
     collisions: int
     stuck: bool
     share_unknown: float
@@ -47,12 +52,21 @@ class ExamResult:
     unknown_positions: tuple[Position, ...]
     alarm: str = ""
     """Why the guard stopped the robot for good, which ends the exam; empty when it did not."""
+    findings: Findings = field(default_factory=dict)
+    """What the course measured besides."""
 
-    def succeeded(self, teachers_laps: float, laps_share: float) -> bool:
-        """No collision, no alarm, not stuck, and enough of the laps that the teacher's own policy makes."""
+    def succeeded(self, teachers_progress: float, success: SuccessSettings) -> bool:
+        """No more collisions than allowed, no alarm, not stuck, and enough of what the teacher's own policy reaches."""
         # Where the teacher gets nowhere either, standing still is no success.
-        enough = self.laps > 0.0 and self.laps >= laps_share * teachers_laps
-        return self.collisions == 0 and not self.stuck and not self.alarm and enough
+        enough = self.progress > 0.0 and self.progress >= success.progress_share * teachers_progress
+        right = self.right_share >= success.right_at_least
+        return self.collisions <= success.collisions_at_most and not self.stuck and not self.alarm and enough and right
+
+    @property
+    def right_share(self) -> float:
+        """Share of the junctions that were left as asked; 0 where there were none."""
+        junctions = self.findings.get(JUNCTIONS, 0.0)
+        return self.findings.get(RIGHT, 0.0) / junctions if junctions else 0.0
 
 
 async def examine(
@@ -72,7 +86,7 @@ async def examine(
     level: Level | None = None
     if by_teacher:
         level = PolicyLevel(
-            build_policy(task.policy, settings.infrared),
+            task.policy.build(settings.infrared),
             load_repertoire(task.repertoire, settings),
             round(task.learning.minimum_action_s / period_s),
             wanted,
@@ -81,13 +95,22 @@ async def examine(
     runtime = build_runtime(
         arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted
     )
-    way = WayMade(task.exam.stuck_after_s, period_s)
+    # The same course for the learner and for the teacher's own drive.
+    chance = random.Random(f"course of the exam in world {world}, seed {seed}")
+    drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
     trail: list[Position] = []
     unknown_positions: list[Position] = []
     unknown = changes = ticks = 0
     stuck = asking = False
     action: str | None = None
     alarm = ""
+    said = 0
+
+    def say_what_is_wanted(now: str) -> None:
+        nonlocal said
+        if drive.course.behaviour != now:
+            said += 1
+            runtime.inbox.put(Pursue(f"exam-{said}", "examiner", drive.course.behaviour))
 
     def after_tick(record: TickRecord) -> None:
         nonlocal unknown, changes, ticks, stuck, asking, action, alarm
@@ -99,10 +122,14 @@ async def examine(
         asking = decision.asking
         changes += decision.action != action
         action = decision.action
+        drive.follow()
+        if drive.course.stranded:
+            drive.reposition()
+        say_what_is_wanted(record.behaviour)
         if record.grant.latched:  # nobody is there to say Go
             alarm = record.grant.reasons[0]
             runtime.scheduler.end()
-        elif way.none_since_window(arena.position):
+        elif drive.makes_no_way(waits=False):
             stuck = True
             runtime.scheduler.end()
         if record.tick % TRAIL_STRIDE == 0:
@@ -110,13 +137,16 @@ async def examine(
         if record.tick % 100 == 0:
             on_progress(record.now_s)
 
+    say_what_is_wanted(wanted.behaviour)
     await runtime.scheduler.run(round(task.exam.duration_s / period_s), after_tick)
     on_progress(task.exam.duration_s)
     return ExamResult(
         world=world,
         seed=seed,
         duration_s=ticks * period_s,
-        laps=arena.laps,
+        progress=drive.course.progress,
+        unit=drive.course.unit,
+        way_m=drive.way_m,
         collisions=arena.collisions,
         stuck=stuck,
         share_unknown=unknown / ticks,
@@ -124,4 +154,5 @@ async def examine(
         trail=tuple(trail),
         unknown_positions=tuple(unknown_positions),
         alarm=alarm,
+        findings=drive.course.findings,
     )

@@ -1,11 +1,13 @@
 """A lesson: a scripted teacher teaches the robot, phases 1 and 2, in lockstep."""
 
+import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
-from kurt2rt.experiments.progress import WayMade
+from kurt2rt.experiments.courses.course import Findings
+from kurt2rt.experiments.drive import Drive
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
@@ -40,6 +42,15 @@ class LessonResult:
     """Where the time of its last ticks went, on the machine that ran it."""
     alarms: int = 0
     """How often the guard stopped the robot for good, and its teacher said Go."""
+    repositions: int = 0
+    """How often the robot was set down elsewhere, rescues left out."""
+    deletions: int = 0
+    """RLAs that the teacher deleted."""
+    progress: float = 0.0
+    unit: str = ""
+    """What progress is counted in."""
+    findings: Findings = field(default_factory=dict)
+    """What the course measured besides."""
 
 
 async def teach(
@@ -63,7 +74,10 @@ async def teach(
     runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics)
     session = f"lesson-{seed}-after-{len(events)}"
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
-    way = WayMade(task.teaching.rescue_after_s, period_s)
+    chance = random.Random(f"course of {session}")
+    drive = Drive(arena, task, no_way_s=task.teaching.rescue_after_s, period_s=period_s, chance=chance)
+    in_sight = task.teaching.reposition_to == "in_sight"
+    reposition_every = round(task.teaching.reposition_every_s / period_s)
     ticks = round(task.teaching.duration_s / period_s)
     corrections_from = round(task.teaching.supervised_s / period_s)
     ticks_per_second = round(1 / period_s)
@@ -88,18 +102,22 @@ async def teach(
         if record.decision.asking and not asking:
             ask_positions.append(arena.position)
         asking = record.decision.asking
-        if asking:
-            way.restart()
-        elif way.none_since_window(arena.position):
-            arena.rescue()
-            way.restart()
+        drive.follow()
+        if drive.makes_no_way(waits=asking):
+            drive.rescue()
             rescues += 1
+        if drive.course.stranded or (reposition_every and record.tick % reposition_every == 0):
+            drive.reposition(in_sight=in_sight)
+        if drive.course.behaviour != record.behaviour:
+            runtime.inbox.put(teacher.pursue(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:
             trail.append(arena.position)
         if record.tick % ticks_per_second == 0:
             growth.append(len(runtime.level.system))
             on_progress(record.now_s)
 
+    if drive.course.behaviour != runtime.wanted.behaviour:
+        runtime.inbox.put(teacher.pursue(drive.course.behaviour))
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
     return LessonResult(
@@ -117,4 +135,8 @@ async def teach(
         ask_positions=tuple(ask_positions),
         ledger=runtime.ledger,
         alarms=alarms,
+        repositions=drive.repositions,
+        progress=drive.course.progress,
+        unit=drive.course.unit,
+        findings=drive.course.findings,
     )

@@ -23,29 +23,54 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     taught.add_row("asks", str(lesson.asks), "")
     taught.add_row("corrections", str(lesson.corrections), "")
     taught.add_row("rescues by hand", str(lesson.rescues), "")
+    if lesson.deletions:
+        taught.add_row("deletions", str(lesson.deletions), "")
+    if lesson.repositions:
+        taught.add_row("set down elsewhere", str(lesson.repositions), "")
     if lesson.alarms:
         taught.add_row("alarms of the guard", str(lesson.alarms), "")
-
     return Group(taught, render_exams(result.exams, task)) if result.exams else taught
 
 
 def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:
     """Table of one exam per world, beside the teacher's own drive there."""
     driven = Table(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each", title_justify="left")
-    for heading in ("world", "laps", "teacher's own laps", "collisions", "stuck", "unknown situations", "success"):
+    unit = exams[0].learned.unit
+    measures = _measures([each.learned for each in exams])
+    headings = (
+        "world",
+        unit,
+        f"teacher's own {unit}",
+        "collisions",
+        "stuck",
+        "unknown situations",
+        *measures,
+        "success",
+    )
+    for heading in headings:
         driven.add_column(heading, justify="left" if heading == "world" else "right")
     for each in exams:
         exam = each.learned
         driven.add_row(
             label_of(exam.world),
-            f"{exam.laps:.2f}",
-            f"{each.teacher.laps:.2f}",
+            f"{exam.progress:.2f}",
+            f"{each.teacher.progress:.2f}",
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
+            *(_shown(exam.findings.get(name)) for name in measures),
             "[green]yes[/]" if each.succeeded else "[red]no[/]",
         )
     return driven
+
+
+def _measures(exams: Sequence[ExamResult]) -> list[str]:
+    """Names of all findings, in the order in which they come."""
+    return list(dict.fromkeys(name for exam in exams for name in exam.findings))
+
+
+def _shown(finding: float | None) -> str:
+    return "" if finding is None else f"{finding:.3g}"
 
 
 def _early_end(exam: ExamResult, stuck: str) -> str:
@@ -82,14 +107,20 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
     return at(0.25), at(0.5), at(0.75)
 
 
+def _median(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return quartiles(known)[1] if known else None
+
+
 def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> RenderableType:
     """Tables of many seeds: one row each, then medians, quartiles and intervals."""
     worlds = [each.learned.world for each in results[0].exams]
+    unit = results[0].exams[0].learned.unit
     seeds = Table(title=f"{task.name}: one row per seed", title_justify="left")
     for heading in ("seed", "RLAs", "asks", "corrections", "rescues"):
         seeds.add_column(heading, justify="right")
     for world in worlds:
-        seeds.add_column(f"world {label_of(world)}: laps of teacher's, collisions", justify="right")
+        seeds.add_column(f"world {label_of(world)}: {unit} of teacher's, collisions", justify="right")
     for result in results:
         lesson = result.lesson
         cells = []
@@ -98,7 +129,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             early = _early_end(exam, "stuck at")
             end = f", {early}" if early else ""
             colour = "green" if each.succeeded else "red"
-            cells.append(f"[{colour}]{exam.laps:.1f} of {each.teacher.laps:.1f}, {exam.collisions}{end}[/]")
+            cells.append(f"[{colour}]{exam.progress:.1f} of {each.teacher.progress:.1f}, {exam.collisions}{end}[/]")
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 
@@ -116,7 +147,9 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         summary.add_row(name, f"{median:.0f}", f"{low:.0f} to {high:.0f}", paper)
 
     success = Table(title="Exams without teacher", title_justify="left")
-    for heading in ("world", "success", "95 % interval", "collided", "stuck", "laps, median", "unknown, median"):
+    measures = _measures([each.learned for result in results for each in result.exams])
+    medians = (f"{name}, median" for name in (unit, "unknown", *measures))
+    for heading in ("world", "success", "95 % interval", "collided", "stuck", *medians):
         success.add_column(heading, justify="left" if heading == "world" else "right")
     for place, world in enumerate(worlds):
         exams = [result.exams[place] for result in results]
@@ -128,7 +161,8 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             f"{low:.0%} to {high:.0%}",
             str(sum(each.learned.collisions > 0 for each in exams)),
             str(sum(each.learned.stuck or bool(each.learned.alarm) for each in exams)),
-            f"{quartiles([each.learned.laps for each in exams])[1]:.2f}",
+            f"{quartiles([each.learned.progress for each in exams])[1]:.2f}",
             f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
+            *(_shown(_median([each.learned.findings.get(name) for each in exams])) for name in measures),
         )
     return Group(seeds, summary, success)

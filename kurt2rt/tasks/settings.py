@@ -1,12 +1,13 @@
 """Schema of `config/tasks/*.yaml`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from behaviors.policies.wall_following import WallFollowingSettings
+from behaviors.policies.finding import AnyPolicySettings
 from hal.settings import Settings, find_config, load_settings
+from kurt2rt.experiments.courses.finding import AnyCourseSettings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -31,6 +32,14 @@ class LearningSettings(Settings):
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
 
 
+class PlainSettings(LearningSettings):
+    """The plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held."""
+
+    past_weight: Annotated[float, Field(ge=0, le=10)] = 1.0
+    insert_beyond_share: Share = 1.0
+    minimum_action_s: Annotated[float, Field(ge=0, le=5)] = 0.0
+
+
 class TeacherSettings(Settings):
     """How the scripted teacher behaves."""
 
@@ -40,6 +49,8 @@ class TeacherSettings(Settings):
     """How long the robot must do something else than the teacher would before it is corrected."""
     error_rate: Share
     """Share of answers and corrections that name another action than the policy."""
+    delete_after: Annotated[int, Field(ge=0, le=1000)] = 0
+    """An RLA whose action was replaced so many times is deleted the next time it is wrong; 0: never."""
 
 
 class TeachingSettings(Settings):
@@ -52,12 +63,26 @@ class TeachingSettings(Settings):
     """Phase 2, after it: the teacher corrects while the robot drives, and still answers."""
     rescue_after_s: Annotated[float, Field(gt=0, le=1000)]
     """A robot that makes no way for so long, without a question, is set down elsewhere by hand."""
+    reposition_every_s: Seconds = 0.0
+    """After each such time the robot is set down elsewhere, whatever it does; 0: never."""
+    reposition_to: Literal["starts", "in_sight"] = "starts"
+    """Where to: a start pose, or anywhere free from where it sees something (a post, where there are posts)."""
     teacher: TeacherSettings
 
     @property
     def duration_s(self) -> float:
         """Robot time of the whole lesson."""
         return self.supervised_s + self.corrections_s
+
+
+class SuccessSettings(Settings):
+    """What counts as success, besides not to be stuck and not to be stopped by the guard."""
+
+    collisions_at_most: Annotated[int, Field(ge=0, le=1000)] = 0
+    progress_share: Share = 0.8
+    """Share of the progress that the teacher's own policy makes."""
+    right_at_least: Share = 0.0
+    """Share of the junctions that are left through the side that was asked for."""
 
 
 class ExamSettings(Settings):
@@ -67,8 +92,9 @@ class ExamSettings(Settings):
     duration_s: Annotated[float, Field(ge=1, le=100_000)]
     stuck_after_s: Annotated[float, Field(gt=0, le=1000)]
     """No way made for so long is stuck, and ends the exam."""
-    laps_share: Share
-    """Share of the teacher's own laps that counts as success."""
+    stuck_within_m: Annotated[float, Field(gt=0, le=100)] = 1.0
+    """No way is made by a robot that stays within this distance; in lessons, too."""
+    success: SuccessSettings = SuccessSettings()
 
 
 class PaperResult(Settings):
@@ -87,12 +113,19 @@ class TaskSettings(Settings):
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_each_once)] = ("",)
     """What is taught, each with RLAs of its own; the first is wanted at the start. One without a name when absent."""
     learning: LearningSettings
-    policy: WallFollowingSettings
+    plain: PlainSettings
+    """What to take instead of `learning` for the plain reading of the paper."""
+    policy: AnyPolicySettings
+    course: AnyCourseSettings
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult
 
 
-def load_task(name_or_path: str) -> TaskSettings:
-    """Settings of a shipped task by name, or of a file by path. Raises hal.settings.SettingsError."""
-    return load_settings(Path(find_config("tasks", name_or_path)), TaskSettings)
+def load_task(name_or_path: str, *, plain: bool = False) -> TaskSettings:
+    """Settings of a shipped task by name, or of a file by path; `plain`: for the plain reading of the paper.
+
+    Raises hal.settings.SettingsError.
+    """
+    task = load_settings(Path(find_config("tasks", name_or_path)), TaskSettings)
+    return task.model_copy(update={"learning": task.plain}) if plain else task

@@ -4,12 +4,11 @@ import random
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from behaviors.policies.build import build_policy
 from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
-from kurt2rt.teaching.commands import Command, Correct, Resume, SetPhase, Teach
+from kurt2rt.teaching.commands import Command, Correct, Pursue, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
 _NAME = "scripted teacher"
@@ -46,7 +45,7 @@ def teacher_of(
 ) -> "ScriptedTeacher":
     """The scripted teacher that a task describes, for a robot with this repertoire; `session` as in ScriptedTeacher."""
     return ScriptedTeacher(
-        build_policy(task.policy, robot.infrared),
+        task.policy.build(robot.infrared),
         actions,
         task.teaching.teacher,
         period_s=robot.can.cycle_s,
@@ -90,6 +89,10 @@ class ScriptedTeacher:
         """Begin a phase: what to tell the robot."""
         self.phase = phase
         return SetPhase(self._next_id(), _NAME, phase)
+
+    def pursue(self, behaviour: str) -> Command:
+        """Another taught behaviour is wanted: what to tell the robot."""
+        return Pursue(self._next_id(), _NAME, behaviour)
 
     def go(self) -> Command:
         """The robot shall drive again after an alarm: what to tell it."""

@@ -4,13 +4,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
 from kurt2rt.tasks.settings import load_task
 from tests.behaviors.helpers import ROBOT, counts
 
 TASK = load_task("wall_following")
-POLICY = build_policy(TASK.policy, ROBOT.infrared)
+POLICY = TASK.policy.build(ROBOT.infrared)
 ACTIONS = set(load_repertoire(TASK.repertoire, ROBOT))
 
 
@@ -31,7 +30,7 @@ def test_it_names_an_action_of_the_repertoire_whatever_the_sensors_show(infrared
 
 @given(st.lists(st.tuples(*[st.integers(60, 560)] * 18), min_size=1, max_size=8))
 def test_it_has_no_memory(views: list[tuple[int, ...]]) -> None:
-    fresh = build_policy(TASK.policy, ROBOT.infrared)
+    fresh = TASK.policy.build(ROBOT.infrared)
     assert [POLICY.choose(view, "") for view in views] == [fresh.choose(view, "") for view in reversed(views)][::-1]
 
 

@@ -6,19 +6,33 @@ from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.rla.rla import Origin, Phase, Rla
 from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.tasks.settings import SuccessSettings
 from kurt2rt.timing.ledger import Ledger
 
 TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
 
 
 def exam_result(world: str = "a", seed: int = 1, laps: float = 8.0, collisions: int = 0, **fields: bool) -> ExamResult:
-    stuck = fields.get("stuck", False)
-    return ExamResult(world, seed, 123.0 if stuck else 300.0, laps, collisions, stuck, 0.034, 1.5, TRAIL, TRAIL[:1])
+    return ExamResult(
+        world=world,
+        seed=seed,
+        duration_s=123.0 if fields.get("stuck") else 300.0,
+        progress=laps,
+        unit="laps",
+        way_m=10.0 * laps,
+        collisions=collisions,
+        stuck=fields.get("stuck", False),
+        share_unknown=0.034,
+        action_changes_per_s=1.5,
+        trail=TRAIL,
+        unknown_positions=TRAIL[:1],
+        findings={"distance error, m": 0.0321},
+    )
 
 
 def world_result(learned: ExamResult) -> WorldResult:
     teacher = exam_result(learned.world, learned.seed, laps=9.0)
-    return WorldResult(learned, teacher, learned.succeeded(teacher.laps, 0.8))
+    return WorldResult(learned, teacher, learned.succeeded(teacher.progress, SuccessSettings()))
 
 
 def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumResult:

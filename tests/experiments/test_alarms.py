@@ -59,6 +59,6 @@ def test_an_exam_ends_and_says_why() -> None:
     assert drive.alarm == "bus lost"
     assert drive.duration_s == ALARM_CYCLE / 100
     assert not drive.stuck
-    assert not drive.succeeded(teachers_laps=drive.laps, laps_share=0.8)
+    assert not drive.succeeded(drive.progress, TASK.exam.success)
     rows = printed(render_exams([WorldResult(drive, drive, succeeded=False)], TASK))
     assert any("bus lost after 5 s" in row for row in rows)

@@ -9,11 +9,12 @@ from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.exam import ExamResult, NothingIsTaught, examine
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tasks.settings import SuccessSettings, TaskSettings
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+from tests.experiments.results import exam_result
 
 
 def exam_of(events: Sequence[TeachingEvent], task: TaskSettings, seed: int = 1) -> WorldResult:
@@ -36,7 +37,8 @@ def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
     assert learned.share_unknown == 1.0
     assert learned.unknown_positions == learned.trail[:1]
     assert len(set(learned.trail)) == 1
-    assert (learned.laps, learned.collisions, learned.action_changes_per_s) == (0.0, 0, 0.0)
+    assert (learned.progress, learned.unit, learned.way_m) == (0.0, "laps", 0.0)
+    assert (learned.collisions, learned.action_changes_per_s) == (0, 0.0)
 
 
 def test_going_round_on_the_spot_is_stuck_too() -> None:
@@ -49,7 +51,9 @@ def test_going_round_on_the_spot_is_stuck_too() -> None:
 
 def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
     teacher = exam_of([], short_task(exam_s=25.0, stuck_after_s=10.0)).teacher
-    assert teacher.laps > 0.2
+    assert teacher.progress > 0.2
+    assert 5.0 < teacher.way_m < 0.32 * 25.0
+    assert 0.0 < teacher.findings["distance error, m"] < 0.1
     assert teacher.collisions == 0
     assert not teacher.stuck
     assert teacher.duration_s == 25.0
@@ -111,22 +115,32 @@ def test_progress_is_told_each_second_and_at_the_end() -> None:
     assert told == pytest.approx([1.0, 2.0, 2.5])
 
 
-DRIVE = ExamResult("a", 1, 300.0, 8.0, 0, False, 0.0, 1.0, (), ())
+DRIVE = exam_result(laps=8.0)
+JUNCTIONS = replace(DRIVE, findings={"junctions": 20.0, "junctions right": 18.0})
 
 
 @pytest.mark.parametrize(
-    ("drive", "teachers_laps", "succeeded"),
+    ("drive", "teachers_laps", "success", "succeeded"),
     [
-        (DRIVE, 10.0, True),  # just enough
-        (replace(DRIVE, laps=7.999), 10.0, False),
-        (replace(DRIVE, collisions=1), 10.0, False),
-        (replace(DRIVE, stuck=True), 10.0, False),
-        (replace(DRIVE, share_unknown=0.5), 10.0, True),  # asking costs laps, and is judged by them
-        (replace(DRIVE, laps=-1.0), 10.0, False),
-        (replace(DRIVE, laps=0.0), 0.0, False),  # where the teacher makes no way, standing still is no success
-        (replace(DRIVE, laps=0.0), -0.1, False),
-        (replace(DRIVE, laps=-0.05), -0.1, False),
+        (DRIVE, 10.0, SuccessSettings(), True),  # just enough
+        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(), False),
+        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(progress_share=0.7), True),
+        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(), False),
+        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(collisions_at_most=1), True),
+        (replace(DRIVE, stuck=True), 10.0, SuccessSettings(), False),
+        (replace(DRIVE, alarm="bus lost"), 10.0, SuccessSettings(), False),
+        (replace(DRIVE, share_unknown=0.5), 10.0, SuccessSettings(), True),  # asking costs laps, and is judged by them
+        (replace(DRIVE, progress=-1.0), 10.0, SuccessSettings(), False),
+        # where the teacher makes no way, standing still is no success
+        (replace(DRIVE, progress=0.0), 0.0, SuccessSettings(), False),
+        (replace(DRIVE, progress=0.0), -0.1, SuccessSettings(), False),
+        (replace(DRIVE, progress=-0.05), -0.1, SuccessSettings(), False),
+        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.9), True),
+        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.95), False),
+        (DRIVE, 10.0, SuccessSettings(right_at_least=0.9), False),  # no junction, none right
     ],
 )
-def test_success_is_laps_without_a_collision(drive: ExamResult, teachers_laps: float, *, succeeded: bool) -> None:
-    assert drive.succeeded(teachers_laps, laps_share=0.8) is succeeded
+def test_success_is_progress_without_a_collision(
+    drive: ExamResult, teachers_laps: float, success: SuccessSettings, *, succeeded: bool
+) -> None:
+    assert drive.succeeded(teachers_laps, success) is succeeded

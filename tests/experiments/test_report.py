@@ -1,4 +1,5 @@
 import statistics
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -68,7 +69,26 @@ def test_a_lesson_stands_beside_the_paper() -> None:
     assert ["asks", "41", ""] in rows
     assert ["corrections", "52", ""] in rows
     assert ["rescues by hand", "3", ""] in rows
-    assert ["A", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
+    assert ["A", "8.00", "9.00", "0", "no", "3.4%", "0.0321", "yes"] in rows
+
+
+def test_deletions_and_repositions_are_told_where_there_were_any() -> None:
+    result = curriculum_result(7, 88)
+    rows = printed(render_curriculum(result, short_task()))
+    assert not any(row[0] in ("deletions", "set down elsewhere") for row in rows)
+    lesson = replace(result.lesson, deletions=4, repositions=11)
+    rows = printed(render_curriculum(replace(result, lesson=lesson), short_task()))
+    assert ["deletions", "4", ""] in rows
+    assert ["set down elsewhere", "11", ""] in rows
+
+
+def test_tables_speak_of_what_the_task_counts() -> None:
+    streets = replace(exam_result(), unit="junctions", findings={"junctions": 12.0, "junctions right": 11.0})
+    words = " ".join(word for row in printed(render_exams([world_result(streets)], short_task())) for word in row)
+    assert "teacher's own junctions" in words
+    assert "junctions right" in words
+    assert " 12 11 " in words
+    assert "laps" not in words
 
 
 def test_a_lesson_without_exams_is_a_table_of_its_own() -> None:
@@ -80,9 +100,9 @@ def test_each_exam_is_a_row_with_its_verdict() -> None:
     exams = [exam_result("b", laps=2.0), exam_result("kitchen", collisions=2), exam_result("c", stuck=True)]
     rows = printed(render_exams([world_result(each) for each in exams], short_task(exam_s=300.0)))
     assert ["Exams without teacher, 300 s each"] in rows
-    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "no"] in rows
-    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "no"] in rows
-    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
+    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "0.0321", "no"] in rows
+    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "0.0321", "no"] in rows
+    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "0.0321", "no"] in rows
 
 
 def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
@@ -96,5 +116,5 @@ def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
     assert ["102", "100", "41", "52", "3", "8.0 of 9.0, 0", "7.5 of 9.0, 1"] in rows
     assert ["RLAs", "90", "85 to 95", "91"] in rows
     assert ["teaching, s of robot time", "345", "345 to 345", "345"] in rows
-    assert ["A", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
-    assert ["B", "1 of 3", "6% to 79%", "1", "1", "7.50", "3.4%"] in rows
+    assert ["A", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%", "0.0321"] in rows
+    assert ["B", "1 of 3", "6% to 79%", "1", "1", "7.50", "3.4%", "0.0321"] in rows

@@ -7,7 +7,6 @@ import random
 from types import TracebackType
 from typing import Self
 
-from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
 from hal.bus_end import BusEnd
@@ -49,7 +48,7 @@ class FuzzedRobot:
         self._chance = random.Random(seed)
         task = load_task("wall_following")
         level = PolicyLevel(
-            build_policy(task.policy, ROBOT.infrared),
+            task.policy.build(ROBOT.infrared),
             load_repertoire(task.repertoire, ROBOT),
             round(task.learning.minimum_action_s / TICK_S),
             Wanted(),

@@ -10,7 +10,6 @@ import time
 
 import anyio
 
-from behaviors.policies.build import build_policy
 from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
 from hal.guard import SLEW_LIMIT
@@ -46,7 +45,7 @@ class Hanging(PolicyLevel):
 
 async def drive(bus: str, seconds: float, hangs_at: int) -> None:
     settings, task = load_robot(), load_task("wall_following")
-    policy = build_policy(task.policy, settings.infrared)
+    policy = task.policy.build(settings.infrared)
     period_s = settings.can.cycle_s
     level = Hanging(
         policy,

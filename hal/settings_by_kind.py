@@ -1,0 +1,83 @@
+"""Settings of which a file says the kind: each kind has a module of its own, found by its name.
+
+The module `<package>/<kind>.py` holds the class that is named after it: `wall_following` holds `WallFollowingSettings`.
+"""
+
+import json
+import pkgutil
+from importlib import import_module
+from typing import TypeVar
+
+from pydantic import ValidationError
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from hal.settings import Settings, keys_at
+
+
+class KindSettings(Settings):
+    """Base of settings that come in kinds."""
+
+    kind: str
+
+
+KindT = TypeVar("KindT", bound=KindSettings)
+
+
+def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
+    """The settings of a kind. Raises ValueError that lists the kinds there are."""
+    found = _settings_in(package, kind, base) if kind in _modules(package) else None
+    if found is None:
+        kinds = ", ".join(each for each in _modules(package) if _settings_in(package, each, base))
+        raise ValueError(f"there is no kind {kind!r}; give one of: {kinds}")
+    return found
+
+
+def as_its_kind(given: object, package: str, base: type[KindT]) -> KindT:
+    """Check what stands in a file against the settings of the kind that it names.
+
+    Raises ValueError that names key and what is allowed, which a pydantic validator passes on with the key's place.
+    """
+    if isinstance(given, base):
+        return given
+    if not isinstance(given, dict):
+        raise PydanticCustomError("model_type", "Input should be an object")
+    if "kind" not in given:
+        raise PydanticCustomError("union_tag_not_found", "no kind", {"discriminator": "'kind'"})
+    named = KindSettings.model_validate_json(json.dumps({"kind": given["kind"]}))
+    try:
+        schema = find_kind(package, named.kind, base)
+    except ValueError as error:
+        problem = PydanticCustomError("no_such_kind", "{told}", {"told": str(error)})
+        raise _refusal(base, [InitErrorDetails(type=problem, loc=("kind",), input=named.kind)]) from error
+    try:
+        # Through JSON, as the file around it.
+        return schema.model_validate_json(json.dumps(given))
+    except ValidationError as error:
+        raise _refusal(schema, _with_allowed_keys(error, schema)) from error
+
+
+def _modules(package: str) -> list[str]:
+    return sorted(module.name for module in pkgutil.iter_modules(import_module(package).__path__))
+
+
+def _settings_in(package: str, kind: str, base: type[KindT]) -> type[KindT] | None:
+    name = "".join(part.capitalize() for part in kind.split("_")) + "Settings"
+    found = getattr(import_module(f"{package}.{kind}"), name, None)
+    # The base itself is in no file of its own kind.
+    return found if isinstance(found, type) and issubclass(found, base) and found is not base else None
+
+
+def _refusal(schema: type[Settings], problems: list[InitErrorDetails]) -> ValidationError:
+    return ValidationError.from_exception_data(schema.__name__, problems)
+
+
+def _with_allowed_keys(error: ValidationError, schema: type[Settings]) -> list[InitErrorDetails]:
+    """The same problems; those with unknown keys tell the known ones, which the file's own schema does not know."""
+    problems = []
+    for each in error.errors(include_url=False):
+        told = PydanticCustomError(each["type"], "{told}", {"told": each["msg"]})
+        if each["type"] == "extra_forbidden":
+            allowed = ", ".join(keys_at(schema, each["loc"][:-1]))
+            told = PydanticCustomError("extra_forbidden", "{allowed}", {"allowed": allowed})
+        problems.append(InitErrorDetails(type=told, loc=each["loc"], input=each["input"]))
+    return problems

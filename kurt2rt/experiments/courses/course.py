@@ -1,0 +1,68 @@
+"""The contract of a course."""
+
+import random
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Protocol
+
+from hal.settings_by_kind import KindSettings
+from kurt2rt.experiments.arena import Arena, Pose
+
+Findings = Mapping[str, float]
+"""Measures by name, with the unit in the name where there is one."""
+DISTANCE_ERROR = "distance error, m"
+"""Mean size of the difference from the distance that is wanted."""
+LATERAL_DEVIATION = "lateral deviation, m"
+"""Root of the mean square of the distance from the middle of the street."""
+JUNCTIONS = "junctions"
+"""How many were passed."""
+RIGHT = "junctions right"
+"""How many of them through the side that was asked for."""
+
+
+class Course(Protocol):
+    """Watches one drive from above: says what is wanted, and measures how well it is done."""
+
+    @property
+    def unit(self) -> str:
+        """What progress is counted in, such as `laps`."""
+        ...
+
+    @property
+    def behaviour(self) -> str:
+        """The taught behaviour that is wanted now; empty for tasks with one without a name."""
+        ...
+
+    @property
+    def stranded(self) -> bool:
+        """Whether nothing can be done from here: the robot is to be set down elsewhere."""
+        ...
+
+    @property
+    def progress(self) -> float:
+        """How far it came, in units."""
+        ...
+
+    @property
+    def findings(self) -> Findings:
+        """Other measures of the drive so far; those that nothing was seen of are left out."""
+        ...
+
+    def put(self, pose: Pose) -> None:
+        """The robot was set down here by hand, at the start or later."""
+        ...
+
+    def follow(self, pose: Pose) -> None:
+        """Where the robot really is; to be told in every tick."""
+        ...
+
+
+class CourseSettings(KindSettings):
+    """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
+
+    @abstractmethod
+    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+        """The course in an arena, for a task that teaches these behaviours.
+
+        Raises hal.settings.SettingsError when the arena's world has not what the course needs.
+        """

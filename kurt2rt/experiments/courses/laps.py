@@ -1,0 +1,57 @@
+"""Laps along the outer wall, with the wall on the left."""
+
+import random
+from typing import Annotated
+
+from pydantic import Field
+
+from kurt2rt.experiments.arena import Arena, Pose
+from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
+from kurt2rt.experiments.courses.mean import Mean
+
+MEASURE_EVERY = 10
+"""Ticks from one measured distance to the next."""
+
+
+class LapsSettings(CourseSettings):
+    """Laps."""
+
+    wanted_m: Annotated[float, Field(gt=0, le=5)]
+    """Distance that is wanted from the robot's centre to the nearest wall."""
+
+    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        return Laps(self, arena, behaviours[0])
+
+
+class Laps:
+    """Counts laps, and how far from the wanted distance the robot is on the mean."""
+
+    unit = "laps"
+    stranded = False
+
+    def __init__(self, settings: LapsSettings, arena: Arena, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self._wanted_m = settings.wanted_m
+        self._arena = arena
+        self._error_m = Mean()
+        self._ticks = 0
+
+    @property
+    def progress(self) -> float:
+        """Laps made."""
+        return self._arena.laps
+
+    @property
+    def findings(self) -> Findings:
+        """The distance error."""
+        return self._error_m.named(DISTANCE_ERROR)
+
+    def put(self, pose: Pose) -> None:
+        """The arena knows itself that this is no way made."""
+
+    def follow(self, pose: Pose) -> None:  # noqa: ARG002 - the arena looks itself
+        """Measure the distance now and then."""
+        if self._ticks % MEASURE_EVERY == 0:
+            self._error_m.add(abs(self._arena.nearest_m - self._wanted_m))
+        self._ticks += 1

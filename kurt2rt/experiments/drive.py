@@ -1,0 +1,60 @@
+"""One drive of a lesson or an exam, watched from above."""
+
+import math
+import random
+
+from kurt2rt.experiments.arena import Arena
+from kurt2rt.experiments.progress import WayMade
+from kurt2rt.tasks.settings import TaskSettings
+
+
+class Drive:
+    """Shows the course where the robot is, measures the way it makes, and reaches in where that is needed."""
+
+    def __init__(
+        self, arena: Arena, task: TaskSettings, *, no_way_s: float, period_s: float, chance: random.Random
+    ) -> None:
+        """`no_way_s`: how long a robot may stay about where it is. `chance` decides what the course and a hand do."""
+        self.course = task.course.build(arena, task.behaviours, chance)
+        self.way_m = 0.0
+        """Way made on its own wheels."""
+        self.repositions = 0
+        """How often it was set down elsewhere, rescues left out."""
+        self._arena = arena
+        self._chance = chance
+        self._way = WayMade(no_way_s, period_s, least_m=task.exam.stuck_within_m)
+        self._pose = arena.pose
+        self.course.put(self._pose)
+
+    def follow(self) -> None:
+        """One tick."""
+        pose = self._arena.pose
+        self.way_m += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
+        self._pose = pose
+        self.course.follow(pose)
+
+    def makes_no_way(self, *, waits: bool) -> bool:
+        """True when it stayed about where it is for too long; time in which it `waits` for its teacher does not count.
+
+        To be asked in every tick.
+        """
+        if waits:
+            self._way.restart()
+            return False
+        return self._way.none_since_window(self._arena.position)
+
+    def rescue(self) -> None:
+        """Set it down at the nearest start pose."""
+        self._arena.rescue()
+        self._put()
+
+    def reposition(self, *, in_sight: bool = False) -> None:
+        """Set it down elsewhere: at some start pose, or anywhere in sight of something."""
+        self._arena.reposition(self._chance, in_sight=in_sight)
+        self.repositions += 1
+        self._put()
+
+    def _put(self) -> None:
+        self._pose = self._arena.pose
+        self._way.restart()
+        self.course.put(self._pose)

@@ -1,0 +1,54 @@
+"""Poses anywhere in a world, to set the robot down at."""
+
+import math
+import random
+
+from hal.robot_settings import RobotSettings
+from simbridge.pose import Pose
+from simbridge.sight import Sight
+from simbridge.world import World
+
+_CLEARANCE_M = 0.05
+"""As of the start poses: nearer to a wall a robot that turns would begin with a collision."""
+_ON_A_POST_M = 0.001
+_TRIES = 100_000
+"""Where the only post is small and the room large, some thousands are needed."""
+
+
+class FreePoses:
+    """Draws poses at which the robot stands free and sees something: a post, where the world has posts."""
+
+    def __init__(self, world: World, robot: RobotSettings) -> None:
+        self._world = world
+        self._geometry = robot.geometry
+        self._sensors = robot.infrared.sensors
+        self._far_m = robot.infrared.far_m
+        reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + self._far_m
+        self._sight = Sight(world, reach_m)
+
+    def draw(self, chance: random.Random) -> Pose:
+        """One of them. Raises RuntimeError in a world that has none."""
+        world = self._world.settings
+        width_m, height_m = world.size_m
+        for _ in range(_TRIES):
+            pose = Pose(chance.uniform(0.0, width_m), chance.uniform(0.0, height_m), chance.uniform(-math.pi, math.pi))
+            if self._sees(pose) and world.clearance_m(pose, self._geometry) >= _CLEARANCE_M:
+                return pose
+        raise RuntimeError(f"world {world.name}: no place found where the robot is free and sees something")
+
+    def _sees(self, pose: Pose) -> bool:
+        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+        posts = self._world.settings.round_obstacles
+        self._sight.look_from(pose.x_m, pose.y_m)
+        for sensor in self._sensors:
+            x_m = pose.x_m + sensor.x_m * cos - sensor.y_m * sin
+            y_m = pose.y_m + sensor.x_m * sin + sensor.y_m * cos
+            direction_rad = pose.heading_rad + math.radians(sensor.heading_deg)
+            along_x, along_y = math.cos(direction_rad), math.sin(direction_rad)
+            away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, self._far_m)
+            at = (x_m + away_m * along_x, y_m + away_m * along_y)
+            if away_m < self._far_m and (
+                not posts or any(math.dist(at, (post.x_m, post.y_m)) <= post.radius_m + _ON_A_POST_M for post in posts)
+            ):
+                return True
+        return False

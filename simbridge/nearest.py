@@ -1,0 +1,31 @@
+"""How near the nearest wall or obstacle is, in whatever direction."""
+
+import math
+
+import shapely
+
+from simbridge.geometry import Point
+from simbridge.world import World
+
+
+class Nearest:
+    """Distances in a world whose walls may be moved."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+        self._survey()
+
+    def away_m(self, position: Point) -> float:
+        """From a position to the nearest face; 0 inside of what stands there."""
+        world = self._world.settings
+        if world is not self._surveyed:
+            self._survey()
+        away_m = float(shapely.distance(self._faces, shapely.Point(position)))
+        posts_m = (math.dist(position, (post.x_m, post.y_m)) - post.radius_m for post in world.round_obstacles)
+        return max(0.0, min([away_m, *posts_m]))
+
+    def _survey(self) -> None:
+        world = self._surveyed = self._world.settings
+        boxes = [shapely.Polygon(corners) for corners in world.solids]
+        self._faces = shapely.GeometryCollection([shapely.LinearRing(world.outline), *boxes])
+        shapely.prepare(self._faces)
