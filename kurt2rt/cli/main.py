@@ -23,6 +23,7 @@ from kurt2rt.teaching.answer import NoAnswerError, RefusedError
 
 _EXTRAS = {
     "contourpy": "simulation",
+    "jinja2": "simulation",
     "PIL": "simulation",
     "pymunk": "simulation",
     "matplotlib": "simulation",
