@@ -12,7 +12,7 @@ from hal.tap import Tap
 from kurt2rt.experiments.arena import Plan, Position, Post, Street
 from kurt2rt.experiments.arena import Pose as TruePose
 from kurt2rt.simulated_ground import SimulatedGround
-from simbridge.drawing import draw_world
+from simbridge.drawing import draw_robot, draw_world
 from simbridge.free_poses import FreePoses
 from simbridge.nearest import Nearest
 from simbridge.pose import Pose
@@ -144,6 +144,14 @@ class SimulatedStage:
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
         draw_world(axes, load_world(world, self.settings))
+
+    def draw_robot(self, axes: "Axes", world: str) -> None:
+        """Draw the robot at the first start pose of a world."""
+        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
+
+    def settings_of(self, world: str) -> str:
+        """All that a world is made of, and the wire."""
+        return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
 
 
 @contextmanager

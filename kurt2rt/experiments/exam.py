@@ -54,6 +54,7 @@ class ExamResult:
     """Why the guard stopped the robot for good, which ends the exam; empty when it did not."""
     findings: Findings = field(default_factory=dict)
     """What the course measured besides."""
+    collision_positions: tuple[Position, ...] = ()
 
     def succeeded(self, teachers_progress: float, success: SuccessSettings) -> bool:
         """No more collisions than allowed, no alarm, not stuck, and enough of what the teacher's own policy reaches."""
@@ -100,6 +101,7 @@ async def examine(
     drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
     trail: list[Position] = []
     unknown_positions: list[Position] = []
+    collision_positions: list[Position] = []
     unknown = changes = ticks = 0
     stuck = asking = False
     action: str | None = None
@@ -120,6 +122,8 @@ async def examine(
         if decision.asking and not asking:
             unknown_positions.append(arena.position)
         asking = decision.asking
+        if arena.collisions > len(collision_positions):
+            collision_positions += [arena.position] * (arena.collisions - len(collision_positions))
         changes += decision.action != action
         action = decision.action
         drive.follow()
@@ -155,4 +159,5 @@ async def examine(
         unknown_positions=tuple(unknown_positions),
         alarm=alarm,
         findings=drive.course.findings,
+        collision_positions=tuple(collision_positions),
     )
