@@ -122,8 +122,7 @@ async def examine(
         if decision.asking and not asking:
             unknown_positions.append(arena.position)
         asking = decision.asking
-        if arena.collisions > len(collision_positions):
-            collision_positions += [arena.position] * (arena.collisions - len(collision_positions))
+        collision_positions.extend([arena.position] * (arena.collisions - len(collision_positions)))
         changes += decision.action != action
         action = decision.action
         drive.follow()
