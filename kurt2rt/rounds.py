@@ -111,4 +111,4 @@ class Rounds:
             self._asking = True
             self._asked_at = record.tick
             weights, names = self._runtime.level.system.weights, self._runtime.definition.names
-            self._screen.question(ask(record.decision.match, record.situation.vector, weights, names))
+            self._screen.question(ask(record.decision.match, record.situation.vector, weights, names, record.behaviour))

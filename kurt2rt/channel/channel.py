@@ -154,6 +154,7 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "radius": runtime.level.system.radius,
         "period_s": robot.can.cycle_s,
         "actions": actions,
+        "behaviours": list(runtime.wanted.behaviours),
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,

@@ -7,6 +7,7 @@ from kurt2rt.channel.requests import (
     CorrectRequest,
     DeleteRequest,
     PhaseRequest,
+    PursueRequest,
     ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
@@ -22,6 +23,7 @@ from kurt2rt.teaching.commands import (
     DeleteRla,
     EndSession,
     HandOver,
+    Pursue,
     ReplaceAction,
     Resume,
     Reward,
@@ -52,6 +54,8 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Undo(command_id, device, lesson)
         case PhaseRequest(phase=phase):
             return SetPhase(command_id, device, phase, request.seen)
+        case PursueRequest(behaviour=behaviour):
+            return Pursue(command_id, device, behaviour)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
         case SessionRequest(name=str(name)):

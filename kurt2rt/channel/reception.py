@@ -17,6 +17,7 @@ from kurt2rt.channel.requests import (
     LessonsRequest,
     MoveWallRequest,
     PlaceRequest,
+    PursueRequest,
     Request,
     ResumeRequest,
     SaveRequest,
@@ -41,7 +42,7 @@ STREAM_TICKS = 40
 """A message of a stream on an older picture is refused: it was held back on its way."""
 MOVING_TICKS = 100
 COMMAND_TICKS = 300
-_MOVING = (BehaviourRequest, ResumeRequest, TakeRequest)
+_MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest)
 LONGEST_WAIT_S = 3.0
 """Then a lesson that is not durable yet is answered as unsaved."""
 

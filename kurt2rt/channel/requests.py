@@ -166,6 +166,14 @@ class PhaseRequest(CommandRequest):
 
 
 @dataclass(frozen=True, slots=True)
+class PursueRequest(CommandRequest):
+    """Follow another taught behaviour."""
+
+    path: ClassVar[str] = "/pursue"
+    behaviour: _Name
+
+
+@dataclass(frozen=True, slots=True)
 class SessionRequest(CommandRequest):
     """Teaching begins under a name, or ends (None)."""
 
@@ -259,6 +267,7 @@ REQUESTS: tuple[type[Request], ...] = (
     DeleteRequest,
     UndoRequest,
     PhaseRequest,
+    PursueRequest,
     SessionRequest,
     ResumeRequest,
     TakeRequest,

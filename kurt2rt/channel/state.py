@@ -76,3 +76,5 @@ class State:
     """How late ticks begin, 99th percentile of the last minute."""
     missed_ticks: int
     place: SimulatedPlace | None
+    behaviour: str = ""
+    """The taught behaviour that is wanted; empty where the task has only one."""

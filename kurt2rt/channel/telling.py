@@ -85,6 +85,7 @@ class Telling:
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
+            behaviour=record.behaviour,
         )
 
 

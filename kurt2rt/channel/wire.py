@@ -118,6 +118,7 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("tr", "trouble", _LINE),
     ("lp", "late_p99_ms", _ANY_REAL),
     ("ms", "missed_ticks", _NUMBER),
+    ("w", "behaviour", _NAME),
 )
 """Key on the wire, field of State, check."""
 

@@ -44,6 +44,9 @@ take, release            be the teacher, or let another one be it
 help, quit"""
 
 
+_PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
+
+
 class _Line(NamedTuple):
     """What was typed, and when, as the robot has it."""
 
@@ -66,6 +69,7 @@ class TerminalTeacher:
         self._say = say
         self._where = where
         self._actions: tuple[str, ...] = ()
+        self._behaviours: tuple[str, ...] = ()
         self._tried = anyio.Event()
         self._met = False
         self._last_stop = anyio.Event()
@@ -116,9 +120,9 @@ class TerminalTeacher:
     async def _accompany(self, tasks: TaskGroup) -> None:
         """Meet the robot when it comes, and again whenever it was started anew."""
         hello = await self._meet()
-        self._actions = hello.actions
+        self._actions, self._behaviours = hello.actions, hello.behaviours
         self._say(f"{hello.robot}, task {hello.task}; help shows what can be typed; Enter alone stops the robot")
-        self._say(f"actions: {', '.join(self._actions)}")
+        self._say_names()
         await self._anyhow(self._tell(self._robot.take()))
         self._met = True
         self._tried.set()
@@ -145,7 +149,8 @@ class TerminalTeacher:
                 await anyio.sleep(_ASK_AGAIN_S)
 
     async def _meet_again(self) -> None:
-        self._actions = (await self._robot.hello()).actions
+        hello = await self._robot.hello()
+        self._actions, self._behaviours = hello.actions, hello.behaviours
         state = self._robot.state
         teacher = None if state is None else state.teacher
         if teacher is None:
@@ -222,6 +227,8 @@ class TerminalTeacher:
                 await self._tell(robot.delete(int(rla_id)))
             case ["phase", ("1" | "2" | "3" | "4" | "5") as number]:
                 await self._tell(robot.set_phase(Phase(int(number))))
+            case ["pursue", behaviour]:
+                await self._tell(robot.pursue(behaviour))
             case ["begin", *name]:
                 await self._tell(robot.begin_session(" ".join(name) or "session"))
             case ["end"]:
@@ -238,7 +245,14 @@ class TerminalTeacher:
                 await self._teach(action, line.state)
             case _:
                 self._say(_HELP)
-                self._say(f"actions: {', '.join(self._actions)}")
+                if len(self._behaviours) > 1:
+                    self._say(_PURSUE_HELP)
+                self._say_names()
+
+    def _say_names(self) -> None:
+        self._say(f"actions: {', '.join(self._actions)}")
+        if len(self._behaviours) > 1:
+            self._say(f"taught behaviours: {', '.join(self._behaviours)}")
 
     async def _teach(self, action: str, state: State | None) -> None:
         # The same word answers a question and corrects a robot that knows, or thinks that it knows.
@@ -266,7 +280,7 @@ class TerminalTeacher:
 def question_in(state: State) -> Question:
     """The question that a picture shows."""
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
-    return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing)
+    return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour)
 
 
 def sentence_of(state: State) -> str:
@@ -274,7 +288,8 @@ def sentence_of(state: State) -> str:
     if state.action is not None:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"
-        return f"{state.action} by RLA {state.rla}"
+        of = f" of {state.behaviour}" if state.behaviour else ""
+        return f"{state.action} by RLA {state.rla}{of}"
     return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
 
 

@@ -16,7 +16,8 @@ _COLUMNS = ("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "
 def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
     """Save `<task>-<stamp>-rlas.csv`: a row per RLA, oldest first, with a column per feature of its condition.
 
-    An empty radius is that of the system. Numbers are exact. UTF-8. Waits and raises as `save_copy`.
+    An empty radius is that of the system; taught behaviours have a column where one has a name. Numbers are exact.
+    UTF-8. Waits and raises as `save_copy`.
     """
     with Journal.beside_its_writer(journal_path) as journal:
         task = journal.binding.system
@@ -32,8 +33,11 @@ def _table(journal: Journal) -> str:
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     text = io.StringIO(newline="")
     table = csv.writer(text)
-    table.writerow((*_COLUMNS, *journal.binding.feature_names))
-    for rla in politely(system.rlas):
+    rlas = system.rlas
+    named = any(rla.behaviour for rla in rlas)
+    behaviour_column = ("behaviour",) if named else ()
+    table.writerow((*_COLUMNS, *behaviour_column, *journal.binding.feature_names))
+    for rla in politely(rlas):
         origin = rla.origin
         table.writerow(
             (
@@ -46,6 +50,7 @@ def _table(journal: Journal) -> str:
                 stamps[origin.command_id],
                 uses.get(rla.rla_id, 0),
                 *system.appraisal(rla.rla_id),
+                *((rla.behaviour,) if named else ()),
                 *rla.condition,
             )
         )

@@ -36,11 +36,13 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
     statistics = journal.statistics()
     taught = {entry.event.origin.command_id: entry for entry in entries}
     shares = follow_ups(statistics)
-    table = _empty_table(wide=wide)
+    named = any(rla.behaviour for rla in rlas)
+    table = _empty_table(named=named, wide=wide)
     for rla in rlas[:limit]:
         entry = taught[rla.origin.command_id]
         cells: list[str | Text] = [
             str(rla.rla_id),
+            *((_plain(rla.behaviour),) if named else ()),
             _plain(rla.action),
             _plain(entry.event.instead_of if isinstance(entry.event, ActionReplaced) else ""),
             _plain(_when_and_who(entry.stamped_at, rla.origin.teacher)),
@@ -83,9 +85,10 @@ def render_lessons(journal: Journal, limit: int | None = None) -> RenderableType
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
 
 
-def _empty_table(*, wide: bool) -> Table:
+def _empty_table(*, named: bool, wide: bool) -> Table:
     table = Table(box=SIMPLE_HEAD)
-    for heading in ("RLA", "action", "instead of", "taught (UTC), by", "phase", "tick", "uses", "rewards"):
+    behaviour = ("behaviour",) if named else ()
+    for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", "phase", "tick", "uses", "rewards"):
         right = heading in ("RLA", "phase", "tick", "uses", "rewards")
         table.add_column(heading, justify="right" if right else "left", overflow="fold", no_wrap=right)
     if wide:

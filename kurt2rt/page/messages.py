@@ -78,6 +78,7 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     # By name: "the last one" would mean another lesson by the time it arrives.
     "undo": {"lesson": Text(128, least=1)},
     "phase": {"phase": OneOf(tuple(each.value for each in Phase), Phase)},
+    "pursue": {"behaviour": _NAME},
     "begin_session": {"name": _NAME},
     "end_session": {},
     "resume": {},

@@ -11,7 +11,7 @@ _OTHERS_S = 3.0
 
 def oldest_picture_s(order: Order) -> float:
     """How long ago the page's picture may have been sent, in s: the robot's own borders, for the page's own link."""
-    return _MOVING_S if lets_drive(order) or order.name in ("take", "place") else _OTHERS_S
+    return _MOVING_S if lets_drive(order) or order.name in ("take", "place", "pursue") else _OTHERS_S
 
 
 def lets_drive(order: Order) -> bool:
@@ -33,6 +33,8 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.undo(given["lesson"])
         case "phase":
             return await robot.set_phase(given["phase"])
+        case "pursue":
+            return await robot.pursue(given["behaviour"])
         case "begin_session":
             return await robot.begin_session(given["name"])
         case "end_session":

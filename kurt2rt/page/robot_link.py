@@ -96,6 +96,10 @@ class RobotLink(Protocol):
         """Another training phase."""
         ...
 
+    async def pursue(self, behaviour: str) -> Answer:
+        """Follow another taught behaviour."""
+        ...
+
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins."""
         ...

@@ -47,6 +47,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "trouble": state.trouble,
         "late_p99_ms": _finite(state.late_p99_ms),
         "missed_ticks": state.missed_ticks,
+        "behaviour": state.behaviour,
         "place": None if place is None else asdict(place),
         "link": {
             "age_ms": round(age_s * 1000),

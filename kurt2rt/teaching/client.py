@@ -33,6 +33,7 @@ from kurt2rt.channel.requests import (
     MoveWallRequest,
     PhaseRequest,
     PlaceRequest,
+    PursueRequest,
     ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
@@ -200,6 +201,10 @@ class TeacherClient:
         if phase is not Phase.AUTONOMOUS:
             return await self._asking.command(PhaseRequest, phase=phase)
         return await self._stopping.move("phase 5", lambda: self._asking.command(PhaseRequest, moves=True, phase=phase))
+
+    async def pursue(self, behaviour: str) -> Answer:
+        """Follow another of the behaviours that the task teaches; lessons are about it from then on."""
+        return await self._asking.command(PursueRequest, behaviour=behaviour)
 
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins: the teaching clock runs."""

@@ -49,6 +49,8 @@ class Hello:
     simulated: bool
     phases: tuple[str, ...]
     """Names of the training phases; the first one's number is 1."""
+    behaviours: tuple[str, ...] = ("",)
+    """What the task teaches, each with RLAs of its own; a single one may have no name."""
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
@@ -71,6 +73,7 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             max_m_s=Real(10.0, "m/s")("max_m_s", body["max_m_s"]),
             simulated=Flag()("simulated", body["simulated"]),
             phases=ManyOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
+            behaviours=ManyOf(_NAME, most=64)("behaviours", body["behaviours"]),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error

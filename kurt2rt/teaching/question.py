@@ -29,13 +29,16 @@ class Question:
     radius: float
     differing: tuple[FeatureDifference, ...]
     """The features that differ most, most first."""
+    behaviour: str = ""
+    """The taught behaviour that is wanted; empty where the task has only one."""
 
     def __str__(self) -> str:
+        of = f" of {self.behaviour}" if self.behaviour else ""
         if self.nearest_rla is None:
-            return "I know nothing yet, teach me"
+            return f"I know nothing{of} yet, teach me"
         features = ", ".join(f"{each.name} {each.here:.0f} not {each.in_condition:.0f}" for each in self.differing)
         return (
-            f"I don't know this situation, teach me: nearest is RLA {self.nearest_rla} ({self.action}) "
+            f"I don't know this situation, teach me: nearest is RLA {self.nearest_rla}{of} ({self.action}) "
             f"at {self.distance:.0f} of {self.radius:.0f}; {features}"
         )
 
@@ -45,11 +48,12 @@ def ask(
     situation: NDArray[np.float64],
     weights: NDArray[np.float64],
     feature_names: tuple[str, ...],
+    behaviour: str = "",
     most: int = 5,
 ) -> Question:
-    """Question about a situation vector (d,) whose nearest RLA is `match`, found with `weights` (d,)."""
+    """Question about a situation vector (d,) whose nearest RLA of `behaviour` is `match`, found with `weights` (d,)."""
     if match is None:
-        return Question(None, None, float("inf"), 0.0, ())
+        return Question(None, None, float("inf"), 0.0, (), behaviour)
     condition = np.array(match.rla.condition)
     differences = np.abs(situation - condition) * weights
     order = np.argsort(-differences, kind="stable")[:most]
@@ -58,4 +62,4 @@ def ask(
         for i in order
         if differences[i] > 0.0
     )
-    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing)
+    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour)

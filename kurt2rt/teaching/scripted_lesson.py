@@ -119,7 +119,14 @@ async def _picture(robot: TeacherClient, tick: int) -> State:
 
 def picture_in(state: State) -> Picture:
     """What the picture on the wire shows a teacher."""
-    return Picture(state.cause == Cause.UNKNOWN, state.action is not None, state.action, state.infrared_counts)
+    return Picture(
+        state.cause == Cause.UNKNOWN,
+        state.action is not None,
+        state.action,
+        state.infrared_counts,
+        state.behaviour,
+        state.rla,
+    )
 
 
 async def _say(robot: TeacherClient, command: Command, tick: int) -> int:

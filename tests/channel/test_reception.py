@@ -18,6 +18,7 @@ from kurt2rt.channel.requests import (
     MoveWallRequest,
     PhaseRequest,
     PlaceRequest,
+    PursueRequest,
     ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
@@ -40,6 +41,7 @@ from tests.channel.grounds import Yard
 LAST_START = b"last"
 MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
     BehaviourRequest: ("forward", 10),
+    PursueRequest: ("turn_left",),
     ResumeRequest: (),
     TakeRequest: (),
 }

@@ -151,6 +151,9 @@ class FakeRobot:
     async def set_phase(self, phase: Phase) -> Answer:
         return await self._answer("set_phase", phase)
 
+    async def pursue(self, behaviour: str) -> Answer:
+        return await self._answer("pursue", behaviour)
+
     async def begin_session(self, name: str) -> Answer:
         return await self._answer("begin_session", name)
 

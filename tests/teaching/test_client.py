@@ -31,6 +31,7 @@ from kurt2rt.channel.requests import (
     MoveWallRequest,
     PhaseRequest,
     PlaceRequest,
+    PursueRequest,
     ReleaseRequest,
     ReplaceRequest,
     Request,
@@ -61,6 +62,7 @@ HELLO = {
     "radius": 700.0,
     "period_s": 0.01,
     "actions": ["forward", "spin_left"],
+    "behaviours": ["straight_on", "turn_left"],
     "sensors": [["front", "F", 0.2, 0.0, 0.0]],
     "outline": [0.434, 0.33],
     "max_m_s": 0.6,
@@ -199,6 +201,7 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
 
     robot.mind = introduces_itself
     hello = await client.hello()
+    assert hello.behaviours == ("straight_on", "turn_left")
     assert (hello.robot, hello.actions, hello.outline) == ("kurt2-indoor", ("forward", "spin_left"), (0.434, 0.33))
     assert hello.sensors[0].label == "F"
     assert hello.phases == ("supervised", "corrections")
@@ -257,6 +260,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.undo()
     await client.undo("phone-01")
     await client.set_phase(Phase.CORRECTIONS)
+    await client.pursue("turn_left")
     await client.begin_session("morning")
     await client.end_session()
     await client.resume()
@@ -277,6 +281,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (UndoRequest, {"lesson": None}),
         (UndoRequest, {"lesson": "phone-01"}),
         (PhaseRequest, {"phase": Phase.CORRECTIONS}),
+        (PursueRequest, {"behaviour": "turn_left"}),
         (SessionRequest, {"name": "morning"}),
         (SessionRequest, {"name": None}),
         (ResumeRequest, {}),

@@ -12,6 +12,7 @@ import { WorldView } from "./world_view.js";
 const $ = (id) => document.getElementById(id);
 const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
 const TABS = ["teach", "drive", "lessons", "more"];
+const IN_CHARGE = [...TABS, "behaviours"]; // what only the teacher may touch
 const FASTEST_BY_HAND_M_S = 0.6;
 const SAID_MS = 8000;
 const PICTURE_MS = 1000;
@@ -156,6 +157,7 @@ link.addEventListener("hello", ({ detail }) => {
   document.body.classList.toggle("simulated", hello.simulated);
   if (!hello.simulated) showView("robot");
   buildPhases();
+  buildBehaviours();
   pace();
 });
 
@@ -209,6 +211,7 @@ function show() {
   setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);
   if (state.refused && drive.held) say("refused", state.refused);
   showMore(state);
+  showBehaviour(state);
   claim();
   draw();
 }
@@ -229,7 +232,7 @@ function showLink(state) {
 function freshness() {
   const lost = !link.fresh;
   document.body.classList.toggle("no-picture", lost);
-  for (const id of ["teach", "drive", "lessons", "more"]) $(id).inert = lost || !inCharge();
+  for (const id of IN_CHARGE) $(id).inert = lost || !inCharge();
   if (lost) {
     drive.release();
     setText($("link-text"), "no picture");
@@ -268,7 +271,7 @@ function claim() {
   const state = link.state;
   const box = $("claim");
   box.hidden = inCharge() || !state;
-  for (const id of ["teach", "drive", "lessons", "more"]) $(id).inert = !inCharge() || !link.fresh;
+  for (const id of IN_CHARGE) $(id).inert = !inCharge() || !link.fresh;
   if (box.hidden) return;
   drive.release();
   const another = state.teacher && state.teacher !== page.device;
@@ -285,6 +288,29 @@ const take = () => tell("take", {}, "take");
 $("claim-button").addEventListener("click", take);
 $("take-here").addEventListener("click", take);
 $("hand-over").addEventListener("click", () => tell("hand_over", { to: null }, "hand over"));
+
+// ---- What the robot is to follow, where a task teaches several behaviours
+
+function buildBehaviours() {
+  const names = hello.behaviours;
+  $("behaviours").hidden = names.length < 2;
+  $("behaviours").replaceChildren(
+    ...names.map((name) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.dataset.behaviour = name;
+      button.textContent = words(name);
+      button.addEventListener("click", () => tell("pursue", { behaviour: name }, words(name)));
+      return button;
+    }),
+  );
+}
+
+function showBehaviour(state) {
+  for (const button of $("behaviours").children) {
+    button.setAttribute("aria-pressed", String(button.dataset.behaviour === state.behaviour));
+  }
+}
 
 // ---- More
 

@@ -14,6 +14,10 @@ export function when(stamp) {
   return `${date.getDate()} ${MONTHS[date.getMonth()]} ${two(date.getHours())}:${two(date.getMinutes())}`;
 }
 
+function of(state) {
+  return state.behaviour ? ` of ${words(state.behaviour)}` : "";
+}
+
 function taught(state) {
   const parts = [state.taught_by && `by ${state.taught_by}`, when(state.taught_at)].filter(Boolean);
   return parts.length ? `, taught ${parts.join(", ")}` : "";
@@ -22,7 +26,7 @@ function taught(state) {
 export function sentence(state) {
   switch (state.cause) {
     case "rla":
-      return `RLA ${state.rla} does ${words(state.action)}${taught(state)}`;
+      return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
     case "held":
       return `RLA ${state.rla} keeps ${words(state.action)} for its least time; RLA ${state.nearest} is nearest now`;
     case "teacher":
@@ -30,7 +34,7 @@ export function sentence(state) {
         ? `${state.teacher ?? "A teacher"} lets it run ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "unknown":
-      return state.nearest === null ? "I know nothing yet, teach me" : "I don't know this situation, teach me";
+      return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
     case "stopped":
       return `Stands: ${state.stopped_because || "stopped"}. GO lets it drive on`;
     case "unattended":
