@@ -12,6 +12,7 @@ from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import DeleteRla
 from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -85,15 +86,16 @@ async def teach(
     trail: list[Position] = []
     ask_positions: list[Position] = []
     asking = False
-    rescues = alarms = latched_ticks = 0
+    rescues = alarms = latched_ticks = deletions = 0
 
     def after_tick(record: TickRecord) -> None:
-        nonlocal asking, rescues, alarms, latched_ticks
+        nonlocal asking, rescues, alarms, latched_ticks, deletions
         if record.tick == corrections_from:
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
         command = teacher.watch(picture_of(record))
         if command is not None:
             runtime.inbox.put(command)
+            deletions += isinstance(command, DeleteRla)
         latched_ticks = latched_ticks + 1 if record.grant.latched else 0
         if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
             runtime.inbox.put(teacher.go())
@@ -136,6 +138,7 @@ async def teach(
         ledger=runtime.ledger,
         alarms=alarms,
         repositions=drive.repositions,
+        deletions=deletions,
         progress=drive.course.progress,
         unit=drive.course.unit,
         findings=drive.course.findings,

@@ -13,7 +13,7 @@ from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
-from kurt2rt.teaching.commands import Command, Correct, Teach
+from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teaching.scripted_teacher import Picture, teacher_of
 
 Say = Callable[[str], None]
@@ -137,6 +137,8 @@ async def _say(robot: TeacherClient, command: Command, tick: int) -> int:
                 answer = await robot.answer(action, of=tick)
             case Correct(action=action):
                 answer = await robot.correct(action, of=tick)
+            case DeleteRla(rla_id=rla_id):
+                answer = await robot.delete(rla_id)
             case _:
                 raise AssertionError(f"a scripted teacher does not say {command}")
     except NoAnswerError:

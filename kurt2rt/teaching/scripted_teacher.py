@@ -1,6 +1,7 @@
 """A teacher that consults a reference policy: answers questions, and corrects what it would do otherwise."""
 
 import random
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -8,7 +9,7 @@ from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
-from kurt2rt.teaching.commands import Command, Correct, Pursue, Resume, SetPhase, Teach
+from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
 _NAME = "scripted teacher"
@@ -75,6 +76,7 @@ class ScriptedTeacher:
         self._policy = policy
         self._actions = tuple(actions)
         self._error_rate = settings.error_rate
+        self._delete_after = settings.delete_after
         self._reaction_ticks = round(settings.reaction_s / period_s)
         self._patience_ticks = round(settings.patience_s / period_s)
         self._chance = random.Random(seed)
@@ -83,6 +85,8 @@ class ScriptedTeacher:
         self._ticks_otherwise = 0
         self._wanted: str | None = None
         self._behaviour = ""
+        self._action_of: dict[int, str] = {}
+        self._replaced: Counter[int] = Counter()
         self.phase = Phase.SUPERVISED
 
     def enter(self, phase: Phase) -> Command:
@@ -103,6 +107,8 @@ class ScriptedTeacher:
         if picture.behaviour != self._behaviour:  # what was asked, and what was wrong, is over
             self._behaviour = picture.behaviour
             self._ticks_asked = self._ticks_otherwise = 0
+        if self._delete_after:
+            self._note_replaced(picture)
         if picture.asking or self._ticks_asked > 0:
             # Once asked the teacher answers, also when noise has meanwhile let the robot drive on for a moment.
             self._ticks_otherwise = 0
@@ -127,7 +133,17 @@ class ScriptedTeacher:
         if self._ticks_otherwise < self._patience_ticks:
             return None
         self._ticks_otherwise = 0
+        if self._delete_after and picture.rla_id and self._replaced[picture.rla_id] >= self._delete_after:
+            return DeleteRla(self._next_id(), _NAME, picture.rla_id)
         return Correct(self._next_id(), _NAME, self._choose(picture))
+
+    def _note_replaced(self, picture: Picture) -> None:
+        """An RLA that drives otherwise than before has had its action replaced."""
+        if picture.rla_id is None or picture.action is None:
+            return
+        if self._action_of.get(picture.rla_id, picture.action) != picture.action:
+            self._replaced[picture.rla_id] += 1
+        self._action_of[picture.rla_id] = picture.action
 
     def _choose(self, picture: Picture) -> str:
         right = self._policy.choose(picture.infrared_counts, picture.behaviour)

@@ -10,7 +10,7 @@ from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TeacherSettings
-from kurt2rt.teaching.commands import Command, Correct, SetPhase, Teach
+from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
 from kurt2rt.tick import TickRecord
 from tests.layers.helpers import sensed
@@ -169,3 +169,22 @@ def test_its_errors_are_those_of_its_seed() -> None:
     first, again, other = (answers_to(teacher(reaction_s=0.0, error_rate=0.5, seed=seed), 100) for seed in (1, 1, 2))
     assert first == again
     assert first != other
+
+
+def test_an_rla_whose_action_was_replaced_often_enough_is_deleted_when_it_is_wrong_again() -> None:
+    person = teacher(delete_after=2)
+    wrong = [
+        *(doing(action, FAR) for action in "bcd" for _ in range(PATIENCE_TICKS)),  # b was replaced by c, c by d
+        *(doing("a", FAR) for _ in range(2 * PATIENCE_TICKS)),  # the right one
+    ]
+    assert [type(command) for command in said(person, wrong).values()] == [Correct, Correct, DeleteRla]
+    assert said(teacher(delete_after=2), wrong)[3 * PATIENCE_TICKS] == DeleteRla("s-4", NAME, 1)
+
+
+def test_without_such_a_setting_it_corrects_for_ever() -> None:
+    wrong = [doing(action, FAR) for action in "bcdbcd" for _ in range(PATIENCE_TICKS)]
+    assert {type(command) for command in said(teacher(), wrong).values()} == {Correct}
+
+
+def test_what_is_wanted_now_is_said_like_everything_else() -> None:
+    assert teacher().pursue("turn_left") == Pursue("s-2", NAME, "turn_left")

@@ -7,10 +7,7 @@ from pydantic import Field
 
 from kurt2rt.experiments.arena import Arena, Pose
 from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
-from kurt2rt.experiments.courses.mean import Mean
-
-MEASURE_EVERY = 10
-"""Ticks from one measured distance to the next."""
+from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
 
 
 class LapsSettings(CourseSettings):

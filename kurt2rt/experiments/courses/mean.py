@@ -2,6 +2,9 @@
 
 from kurt2rt.experiments.courses.course import Findings
 
+MEASURE_EVERY = 10
+"""Ticks from one measured distance to the next."""
+
 
 class Mean:
     """Arithmetic mean of all values so far."""

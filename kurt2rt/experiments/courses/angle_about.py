@@ -1,0 +1,30 @@
+"""The angle that a robot sweeps about a point."""
+
+import math
+
+from kurt2rt.experiments.arena import Pose
+
+
+class AngleAbout:
+    """Adds up the angle, in whole rounds, counter-clockwise positive."""
+
+    def __init__(self, x_m: float, y_m: float) -> None:
+        self.rounds = 0.0
+        self._x_m = x_m
+        self._y_m = y_m
+        self._angle_rad: float | None = None
+
+    def away_m(self, pose: Pose) -> float:
+        """Distance of the robot's centre."""
+        return math.hypot(pose.x_m - self._x_m, pose.y_m - self._y_m)
+
+    def lose(self) -> None:
+        """The next pose continues no way: what lies between here and there was not swept."""
+        self._angle_rad = None
+
+    def follow(self, pose: Pose) -> None:
+        """A step further, not halfway round."""
+        angle_rad = math.atan2(pose.y_m - self._y_m, pose.x_m - self._x_m)
+        if self._angle_rad is not None:
+            self.rounds += math.remainder(angle_rad - self._angle_rad, math.tau) / math.tau
+        self._angle_rad = angle_rad

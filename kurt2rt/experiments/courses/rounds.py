@@ -1,0 +1,75 @@
+"""Rounds about the single post of a world."""
+
+import random
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from hal.settings import SettingsError
+from kurt2rt.experiments.arena import Arena, Pose, Post
+from kurt2rt.experiments.courses.angle_about import AngleAbout
+from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
+from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
+
+Distance = Annotated[float, Field(gt=0, le=5)]
+
+
+class RoundsSettings(CourseSettings):
+    """Rounds; distances from the robot's centre to the face of the post."""
+
+    wanted_m: Distance
+    within_m: Distance
+    """Farther off the robot is not at the post, and what it does counts for nothing."""
+    turning: Literal["left", "right"]
+    """Left: counter-clockwise, with the post on the left."""
+
+    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        posts = arena.plan.posts
+        if len(posts) != 1:
+            raise SettingsError(
+                f"course rounds: the world has {len(posts)} round obstacles; choose one with a single one"
+            )
+        return Rounds(self, posts[0], behaviours[0])
+
+
+class Rounds:
+    """Counts rounds near the post, back turns against, and how far from the wanted distance they lead on the mean."""
+
+    unit = "rounds"
+    stranded = False
+
+    def __init__(self, settings: RoundsSettings, post: Post, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self._settings = settings
+        self._radius_m = post.radius_m
+        self._swept = AngleAbout(post.x_m, post.y_m)
+        self._sign = 1.0 if settings.turning == "left" else -1.0
+        self._error_m = Mean()
+        self._ticks = 0
+
+    @property
+    def progress(self) -> float:
+        """Rounds made in the wanted direction."""
+        return self._sign * self._swept.rounds
+
+    @property
+    def findings(self) -> Findings:
+        """The distance error, also from where the robot is not at the post."""
+        return self._error_m.named(DISTANCE_ERROR)
+
+    def put(self, pose: Pose) -> None:
+        """To be set down elsewhere makes no round."""
+        self._swept.lose()
+        self.follow(pose)
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        away_m = self._swept.away_m(pose) - self._radius_m
+        if self._ticks % MEASURE_EVERY == 0:
+            self._error_m.add(abs(away_m - self._settings.wanted_m))
+        self._ticks += 1
+        if away_m > self._settings.within_m:
+            self._swept.lose()
+        else:
+            self._swept.follow(pose)

@@ -1,0 +1,41 @@
+"""Metres of way, wherever it leads."""
+
+import math
+import random
+
+from kurt2rt.experiments.arena import Arena, Pose
+from kurt2rt.experiments.courses.course import Course, CourseSettings, Findings
+
+
+class WaySettings(CourseSettings):
+    """Way."""
+
+    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        return Way(arena.pose, behaviours[0])
+
+
+class Way:
+    """Measures the way of the robot's centre; turning on the spot makes none."""
+
+    unit = "m"
+    stranded = False
+
+    def __init__(self, pose: Pose, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self.progress = 0.0
+        self._pose = pose
+
+    @property
+    def findings(self) -> Findings:
+        """None."""
+        return {}
+
+    def put(self, pose: Pose) -> None:
+        """To be set down elsewhere makes no way."""
+        self._pose = pose
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        self.progress += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
+        self._pose = pose
