@@ -1,17 +1,16 @@
 """The same curriculum for many seeds, in parallel processes."""
 
-import multiprocessing
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
-from threadpoolctl import threadpool_limits
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.curriculum import CurriculumResult, run_exams, run_lesson
+from kurt2rt.experiments.pool import Tell, run_jobs
+from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.tasks.settings import TaskSettings
 
 
@@ -26,40 +25,32 @@ class SeedJob:
     seed: int
     knowledge: Path
 
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name}, seed {self.seed}"
 
-def run_seed(job: SeedJob) -> CurriculumResult:
-    """Teach and examine one seed."""
+    @property
+    def robot_time_s(self) -> float:
+        """The lesson; and in each world the exam and the teacher's own drive."""
+        return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s
 
-    async def run() -> CurriculumResult:
-        lesson, events = await run_lesson(
-            job.stage, job.settings, job.task, job.knowledge, seed=job.seed, report=_say_nothing
-        )
-        exams = await run_exams(
-            job.stage, job.settings, job.task, events, job.worlds, seed=job.seed, report=_say_nothing
-        )
-        return CurriculumResult(lesson, exams)
+    def run(self, tell: Tell) -> CurriculumResult:
+        """Teach and examine one seed."""
+        report = RobotTime(tell).report
 
-    # As on the command line: this process shares the machine with its siblings.
-    with threadpool_limits(limits=1):
+        async def run() -> CurriculumResult:
+            lesson, events = await run_lesson(
+                self.stage, self.settings, self.task, self.knowledge, seed=self.seed, report=report
+            )
+            exams = await run_exams(
+                self.stage, self.settings, self.task, events, self.worlds, seed=self.seed, report=report
+            )
+            return CurriculumResult(lesson, exams)
+
         return anyio.run(run)
 
 
 def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:
     """Run all jobs; results in the order of the jobs. `on_done` hears each seed that is through."""
-    # Fresh interpreters: a fork would share the parent's threads and buses half-way.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(processes, mp_context=context) as pool:
-        running = {pool.submit(run_seed, job): job.seed for job in jobs}
-        try:
-            for future in as_completed(running):
-                future.result()
-                on_done(running[future])
-        except BaseException:
-            # Else what failed would be said when all the others are through, minutes later.
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-        return [future.result() for future in running]
-
-
-def _say_nothing(_what: str, _done_s: float, _whole_s: float) -> None:
-    """Progress of one seed is not shown: bars of parallel processes would write over each other."""
+    return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))

@@ -1,0 +1,168 @@
+"""Many jobs in parallel processes."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, MutableMapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from multiprocessing import connection
+from typing import NamedTuple, Protocol, TypeVar
+
+from threadpoolctl import threadpool_limits
+
+Tell = Callable[[float], None]
+"""Takes how far a job is, in seconds of robot time."""
+
+ResultT = TypeVar("ResultT")
+ResultT_co = TypeVar("ResultT_co", covariant=True)
+
+_LOOK_EVERY_S = 0.5
+_TELL_EVERY_S = 5.0
+
+
+class Job(Protocol[ResultT_co]):
+    """A piece of work that can be sent to another process."""
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        ...
+
+    @property
+    def robot_time_s(self) -> float:
+        """How much there is to simulate."""
+        ...
+
+    def run(self, tell: Tell) -> ResultT_co:
+        """Do it."""
+        ...
+
+
+class Standing(NamedTuple):
+    """How far the jobs are."""
+
+    done_s: float
+    """Robot time of all of them so far."""
+    running: tuple[str, ...]
+    """What is being done."""
+
+
+def run_jobs(
+    jobs: Sequence[Job[ResultT]],
+    processes: int,
+    *,
+    on_done: Callable[[int], None] = lambda _: None,
+    on_standing: Callable[[Standing], None] = lambda _: None,
+) -> list[ResultT]:
+    """Run all jobs, the longest first; results in the order of the jobs. With one process it is this one.
+
+    `on_done` hears the place of each job that is through, `on_standing` twice a second how far all are.
+    What a job raises ends all the others at once, and so does Ctrl-C.
+    """
+    # The longest last would leave the other processes idle at the end.
+    order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
+    if processes == 1 or len(jobs) == 1:
+        return _run_here(jobs, order, on_done, on_standing)
+    return _run_apart(jobs, order, min(processes, len(jobs)), on_done, on_standing)
+
+
+def _run_here(
+    jobs: Sequence[Job[ResultT]],
+    order: Sequence[int],
+    on_done: Callable[[int], None],
+    on_standing: Callable[[Standing], None],
+) -> list[ResultT]:
+    results: dict[int, ResultT] = {}
+    before_s = 0.0
+    for place in order:
+        job = jobs[place]
+        on_standing(Standing(before_s, (job.name,)))
+
+        def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
+            on_standing(Standing(before_s + done_s, (job.name,)))
+
+        with threadpool_limits(limits=1):
+            results[place] = job.run(_now_and_then(tell))
+        before_s += job.robot_time_s
+        on_done(place)
+    on_standing(Standing(before_s, ()))
+    return [results[place] for place in range(len(jobs))]
+
+
+def _run_apart(
+    jobs: Sequence[Job[ResultT]],
+    order: Sequence[int],
+    processes: int,
+    on_done: Callable[[int], None],
+    on_standing: Callable[[Standing], None],
+) -> list[ResultT]:
+    # Fresh interpreters: a fork would share the parent's threads and buses half-way.
+    context = multiprocessing.get_context("spawn")
+    results: dict[int, ResultT] = {}
+    with context.Manager() as manager:
+        clocks = manager.dict()
+        others = set(multiprocessing.active_children())
+        with ProcessPoolExecutor(processes, mp_context=context, initializer=_belong_to_the_parent) as pool:
+            try:
+                places: dict[Future[ResultT], int] = {
+                    pool.submit(_run_in_worker, jobs[place], place, clocks): place for place in order
+                }
+                waiting = set(places)
+                while waiting:
+                    done, waiting = wait(waiting, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
+                    for future in done:
+                        results[places[future]] = future.result()
+                        on_done(places[future])
+                    left = [place for place in order if place not in results]
+                    on_standing(_standing(jobs, left, processes, clocks))
+            except BaseException:
+                # Else what failed would be said when the jobs that run now are through, minutes later.
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in set(multiprocessing.active_children()) - others:
+                    process.terminate()
+                raise
+    return [results[place] for place in range(len(jobs))]
+
+
+def _run_in_worker(job: Job[ResultT], place: int, clocks: MutableMapping[int, float]) -> ResultT:
+    # As on the command line: this process shares the machine with its siblings.
+    with threadpool_limits(limits=1):
+        return job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))
+
+
+def _now_and_then(tell: Tell) -> Tell:
+    told_s = 0.0
+
+    def tell_now_and_then(done_s: float) -> None:
+        nonlocal told_s
+        if done_s - told_s >= _TELL_EVERY_S:
+            told_s = done_s
+            tell(done_s)
+
+    return tell_now_and_then
+
+
+def _standing(
+    jobs: Sequence[Job[ResultT]], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
+) -> Standing:
+    """`left`: places of the jobs that are not through, in the order in which they are begun."""
+    clock_s = dict(clocks)
+    running = left[:processes]
+    through_s = sum(job.robot_time_s for job in jobs) - sum(jobs[place].robot_time_s for place in left)
+    running_s = sum(min(clock_s.get(place, 0.0), jobs[place].robot_time_s) for place in running)
+    return Standing(through_s + running_s, tuple(jobs[place].name for place in running))
+
+
+def _belong_to_the_parent() -> None:
+    """Leave Ctrl-C to the parent, and end with it however it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    sentinel = parent.sentinel
+
+    def follow() -> None:
+        connection.wait([sentinel])
+        os._exit(1)
+
+    threading.Thread(target=follow, daemon=True, name="follow the parent").start()
