@@ -28,7 +28,6 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
-from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
     Command,
@@ -260,7 +259,7 @@ class Reception:
                 rows.append(
                     [
                         origin.command_id,
-                        lesson_text(record.event),
+                        record.text,
                         origin.teacher,
                         int(origin.phase),
                         origin.tick,

@@ -13,7 +13,6 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.undo import undo_lesson
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.lesson_book import lesson_text
 
 knowledge = typer.Typer(
     help="Look after what the robot was taught. Only undo changes the file, and only while no robot runs on it; "
@@ -73,9 +72,10 @@ def undo(
     ] = None,
 ) -> None:
     """Take a lesson back: what it made, changed, ended or rewarded is as it was before."""
-    undone = undo_lesson(file, lesson, teacher=_TEACHER, stamp=utc_now()).event
-    by = f"lesson {undone.origin.command_id} by {undone.origin.teacher}"
-    Console(highlight=False).print(f"{file}: undone: {lesson_text(undone)} ({by})", markup=False, soft_wrap=True)
+    undone = undo_lesson(file, lesson, teacher=_TEACHER, stamp=utc_now())
+    origin = undone.event.origin
+    by = f"lesson {origin.command_id} by {origin.teacher}"
+    Console(highlight=False).print(f"{file}: undone: {undone.text} ({by})", markup=False, soft_wrap=True)
 
 
 @knowledge.command()

@@ -13,7 +13,7 @@ from anyio.streams.memory import MemoryObjectSendStream
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import Phase, rla_title
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.hello import Hello
@@ -288,8 +288,7 @@ def sentence_of(state: State) -> str:
     if state.action is not None:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"
-        of = f" of {state.behaviour}" if state.behaviour else ""
-        return f"{state.action} by RLA {state.rla}{of}"
+        return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
     return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
 
 

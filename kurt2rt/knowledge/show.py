@@ -13,7 +13,6 @@ from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import follow_ups
 from kurt2rt.perception.definition import AVERAGED
-from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.rla.rla import ActionReplaced, LessonUndone, Rla, RlaDeleted, RlaRewarded, SessionBegun
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem
 
@@ -76,7 +75,7 @@ def render_lessons(journal: Journal, limit: int | None = None) -> RenderableType
     for record in records[::-1][:limit]:
         origin = record.event.origin
         table.add_row(
-            _plain(lesson_text(record.event)),
+            _plain(record.text),
             _plain(origin.command_id),
             _plain(_when_and_who(stamps[origin.command_id], origin.teacher)),
             _plain(undone_by.get(origin.command_id, "")),

@@ -1,8 +1,8 @@
 """Which lessons were taught, and which of them still stand: what an undo may take back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from kurt2rt.rla.rla import ActionReplaced, Lesson, RlaCreated, RlaDeleted, RlaRewarded
+from kurt2rt.rla.rla import ActionReplaced, Lesson, RlaCreated, RlaDeleted, RlaRewarded, rla_title
 
 
 @dataclass(frozen=True, slots=True)
@@ -11,24 +11,27 @@ class LessonRecord:
 
     event: Lesson
     undone: bool = False
+    behaviour: str = ""
+    """The taught behaviour of its RLA; empty where the task has only one."""
+
+    @property
+    def text(self) -> str:
+        """In a few words, for a teacher."""
+        rla = rla_title(rla_of(self.event), self.behaviour)
+        match self.event:
+            case RlaCreated(taught):
+                return f"{rla} taught: {taught.action}"
+            case ActionReplaced(_, action, instead_of, _):
+                return f"{rla} corrected: {action} instead of {instead_of}"
+            case RlaDeleted():
+                return f"{rla} deleted"
+            case RlaRewarded(_, value, _, _):
+                return f"{rla} {'rewarded' if value > 0 else 'punished'}"
 
 
 def rla_of(lesson: Lesson) -> int:
     """Id of the RLA that a lesson is about."""
     return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
-
-
-def lesson_text(lesson: Lesson) -> str:
-    """A lesson in a few words, for a teacher."""
-    match lesson:
-        case RlaCreated(rla):
-            return f"{rla.title} taught: {rla.action}"
-        case ActionReplaced(rla_id, action, instead_of, _):
-            return f"RLA {rla_id} corrected: {action} instead of {instead_of}"
-        case RlaDeleted(rla_id, _):
-            return f"RLA {rla_id} deleted"
-        case RlaRewarded(rla_id, value, _, _):
-            return f"RLA {rla_id} {'rewarded' if value > 0 else 'punished'}"
 
 
 class LessonBook:
@@ -40,6 +43,8 @@ class LessonBook:
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
         self._standing_of: dict[int, list[int]] = {}
+        self._behaviour_of: dict[int, str] = {}
+        """Of each RLA that ever lived."""
         self._newest: list[int] = []
         """Places of all lessons but the undone ones at the end: each is put on and taken off once."""
 
@@ -64,7 +69,9 @@ class LessonBook:
         self._place[lesson.origin.command_id] = place
         self._standing_of.setdefault(rla_of(lesson), []).append(place)
         self._newest.append(place)
-        self._records.append(LessonRecord(lesson))
+        if isinstance(lesson, RlaCreated):
+            self._behaviour_of[lesson.rla.rla_id] = lesson.rla.behaviour
+        self._records.append(LessonRecord(lesson, behaviour=self._behaviour_of[rla_of(lesson)]))
         self.standing += 1
 
     def why_not_undo(self, command_id: str) -> str | None:
@@ -74,21 +81,22 @@ class LessonBook:
             return f"there is no lesson {command_id!r}"
         if record.undone:
             return f"lesson {command_id!r} was undone already"
-        newest = self._records[self._standing_of[rla_of(record.event)][-1]].event
-        if newest is not record.event:
-            later = newest.origin.command_id
-            return f"lesson {later!r} came after {command_id!r} ({lesson_text(newest)}); undo that one first"
+        newest = self._records[self._standing_of[rla_of(record.event)][-1]]
+        if newest is not record:
+            later = newest.event.origin.command_id
+            return f"lesson {later!r} came after {command_id!r} ({newest.text}); undo that one first"
         return None
 
     def strike(self, command_id: str) -> Lesson:
         """Mark a lesson as undone, for which `why_not_undo` has no reason against it; returns it."""
         place = self._place[command_id]
-        lesson = self._records[place].event
+        record = self._records[place]
+        lesson = record.event
         pile = self._standing_of[rla_of(lesson)]
         pile.pop()
         if not pile:
             del self._standing_of[rla_of(lesson)]
-        self._records[place] = LessonRecord(lesson, undone=True)
+        self._records[place] = replace(record, undone=True)
         self.standing -= 1
         while self._newest and self._records[self._newest[-1]].undone:
             self._newest.pop()

@@ -30,6 +30,11 @@ class Origin:
     """Tick of the run in which the command acted."""
 
 
+def rla_title(rla_id: int, behaviour: str) -> str:
+    """How an RLA is spoken of: RLA 17, or RLA 17 of turn_left where the taught behaviour has a name."""
+    return f"RLA {rla_id} of {behaviour}" if behaviour else f"RLA {rla_id}"
+
+
 @dataclass(frozen=True, slots=True)
 class Rla:
     """A rule-like association (paper, III.A). The expectation is left blank until the robot has used it."""
@@ -48,8 +53,8 @@ class Rla:
 
     @property
     def title(self) -> str:
-        """How it is spoken of, such as RLA 17, or RLA 17 of turn_left."""
-        return f"RLA {self.rla_id} of {self.behaviour}" if self.behaviour else f"RLA {self.rla_id}"
+        """How it is spoken of."""
+        return rla_title(self.rla_id, self.behaviour)
 
 
 @dataclass(frozen=True, slots=True)

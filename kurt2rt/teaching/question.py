@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.rla.rla import rla_title
 from kurt2rt.rla.rla_system import Match
 
 
@@ -33,12 +34,13 @@ class Question:
     """The taught behaviour that is wanted; empty where the task has only one."""
 
     def __str__(self) -> str:
-        of = f" of {self.behaviour}" if self.behaviour else ""
         if self.nearest_rla is None:
+            of = f" of {self.behaviour}" if self.behaviour else ""
             return f"I know nothing{of} yet, teach me"
         features = ", ".join(f"{each.name} {each.here:.0f} not {each.in_condition:.0f}" for each in self.differing)
+        nearest = rla_title(self.nearest_rla, self.behaviour)
         return (
-            f"I don't know this situation, teach me: nearest is RLA {self.nearest_rla}{of} ({self.action}) "
+            f"I don't know this situation, teach me: nearest is {nearest} ({self.action}) "
             f"at {self.distance:.0f} of {self.radius:.0f}; {features}"
         )
 

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.lesson_book import lesson_text
 from kurt2rt.rla.rla import (
     ActionReplaced,
     LessonUndone,
@@ -308,7 +307,7 @@ class School:
         self._refuse(why_not)
         record = self._level.system.lesson(lesson)
         assert record is not None
-        return f"undone: {lesson_text(record.event)}", LessonUndone(lesson, self._origin(command, tick))
+        return f"undone: {record.text}", LessonUndone(lesson, self._origin(command, tick))
 
     def _require_action(self, action: str) -> None:
         if action not in self._level.repertoire:

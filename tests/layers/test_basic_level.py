@@ -5,9 +5,10 @@ import itertools
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError
+from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.decision import Cause
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.rla.rla import RlaCreated
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.layers.helpers import MINIMUM_TICKS, Counted, SmallLevel
 from tests.rla.helpers import created, deleted, replaced
@@ -139,3 +140,58 @@ def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
     system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
     with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
         BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, Wanted())
+
+
+TURNS = ("straight_on", "turn_left")
+STRAIGHT_AT_0 = created(1, (0.0,), "a", behaviour="straight_on")
+LEFT_AT_1 = created(2, (1.0,), "b", behaviour="turn_left")
+
+
+def test_rlas_of_another_taught_behaviour_never_answer_however_near_they_are() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
+    decision = small.at(1.0)
+    assert (decision.action, decision.rla_id) == ("a", 1)
+    assert decision.match is not None
+    assert decision.match.runner_up is None
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.action, decision.rla_id) == ("b", 2)
+
+
+def test_of_a_behaviour_that_was_never_taught_it_knows_nothing() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, behaviours=TURNS)
+    assert small.at(0.0).driving
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.asking, decision.match) == (True, None)
+
+
+def test_a_held_action_yields_at_once_when_another_behaviour_is_wanted() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
+    small.at(0.0)
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
+    small.wanted.pursue("straight_on")  # and back again, in the very next tick
+    assert small.at(0.0).action == "a"
+
+
+def test_to_want_the_same_again_does_not_cut_an_action_short() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, created(2, (8.0,), "b", behaviour="straight_on"), behaviours=TURNS)
+    small.at(0.0)
+    small.wanted.pursue("straight_on")
+    assert small.at(8.0).cause is Cause.HELD
+
+
+@pytest.mark.parametrize(
+    ("events", "behaviours", "problem"),
+    [
+        ((A_AT_0,), TURNS, "RLA 1 belongs to the taught behaviour '', .*: 'straight_on', 'turn_left'$"),
+        ((STRAIGHT_AT_0, LEFT_AT_1), ("straight_on",), "RLA 2 belongs to the taught behaviour 'turn_left', which the"),
+    ],
+)
+def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
+    events: tuple[RlaCreated, ...], behaviours: tuple[str, ...], problem: str
+) -> None:
+    with pytest.raises(UnknownBehaviourError, match=problem):
+        SmallLevel(*events, behaviours=behaviours)

@@ -36,3 +36,13 @@ def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     driven(level, FAR, Cause.STOPPED)
     driven(level, NEAR)
     assert (actions["a"].starts, actions["b"].starts) == (1, 2)
+
+
+def test_it_follows_the_behaviour_that_is_wanted_and_the_held_action_yields_at_once() -> None:
+    wanted = Wanted(("one", "other"))
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, wanted)
+    assert driven(level, FAR).action == "a"
+    wanted.pursue("other")
+    assert [driven(level, FAR).action for _ in range(2 * MINIMUM_TICKS)] == ["b"] * 2 * MINIMUM_TICKS
+    wanted.pursue("one")
+    assert driven(level, FAR).action == "a"

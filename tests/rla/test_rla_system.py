@@ -186,6 +186,8 @@ def test_the_knowledge_hash_tells_every_difference_in_what_is_known() -> None:
         system_of(created(1, (1.0, math.nextafter(2.0, 3.0)), "forward")),
         system_of(created(1, (1.0, 2.0), "back")),
         system_of(created(1, (1.0, 2.0), "forward", radius=5.0)),
+        system_of(created(1, (1.0, 2.0), "forward", behaviour="turn_left")),
+        system_of(created(1, (1.0, 2.0), "forward", behaviour="turn_right")),
         system_of(first, created(2, (3.0, 4.0))),
     ]
     assert len({system.knowledge_hash() for system in (base, *others)}) == len(others) + 1
@@ -220,3 +222,71 @@ def test_a_weight_of_zero_leaves_a_feature_out() -> None:
     match = system.match(np.array([4.0, -1e9]))
     assert match is not None
     assert match.distance == 4.0
+
+
+def test_the_knowledge_hash_of_a_task_without_named_behaviours_is_what_it_always_was() -> None:
+    system = system_of(created(1, (1.0, 2.0), "forward"), created(2, (3.0, 4.0), "back", radius=5.0))
+    assert system.knowledge_hash() == "b9a93b6acbee93fddd099ccc5652afdfc5d62e6f1f64db3d67a8c0b3e27715b9"
+
+
+def test_only_rlas_of_the_same_behaviour_compete() -> None:
+    system = system_of(
+        created(1, (0.0, 0.0), "forward", behaviour="straight_on"),
+        created(2, (0.0, 0.0), "back", behaviour="turn_left"),
+        created(3, (3.0, 0.0), "spin_left", behaviour="turn_left"),
+    )
+    match = system.match(np.array([0.0, 0.0]), "turn_left")
+    assert match is not None
+    assert match.runner_up is not None
+    assert (match.rla.rla_id, match.distance, match.runner_up.rla_id) == (2, 0.0, 3)
+    assert system.match(np.array([0.0, 0.0])) is None
+    assert system.match(np.array([0.0, 0.0]), "turn_right") is None
+    system.apply(deleted(2))
+    match = system.match(np.array([0.0, 0.0]), "turn_left")
+    assert match is not None
+    assert (match.rla.rla_id, match.runner_up) == (3, None)
+
+
+def test_a_corrected_rla_stays_what_it_belongs_to() -> None:
+    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), replaced(1, "back", "forward"))
+    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("back", "turn_left")]
+    system.apply(undone("correction-1"))
+    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("forward", "turn_left")]
+
+
+_BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
+_STEPS = st.lists(st.tuples(st.sampled_from("ccccrdu"), st.integers(0, 40), st.sampled_from(_BEHAVIOURS)), max_size=40)
+
+
+@given(_STEPS)
+def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: list[tuple[str, int, str]]) -> None:
+    together, alone = system_of(), {name: system_of() for name in _BEHAVIOURS}
+    for count, (act, number, behaviour) in enumerate(steps):
+        name, living, lessons = f"step-{count}", together.rlas, together.lessons
+        event: TeachingEvent
+        if act == "c":
+            point = (number % 5 / 3, number % 2 * 1e-9)  # few places, so that many are equally near
+            event = created(together.next_id, point, "forward", command_id=name, behaviour=behaviour)
+        elif act == "u" and lessons:
+            event = undone(lessons[-1 - number % len(lessons)].event.origin.command_id)
+            behaviour = lessons[-1 - number % len(lessons)].behaviour
+        elif living and act in "rd":
+            rla, behaviour = living[number % len(living)], living[number % len(living)].behaviour
+            event = replaced(rla.rla_id, "back", rla.action, name) if act == "r" else deleted(rla.rla_id, name)
+        else:
+            continue
+        try:
+            together.apply(event)
+        except UnfitEventError:  # an undo that may not be: nor may it there
+            with pytest.raises(UnfitEventError):
+                alone[behaviour].apply(event)
+        else:
+            alone[behaviour].apply(event)
+
+    for behaviour, system in alone.items():
+        assert tuple(rla for rla in together.rlas if rla.behaviour == behaviour) == system.rlas
+        for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [-7.0, 1e5]):
+            here = np.array(situation)
+            assert together.match(here, behaviour) == system.match(here, behaviour)  # bit for bit
+    assert together.standing_lessons == sum(system.standing_lessons for system in alone.values())
+    assert [rla.rla_id for rla in together.rlas] == sorted(rla.rla_id for rla in together.rlas)

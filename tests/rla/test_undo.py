@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.rla.lesson_book import LessonRecord, lesson_text, rla_of
+from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import Lesson, TeachingEvent
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
 from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone
@@ -119,8 +119,26 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
     ],
 )
 def test_a_lesson_is_told_in_a_few_words(lesson: Lesson, text: str) -> None:
-    assert lesson_text(lesson) == text
+    assert LessonRecord(lesson).text == text
     assert rla_of(lesson) == 1
+
+
+@pytest.mark.parametrize(
+    ("event", "text"),
+    [
+        (replaced(1, "back", "forward"), "RLA 1 of turn_left corrected: back instead of forward"),
+        (deleted(1), "RLA 1 of turn_left deleted"),
+        (rewarded(1), "RLA 1 of turn_left rewarded"),
+    ],
+)
+def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, text: str) -> None:
+    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), event)
+    assert [record.text for record in system.lessons] == ["RLA 1 of turn_left taught: forward", text]
+    problem = system.why_not_undo("lesson-1")
+    assert problem is not None
+    assert f"({text})" in problem
+    system.apply(undone(event.origin.command_id))
+    assert (system.lessons[-1].text, system.lessons[-1].undone) == (text, True)
 
 
 _STEPS = st.lists(

@@ -1,7 +1,7 @@
 """Commands in one line each."""
 
 from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.commands import Correct, DeleteRla, ReplaceAction, Resume, SetPhase, Stop, Teach
+from kurt2rt.teaching.commands import Correct, DeleteRla, Pursue, ReplaceAction, Resume, SetPhase, Stop, Teach
 
 
 def teach(action: str, command_id: str = "t") -> Teach:
@@ -30,3 +30,7 @@ def resume(command_id: str = "resume") -> Resume:
 
 def set_phase(phase: Phase, command_id: str = "phase") -> SetPhase:
     return SetPhase(command_id, "Ann", phase)
+
+
+def pursue(behaviour: str, command_id: str = "pursue") -> Pursue:
+    return Pursue(command_id, "Ann", behaviour)

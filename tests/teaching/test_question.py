@@ -46,3 +46,14 @@ def test_before_the_first_lesson_it_asks_without_comparison() -> None:
     question = ask(None, np.zeros(7), np.ones(7), NAMES)
     assert (question.nearest_rla, question.action, question.differing) == (None, None, ())
     assert str(question) == "I know nothing yet, teach me"
+
+
+def test_where_behaviours_have_names_it_asks_about_the_one_that_is_wanted() -> None:
+    assert str(ask(None, np.zeros(7), np.ones(7), NAMES, "turn_left")) == "I know nothing of turn_left yet, teach me"
+    system = RlaSystem(7, 300.0)
+    system.apply(created(1, (0,) * 7, "curve_left", behaviour="turn_left"))
+    here = np.array((0, 0, 400, 0, 0, 0, 0))
+    question = ask(system.match(here, "turn_left"), here, system.weights, NAMES, "turn_left")
+    assert str(question) == (
+        "I don't know this situation, teach me: nearest is RLA 1 of turn_left (curve_left) at 400 of 300; s3 400 not 0"
+    )

@@ -17,9 +17,9 @@ def remembered(*ticks: int, capacity: int = 10) -> RecentDecisions:
     return recent
 
 
-def remember(recent: RecentDecisions, tick: int, *, blind: bool = False) -> None:
+def remember(recent: RecentDecisions, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
-    recent.remember(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None), blind=blind)
+    recent.remember(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None), behaviour, blind=blind)
 
 
 @pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
@@ -70,3 +70,12 @@ def test_a_thousand_ticks_are_kept() -> None:
     for tick in range(1, 1002):
         remember(recent, tick)
     assert [recent.knows(tick) for tick in (1, 2, 1001)] == [False, True, True]
+
+
+def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
+    recent = RecentDecisions(2, capacity=2)
+    remember(recent, 1, "straight_on")
+    remember(recent, 2, "turn_left")
+    assert [recent.behaviour(tick) for tick in (1, 2)] == ["straight_on", "turn_left"]
+    remember(recent, 3)
+    assert [recent.behaviour(tick) for tick in (2, 3)] == ["turn_left", ""]

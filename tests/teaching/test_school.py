@@ -42,7 +42,7 @@ from kurt2rt.teaching.commands import (
 from kurt2rt.teaching.school import School
 from tests.layers.helpers import RADIUS, SmallLevel, situation
 from tests.rla.helpers import created
-from tests.teaching.helpers import correct, delete, replace_action, resume, set_phase, stop, teach
+from tests.teaching.helpers import correct, delete, pursue, replace_action, resume, set_phase, stop, teach
 
 SHARE = 0.5
 BORDER = SHARE * RADIUS
@@ -51,8 +51,10 @@ BORDER = SHARE * RADIUS
 class Lesson:
     """A school over the actions a, b and c; each command comes one tick after the other."""
 
-    def __init__(self, *events: TeachingEvent, taken: tuple[str, ...] = ()) -> None:
-        self.small = SmallLevel(*events)
+    def __init__(
+        self, *events: TeachingEvent, taken: tuple[str, ...] = (), behaviours: tuple[str, ...] = ("",)
+    ) -> None:
+        self.small = SmallLevel(*events, behaviours=behaviours)
         self.school = School(
             self.small.level,
             Authority(self.small.actions, attended=False),
@@ -76,7 +78,8 @@ class Lesson:
         for _ in range(ticks):
             self.tick += 1
             decision = self.small.at(place, Cause.BLIND if blind else None)
-            self.school.recent.remember(self.tick, situation(place), decision, blind=blind)
+            behaviour = self.small.wanted.behaviour
+            self.school.recent.remember(self.tick, situation(place), decision, behaviour, blind=blind)
         return self.tick
 
     def drive(self, teacher: str = "Ann", hold: int = 1) -> str | None:
@@ -568,3 +571,79 @@ def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
     lesson.say(Stop("2", "Ben"))
     lesson.say(EndSession("3", "Ann"))
     assert lesson.school.stopped_because == "Ben said stop"
+
+
+# Several taught behaviours.
+
+TURNS = ("straight_on", "turn_left", "turn_right")
+
+
+def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    assert lesson.say(teach("a", "t-1")).text == "RLA 1 of straight_on taught: a"
+    assert lesson.say(pursue("turn_left", "p-1")) == CommandResult("p-1", True, "turn_left is wanted")
+    assert lesson.small.at(0.0).asking  # what it knows of straight_on is of no use here
+    assert lesson.say(teach("b", "t-2")).text == "RLA 2 of turn_left taught: b"
+    assert lesson.say(correct("c", "c-1"), place=1.0).text == "RLA 2 of turn_left corrected: c instead of b"
+    assert [(rla.behaviour, rla.action) for rla in lesson.small.level.system.rlas] == [
+        ("straight_on", "a"),
+        ("turn_left", "c"),
+    ]
+    lesson.say(pursue("straight_on", "p-2"))
+    assert lesson.small.at(0.0).action == "a"
+
+
+def test_to_pursue_another_behaviour_is_no_lesson_and_counts_once() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(pursue("turn_left", "p-1"))
+    lesson.say(pursue("turn_right", "p-2"))
+    assert lesson.say(pursue("turn_left", "p-1")).text == "had been taken already; counted once"
+    assert (lesson.small.wanted.behaviour, lesson.events) == ("turn_right", [])
+
+
+@pytest.mark.parametrize(("behaviours", "known"), [(TURNS, ", ".join(TURNS)), (("",), "one, without a name")])
+def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(behaviours: tuple[str, ...], known: str) -> None:
+    lesson = Lesson(behaviours=behaviours)
+    result = lesson.say(pursue("fly"))
+    assert (result.accepted, result.text) == (False, f"there is no taught behaviour 'fly'; this task has: {known}")
+    assert lesson.small.wanted.behaviour == behaviours[0]
+    assert lesson.school.authority.teacher is None
+
+
+def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(Take("take", "Bob"))
+    lesson.say(Stop("stop", "Bob"))
+    assert not lesson.say(pursue("turn_left")).accepted
+    assert lesson.small.wanted.behaviour == "straight_on"
+    lesson.say(Take("take it", "Ann"))
+    assert lesson.say(pursue("turn_left")).accepted
+    assert lesson.school.stopped_because == "Bob said stop"
+
+
+@pytest.mark.parametrize("kind", [Teach, Correct])
+def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teach | Correct]) -> None:
+    lesson = Lesson(behaviours=TURNS)
+    asked = lesson.go_on(2.5)
+    lesson.say(pursue("turn_left"))
+    lesson.go_on(2.5, 20)
+    assert lesson.say(kind("late", "Ann", "a", asked), place=80.0).text == "RLA 1 of straight_on taught: a"
+    assert lesson.small.at(2.5).asking
+    lesson.say(pursue("straight_on", "back"))
+    assert lesson.small.at(2.5).action == "a"
+
+
+def test_a_correction_of_an_old_picture_corrects_an_rla_of_what_was_wanted_then() -> None:
+    lesson = Lesson(
+        created(1, (0.0,), "a", behaviour="straight_on"),
+        created(2, (0.0,), "b", behaviour="turn_left"),
+        behaviours=TURNS,
+    )
+    wrong = lesson.go_on(0.0)
+    lesson.say(pursue("turn_left"))
+    praised = lesson.go_on(0.0, 20)
+    assert lesson.say(Correct("c-1", "Ann", "c", wrong)).text == "RLA 1 of straight_on corrected: c instead of a"
+    assert lesson.say(Reward("r-1", "Ann", 1, praised)).text == "RLA 2 of turn_left rewarded"
+    assert lesson.say(Undo("u-1", "Ann", "c-1")).text == ("undone: RLA 1 of straight_on corrected: c instead of a")
+    assert lesson.say(delete(1)).text == "RLA 1 of straight_on deleted"  # by its id, whatever is wanted
+    assert lesson.actions == {2: "b"}

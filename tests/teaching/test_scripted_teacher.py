@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,15 @@ FAR, NEAR = 100, 500
 
 
 class NearIsB:
-    """Says b where the first count is high, else a."""
+    """Says b where the first count is high, else a; for the behaviour `other` c."""
 
-    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - all are one to it
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        if behaviour == "other":
+            return "c"
         return "b" if infrared_counts[0] > 300 else "a"
 
 
-def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: float) -> ScriptedTeacher:
+def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) -> ScriptedTeacher:
     settings = TeacherSettings(**{"reaction_s": 1.0, "patience_s": 0.5, "error_rate": 0.0, **changes})
     person = ScriptedTeacher(NearIsB(), "abcd", settings, period_s=0.01, seed=seed, session="s")
     if phase is not Phase.SUPERVISED:
@@ -188,3 +191,20 @@ def test_without_such_a_setting_it_corrects_for_ever() -> None:
 
 def test_what_is_wanted_now_is_said_like_everything_else() -> None:
     assert teacher().pursue("turn_left") == Pursue("s-2", NAME, "turn_left")
+
+
+def wanting(behaviour: str, seen: TickRecord) -> TickRecord:
+    return seen._replace(behaviour=behaviour)
+
+
+def test_it_answers_for_the_behaviour_that_is_wanted() -> None:
+    answers = said(teacher(), [wanting("other", asking())] * REACTION_TICKS)
+    assert answers == {REACTION_TICKS: Teach("s-2", NAME, "c")}
+
+
+def test_when_another_behaviour_is_wanted_what_was_asked_and_what_was_wrong_is_over() -> None:
+    person = teacher()
+    said(person, [asking()] * (REACTION_TICKS - 1))
+    assert said(person, [wanting("other", doing("c"))] * REACTION_TICKS) == {}
+    said(person, [doing("b")] * (PATIENCE_TICKS - 1))
+    assert list(said(person, [wanting("other", doing("b"))] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
