@@ -1,0 +1,34 @@
+"""What sensors see, in metres."""
+
+from collections.abc import Callable
+
+from hal.robot import HIGHEST_COUNTS
+from hal.robot_settings import InfraredSettings
+
+Look = Callable[[tuple[int, ...]], tuple[float, ...]]
+
+LEFT_FRONT_TO_BACK = ("s1", "s3", "s4", "s2")
+RIGHT_FRONT_TO_BACK = ("s5", "s7", "s8", "s6")
+FRONT = ("s9", "s11", "s10")
+REAR = ("s12", "s14", "s13")
+FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, REAR_LEFT_EDGE, REAR_RIGHT_EDGE = "s15", "s16", "s17", "s18"
+
+
+class Distances:
+    """Turns counts into distances from the sensors' faces, by the sensors' own law."""
+
+    def __init__(self, infrared: InfraredSettings) -> None:
+        # Looked up, for a teacher asks in every tick of a lesson.
+        self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
+        self._index = {name: index for index, name in enumerate(infrared.names)}
+        self._x_m = {name: sensor.x_m for name, sensor in zip(infrared.names, infrared.sensors, strict=True)}
+
+    def of(self, *names: str) -> Look:
+        """A look through these sensors: distances in their order."""
+        distance_m = self._distance_m
+        places = tuple(self._index[name] for name in names)
+        return lambda counts: tuple([distance_m[counts[place]] for place in places])
+
+    def ahead_m(self, *names: str) -> tuple[float, ...]:
+        """How far ahead of the robot's centre these sensors sit."""
+        return tuple(self._x_m[name] for name in names)
