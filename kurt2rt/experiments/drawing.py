@@ -55,7 +55,7 @@ def _draw_drive(
 
 def _draw_growth(axes: Axes, growth: Sequence[int], task: TaskSettings) -> None:
     axes.plot(range(1, len(growth) + 1), growth, color=_TRAIL, linewidth=2.0)
-    if task.paper.teaching_s is not None:
+    if task.paper.teaching_s:
         axes.plot([task.paper.teaching_s], [task.paper.rlas], "k*", markersize=12, linestyle="none", label="paper")
     axes.axvline(task.teaching.supervised_s, color=_TEACHER, linestyle="--", label="corrections begin (phase 2)")
     axes.set_xlabel("teaching, s of robot time")

@@ -101,13 +101,13 @@ class PaperResult(Settings):
     """What the paper reports for this task (section VII)."""
 
     rlas: int
-    teaching_s: float | None = None
-    """None where the paper does not say it."""
+    teaching_s: Seconds = 0.0
+    """0: the paper does not say it."""
 
     @property
     def teaching_told(self) -> str:
         """The teaching time as it is shown, in whole seconds."""
-        return "not told" if self.teaching_s is None else f"{self.teaching_s:.0f}"
+        return f"{self.teaching_s:.0f}" if self.teaching_s else "not told"
 
 
 class TaskSettings(Settings):
