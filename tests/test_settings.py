@@ -30,6 +30,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "faults": FaultTable,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
+TASK = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()
 REPERTOIRE = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
 
 
@@ -238,6 +239,29 @@ def test_a_wrong_action_is_explained_by_its_own_kind(old: str, new: str, told: s
     path = tmp_path / "repertoire.yaml"
     path.write_text(REPERTOIRE.replace(old, new, 1))
     assert told in refusal(path, RepertoireSettings)
+
+
+@pytest.mark.parametrize(
+    ("behaviours", "told"),
+    [
+        ("[]", "behaviours: "),
+        ("['']", "behaviours.0: "),
+        ("[turn_left, Turn left]", "behaviours.1: "),
+        ("[turn_left, turn_left]", "each name may stand here once"),
+        ("turn_left", "behaviours: "),
+    ],
+)
+def test_what_a_task_teaches_has_names_that_differ(behaviours: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "task.yaml"
+    path.write_text(TASK.replace("repertoire: basic", f"repertoire: basic\nbehaviours: {behaviours}", 1))
+    assert told in refusal(path, TaskSettings)
+
+
+def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_path: Path) -> None:
+    assert load_task("wall_following").behaviours == ("",)
+    path = tmp_path / "task.yaml"
+    path.write_text(TASK.replace("repertoire: basic", "repertoire: basic\nbehaviours: [turn_left, turn_right]", 1))
+    assert load_task(str(path)).behaviours == ("turn_left", "turn_right")
 
 
 def test_several_mistakes_are_counted(tmp_path: Path) -> None:

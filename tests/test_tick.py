@@ -23,7 +23,7 @@ from kurt2rt.teaching.school import School
 from kurt2rt.tick import Tick, TickRecord
 from kurt2rt.timing.ledger import Ledger
 from tests.perception.helpers import READINGS, SENSORS, WHEELS, definition
-from tests.teaching.helpers import correct, delete, resume, set_phase, stop, teach
+from tests.teaching.helpers import correct, delete, pursue, resume, set_phase, stop, teach
 
 FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
 RADIUS = 50.0
@@ -76,7 +76,7 @@ class Notebook:
 class Corridor:
     """All that stands round a Tick, and one tick in a call."""
 
-    def __init__(self, *, attended: bool = False) -> None:
+    def __init__(self, *, attended: bool = False, behaviours: tuple[str, ...] = ("",)) -> None:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
         self.held_up_s = 0.0
@@ -84,7 +84,7 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
-        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=Wanted())
+        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=Wanted(behaviours))
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
         self.ledger = Ledger()
@@ -198,6 +198,23 @@ def test_commands_of_one_tick_are_carried_out_in_the_order_they_came(corridor: C
     assert [result.accepted for result in record.results] == [False, True, True, True]
     assert (record.decision.rla_id, record.decision.action) == (2, "back")
     assert [event.origin.command_id for event in corridor.notebook.events] == ["t", "d", "t-2"]
+
+
+def test_what_it_pursues_changes_what_it_does_in_the_very_tick_that_takes_it() -> None:
+    corridor = Corridor(behaviours=("straight_on", "turn_left"))
+    corridor.run(100, teach("forward", "1"))
+    record = corridor.run(100, pursue("turn_left", "2"))
+    assert (record.behaviour, record.decision.cause, record.grant.wheel_speeds) == (
+        "turn_left",
+        Cause.UNKNOWN,
+        STANDSTILL,
+    )
+    corridor.run(100, teach("back", "3"))
+    record = corridor.run(100, pursue("straight_on", "4"))
+    assert (record.behaviour, record.decision.action, record.decision.cause) == ("straight_on", "forward", Cause.RLA)
+    # What came before it in the same tick is about what was wanted before it.
+    corridor.run(900, teach("back", "5"), pursue("turn_left", "6"))
+    assert [rla.behaviour for rla in corridor.system.rlas] == ["straight_on", "turn_left", "straight_on"]
 
 
 def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:

@@ -87,16 +87,18 @@ class Desk:
         keys: Keys | None = None,
         keeper: LessonKeeper | None = None,
         longest_wait_s: float = LONGEST_WAIT_S,
+        behaviours: tuple[str, ...] = ("",),
     ) -> None:
-        """`keeper` takes the lessons in place of the notebook."""
+        """`keeper` takes the lessons in place of the notebook; `behaviours` is what the task teaches."""
         self.robot = WideRobot()
         self.notebook = Notebook()
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
         clock = LockstepClock(lambda: None)
+        task = TASK.model_copy(update={"behaviours": behaviours})
         self.runtime: Runtime = build_runtime(
-            self.robot, ROBOT, TASK, (), keeper or self.notebook, clock, attended=True
+            self.robot, ROBOT, task, (), keeper or self.notebook, clock, attended=True
         )
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)

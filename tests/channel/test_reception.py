@@ -516,3 +516,30 @@ async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_wor
     ):
         refused = await desk.ask(request)
         assert (why(refused), refused.body["text"]) == ("refused", "that cannot be")
+
+
+# Several taught behaviours.
+
+
+async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
+    reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
+    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "turn_left is wanted")
+    reply = await desk.ask(desk.command(PursueRequest, "fly"))
+    assert why(reply) == "refused"
+    assert reply.body["text"] == "there is no taught behaviour 'fly'; this task has: straight_on, turn_left"
+    assert desk.runtime.wanted.behaviour == "turn_left"
+
+
+async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    seen = desk.tick
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    await desk.ask(desk.answer("forward", of=seen))
+    await desk.ask(desk.answer("forward"))
+    lessons = (await desk.ask(LessonsRequest(2))).body["lessons"]
+    assert [text for _, text, *_ in lessons] == [
+        "RLA 2 of turn_left taught: forward",
+        "RLA 1 of straight_on taught: forward",
+    ]

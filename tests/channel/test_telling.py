@@ -5,7 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from kurt2rt.channel.requests import BehaviourRequest, PhaseRequest, ResumeRequest, SessionRequest, TakeRequest
+from kurt2rt.channel.requests import (
+    BehaviourRequest,
+    PhaseRequest,
+    PursueRequest,
+    ResumeRequest,
+    SessionRequest,
+    TakeRequest,
+)
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.rla.rla import Phase
@@ -169,3 +176,13 @@ def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk)
     assert picture(desk) == replace(first, missed_ticks=3)
     assert {picture(desk).late_p99_ms for _ in range(18)} == {0.0}
     assert picture(desk).late_p99_ms == pytest.approx(4.0)
+
+
+async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    await desk.ask(desk.answer("forward"))
+    told = picture(desk)
+    assert (told.behaviour, told.nearest, told.cause) == ("straight_on", 1, "unattended")
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    told = picture(desk)
+    assert (told.behaviour, told.nearest, told.cause) == ("turn_left", None, "unknown")

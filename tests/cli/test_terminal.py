@@ -18,15 +18,17 @@ from kurt2rt.channel.requests import (
     HelloRequest,
     LessonsRequest,
     PhaseRequest,
+    PursueRequest,
     Request,
     ResumeRequest,
     RewardRequest,
     StopRequest,
     TakeRequest,
 )
-from kurt2rt.cli.terminal import TerminalTeacher
+from kurt2rt.cli.terminal import TerminalTeacher, question_in, sentence_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
+from tests.channel.states import state
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO, Clock, seen
 
@@ -270,3 +272,26 @@ async def test_after_a_restart_of_the_robot_it_is_taken_only_when_nobody_else_te
                 await desk.reads("anna teaches now; type take to teach yourself")
                 assert robot.all_of(TakeRequest) == []
             await stack.aclose()
+
+
+async def test_where_several_behaviours_are_taught_the_terminal_says_which_to_follow(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("taught behaviours: straight_on, turn_left")
+        await desk.reads("/take is done")
+        desk.type("pursue turn_left")
+        await desk.reads("/pursue is done")
+        assert [each.behaviour for each in robot.all_of(PursueRequest)] == ["turn_left"]
+        desk.type("pursue")
+        await desk.reads("pursue NAME ")
+
+
+def test_a_question_is_about_the_behaviour_that_is_wanted() -> None:
+    told = str(question_in(state(nearest=None, behaviour="turn_left")))
+    assert told == "I know nothing of turn_left yet, teach me"
+
+
+def test_what_drives_is_told_with_the_behaviour_that_it_belongs_to() -> None:
+    assert sentence_of(state(action="forward", rla=3)) == "forward by RLA 3"
+    assert sentence_of(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"

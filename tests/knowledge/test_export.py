@@ -10,7 +10,7 @@ from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced, rewarded, undone
+from tests.knowledge.lessons import BINDING, STAMP, created, deleted, entry, replaced, rewarded, undone
 
 LATER = "2004-04-27T08:00:00.000+00:00"
 
@@ -65,3 +65,14 @@ def test_where_nothing_was_taught_there_is_a_heading(path: Path, tmp_path: Path)
     Journal.open(path, BINDING).close()
 
     assert len(exported(path, tmp_path)) == 1
+
+
+def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path, tmp_path: Path) -> None:
+    left = RlaCreated(replace(created(2).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1), JournalEntry(left, STAMP)])
+        heading, first, second = exported(path, tmp_path)
+
+    column = heading.index("behaviour")
+    assert (heading[column - 1], heading[column + 1]) == ("punishments", "s1")
+    assert (first[column], second[column]) == ("", "turn_left")

@@ -9,9 +9,10 @@ import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import RlaCreated, TeachingEvent
 from tests.knowledge.lessons import BINDING, STAMP, as_written_by, begun, created, deleted, entry, replaced, tamper
 
 
@@ -67,9 +68,33 @@ def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) 
         assert (another.sequence, another.new, another.agrees) == (1, False, False)
 
 
+def test_an_old_journal_is_read_and_taught_on_with(path: Path) -> None:
+    left = RlaCreated(replace(created(4).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        written_as_version_1(journal, created(1))
+        written_by(2, journal, created(2))
+        written_by(2, journal, replaced(1, "left", "forward"))
+        journal.append([entry(3), JournalEntry(left, STAMP)])
+
+    with Journal.read_only(path) as journal:
+        assert check_knowledge(journal) == []
+        system = fold_journal(journal, radius=1.0)
+    assert [(rla.rla_id, rla.action, rla.behaviour) for rla in system.rlas] == [
+        (1, "left", ""),
+        (2, "forward", ""),
+        (3, "forward", ""),
+        (4, "forward", "turn_left"),
+    ]
+
+
 def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
     """A row as the first kurt2rt wrote it."""
-    text = as_written_by(1, event)
+    written_by(1, journal, event)
+
+
+def written_by(version: int, journal: Journal, event: TeachingEvent) -> None:
+    """A row as an older kurt2rt wrote it."""
+    text = as_written_by(version, event)
     command_id = event.origin.command_id
     row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
     journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)

@@ -9,7 +9,7 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics, follow_ups
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import RlaCreated, TeachingEvent
 from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced, rewarded, session, undone
 
 
@@ -146,3 +146,18 @@ def test_averages_are_not_among_the_telling_features(path: Path) -> None:
 
     assert "s1 " in row[-1]
     assert "average" not in row[-1]
+
+
+def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path) -> None:
+    left = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(left, STAMP), JournalEntry(deleted(1), STAMP), JournalEntry(created(2), STAMP)])
+        before = printed(render_knowledge(journal))  # none that stands has a name
+        journal.append([JournalEntry(undone("delete-1"), STAMP)])
+        lines = printed(render_knowledge(journal))
+        told = printed(render_lessons(journal))
+
+    assert any(re.match(r"\s*RLA\s+action", line) for line in before)
+    assert any(re.match(r"\s*RLA\s+behaviour\s+action", line) for line in lines)
+    assert [row[:3] for row in rows(lines)] == [["1", "turn_left", "forward"], ["2", "forward", rows(lines)[1][2]]]
+    assert any("RLA 1 of turn_left deleted" in line for line in told)

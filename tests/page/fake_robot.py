@@ -88,6 +88,7 @@ class FakeRobot:
     trouble: str = ""
     state_age_s: float = math.inf
     state: State | None = None
+    greeting: Hello = A_HELLO
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
     _heard: anyio.Event = field(default_factory=anyio.Event)
@@ -126,7 +127,7 @@ class FakeRobot:
 
     async def hello(self) -> Hello:
         await self._answer("hello")
-        return A_HELLO
+        return self.greeting
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         await self._answer("lessons", count)

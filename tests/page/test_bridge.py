@@ -15,7 +15,7 @@ from kurt2rt.rla.rla import Phase
 from tests.page.clock import Clock
 from tests.page.fake_robot import A_PLACE, FakeRobot
 
-NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over")
+NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over", "pursue")
 STALE = "given on an old picture; look at the robot, then say it again"
 
 
@@ -381,6 +381,7 @@ MOVING: list[tuple[str, dict[str, object]]] = [
     ("take", {}),
     ("phase", {"phase": Phase.AUTONOMOUS}),
     ("place", {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+    ("pursue", {"behaviour": "turn_left"}),
 ]
 OTHERS: list[tuple[str, dict[str, object]]] = [
     ("correct", {"action": "forward"}),
@@ -451,6 +452,7 @@ ORDERS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("answer", {"action": "forward"}, ("answer", "forward", 102)),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
+    ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),
     ("begin_session", {"name": "morning"}, ("begin_session", "morning")),
     ("end_session", {}, ("end_session",)),
     ("resume", {}, ("resume",)),

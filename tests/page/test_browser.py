@@ -1,11 +1,17 @@
 """The page in a real browser, with the real client and a simulated robot: what a teacher with a phone lives through."""
 
 import itertools
+from dataclasses import replace
+from functools import partial
 
+import anyio
 import pytest
+from anyio.from_thread import start_blocking_portal
 
 from tests.page.classroom import Classroom
+from tests.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.test_served_page import TOKEN, served
 
 ACTIONS = ("along_left_wall", "forward", "curve_right", "spin_right", "bear_left")
 TABS = ("teach", "drive", "lessons", "more")
@@ -359,14 +365,66 @@ def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
         if phone.find(f"#tab-{tab}").is_displayed():
             phone.touch(f"#tab-{tab}")
         phone.show(f"9-{size[0]}x{size[1]}-{tab}")
-        for text, contrast in phone.run(TEXTS):
-            assert contrast >= LEAST_CONTRAST, f"{tab}: {text!r} has a contrast of {contrast:.1f}"
-        for name, width, height, left, right in phone.run(TARGETS):
-            assert width >= LEAST_TARGET_PX, f"{tab}: {name} is {width} wide"
-            assert height >= LEAST_TARGET_PX, f"{tab}: {name} is {height} high"
-            assert left >= 0, f"{tab}: {name} begins at {left}"
-            assert right <= size[0], f"{tab}: {name} ends at {right}"
-        for name in ("#stop", "#go", "#sentence", "#link"):
-            box = phone.run("return document.querySelector(arguments[0]).getBoundingClientRect().toJSON();", name)
-            assert 0 <= box["top"] < box["bottom"] <= size[1], f"{tab}: {name} lies at {box}"
-            assert 0 <= box["left"] < box["right"] <= size[0], f"{tab}: {name} lies at {box}"
+        assert_handy(phone, size, tab)
+
+
+def assert_handy(phone: Phone, size: tuple[int, int], tab: str) -> None:
+    """What is seen can be read and touched, and what counts is on the screen."""
+    for text, contrast in phone.run(TEXTS):
+        assert contrast >= LEAST_CONTRAST, f"{tab}: {text!r} has a contrast of {contrast:.1f}"
+    for name, width, height, left, right in phone.run(TARGETS):
+        assert width >= LEAST_TARGET_PX, f"{tab}: {name} is {width} wide"
+        assert height >= LEAST_TARGET_PX, f"{tab}: {name} is {height} high"
+        assert left >= 0, f"{tab}: {name} begins at {left}"
+        assert right <= size[0], f"{tab}: {name} ends at {right}"
+    for name in ("#stop", "#go", "#sentence", "#link"):
+        box = phone.run("return document.querySelector(arguments[0]).getBoundingClientRect().toJSON();", name)
+        assert 0 <= box["top"] < box["bottom"] <= size[1], f"{tab}: {name} lies at {box}"
+        assert 0 <= box["left"] < box["right"] <= size[0], f"{tab}: {name} lies at {box}"
+
+
+TURNS = ("straight_on", "turn_left", "turn_right")
+
+
+def pressed(phone: Phone) -> list[str]:
+    return [each.text for each in phone.driver.find_elements("css selector", "#behaviours [aria-pressed=true]")]
+
+
+async def show_on(robot: FakeRobot) -> None:
+    """A picture of it each 50 ms."""
+    while True:
+        robot.show()
+        await anyio.sleep(0.05)
+
+
+def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_follow(a_phone: Phone) -> None:
+    phone = a_phone
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        robot = page.robot
+        robot.greeting = replace(A_HELLO, behaviours=TURNS)
+        portal.call(partial(robot.show, teacher="local", behaviour="straight_on", place=A_PLACE))
+        pictures = portal.start_task_soon(show_on, robot)
+        try:
+            phone.turn(PORTRAIT)
+            phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
+            phone.wait(lambda: pressed(phone) == ["straight on"], "what is wanted is marked")
+            assert phone.text("#sentence").startswith("RLA 1 of straight on does forward")
+            phone.touch("[data-behaviour=turn_left]")
+            phone.wait(lambda: phone.text("#said") == "pursue done", "the robot has taken it")
+            assert [each[1:] for each in robot.told if each[0] == "pursue"] == [("turn_left",)]
+            assert pressed(phone) == ["straight on"]  # what it is told counts, not what was touched
+            portal.call(partial(robot.show, behaviour="turn_left"))
+            phone.wait(lambda: pressed(phone) == ["turn left"], "the robot follows it")
+            for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
+                phone.turn(size, touch=size != LAPTOP)
+                phone.show(f"8-behaviours-{size[0]}x{size[1]}")
+                assert_handy(phone, size, "teach")
+            portal.call(partial(robot.show, teacher="ann"))
+            phone.wait(lambda: phone.run("return document.querySelector('#behaviours').inert"), "it is the teacher's")
+        finally:
+            pictures.cancel()
+
+
+def test_where_one_thing_is_taught_there_is_nothing_to_choose(a_phone: Phone, room: Classroom) -> None:
+    begin(a_phone, room)
+    assert not a_phone.find("#behaviours").is_displayed()

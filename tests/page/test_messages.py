@@ -38,6 +38,10 @@ from kurt2rt.rla.rla import Phase
             Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
         ),
         (
+            {"kind": "order", "number": 1, "name": "pursue", "arguments": {"behaviour": "turn_left"}, "picture": 4},
+            Order(1, "pursue", {"behaviour": "turn_left"}, 4),
+        ),
+        (
             {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": "phone-0a"}, "picture": 4},
             Order(1, "undo", {"lesson": "phone-0a"}, 4),
         ),
@@ -77,6 +81,7 @@ def order(name: str, **arguments: object) -> str:
         order("drive"),
         order("answer"),
         order("answer", action=""),
+        order("pursue", behaviour=""),
         order("answer", action="x" * 65),
         order("answer", action="for\nward"),
         order("answer", action="forward", of=1),

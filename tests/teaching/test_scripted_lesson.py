@@ -21,7 +21,9 @@ from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.answer import RefusedError
-from kurt2rt.teaching.scripted_lesson import teach_by_script
+from kurt2rt.teaching.scripted_lesson import picture_in, teach_by_script
+from kurt2rt.teaching.scripted_teacher import Picture
+from tests.channel.states import state
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO
 
@@ -183,3 +185,8 @@ async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
     said = await lesson(client, robot, "stays where it is")
     assert "the robot stays where it is" in said[-1]
     assert robot.state.stopped_because == "anna said stop"
+
+
+def test_it_sees_in_a_picture_what_is_wanted_and_which_rla_drives() -> None:
+    seen = picture_in(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
+    assert seen == Picture(False, True, "forward", state().infrared_counts, "turn_left", 3)
