@@ -14,6 +14,7 @@ from hal.bus import BusError
 from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
 from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
@@ -47,6 +48,7 @@ _ONE_LINERS = (
     PageError,
     RecordingError,
     DidNotDriveError,
+    PaperError,
 )
 """Errors whose message tells the user what, where and what to do."""
 
@@ -71,6 +73,7 @@ _COMMANDS = (
     "pair",
     "lesson",
     "exam",
+    "paper",
     "knowledge",
     "commission",
     "faults",

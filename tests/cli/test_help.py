@@ -31,6 +31,7 @@ def test_every_command_is_found() -> None:
             "pair",
             "lesson",
             "exam",
+            "paper",
             "knowledge",
             "show",
             "lessons",

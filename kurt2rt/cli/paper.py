@@ -1,0 +1,141 @@
+"""`kurt2rt paper`."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.lesson import parse_seeds
+
+if TYPE_CHECKING:
+    from kurt2rt.experiments.paper.outcome import Reading
+    from kurt2rt.experiments.pool import Standing
+
+_SEEDS, _QUICK_SEEDS = "100-119", "100-101"
+_FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
+
+
+def paper(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A small part in under a minute: fewer tasks and seeds, short lessons.")
+    ] = False,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            help=f"One robot per seed, e.g. {_SEEDS}, which is the default; with --quick {_QUICK_SEEDS}.",
+            show_default=False,
+        ),
+    ] = None,
+    task: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Only this task, by name (config/tasks) or a path to its YAML file; repeat for several. Default: all "
+            "of config/paper.",
+            show_default=False,
+        ),
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes to use; 1: this one alone.")] = os.cpu_count() or 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help=f"Folder for what is made; created when absent. Default: {_FOLDER}, with --quick {_QUICK_FOLDER}.",
+            show_default=False,
+        ),
+    ] = None,
+    plain: Annotated[
+        bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
+    ] = True,
+) -> None:
+    """Teach and examine every basic task of the paper, and set its results beside ours.
+
+    Leaves report.html, which holds everything, the figures as PNG, and each
+    robot's result and knowledge file in the output folder.
+
+    A run that was interrupted goes on where it was. Results are kept with hashes of
+    what made them: settings of task, robot and worlds, the source of what teaches,
+    drives and simulates, and the versions of what computes. When one of these has
+    changed, what is in the folder is refused and not mixed in: give a new folder.
+    Other seeds and other tasks may share a folder.
+
+    Settings were chosen on seeds 0 to 11 and worlds rooms-0 to rooms-29; these
+    robots and worlds are others.
+    """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.experiments.paper.extent import QUICK, WHOLE
+    from kurt2rt.experiments.paper.pictures import draw_pictures
+    from kurt2rt.experiments.paper.programme import plan
+    from kurt2rt.experiments.paper.report import write_report
+    from kurt2rt.experiments.paper.results import Results
+    from kurt2rt.experiments.paper.settings import load_paper
+    from kurt2rt.experiments.paper.sheet import as_rich
+    from kurt2rt.experiments.paper.study import conduct, read_study
+    from kurt2rt.experiments.paper.tables import sheets
+    from kurt2rt.simulated import SimulatedStage
+
+    typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
+    robot = load_robot()
+    stage = SimulatedStage(robot)
+    results = Results(out or (_QUICK_FOLDER if quick else _FOLDER))
+    readings: tuple[Reading, ...] = ("shipped", "plain") if plain else ("shipped",)
+    extent = QUICK if quick else WHOLE
+    programme = plan(
+        load_paper(), extent, parse_seeds(typed_seeds), readings, stage, robot, results, tasks=tuple(task or ())
+    )
+    command = _command(quick=quick, seeds=typed_seeds, tasks=task or [], plain=plain)
+    with results.held():
+        missing = results.missing(programme.jobs)
+        with _bar(sum(programme.jobs[place].robot_time_s for place in missing)) as bar:
+            conduct(programme, missing, jobs, bar.look)
+            bar.say("figures and report")
+            study = read_study(programme, results)
+            pictures = list(draw_pictures(study, stage, results.folder))
+            report = results.folder / "report.html"
+            write_report(study, pictures, command, report)
+    console = Console()
+    for sheet in sheets(study):
+        console.print(as_rich(sheet))
+    if not extent.is_whole:
+        console.print("A part only: it says that everything works, and nothing about the paper.")
+    console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
+
+
+class _Bar:
+    """One bar for all jobs, on standard error, so that standard output holds results alone."""
+
+    def __init__(self, progress: Progress, whole_s: float) -> None:
+        self._progress = progress
+        self._id = progress.add_task("", total=whole_s)
+
+    def look(self, standing: "Standing") -> None:
+        """How far the jobs are."""
+        self._progress.update(self._id, completed=standing.done_s, description="; ".join(standing.running))
+
+    def say(self, what: str) -> None:
+        """What is done after them."""
+        self._progress.update(self._id, description=what)
+
+
+@contextmanager
+def _bar(whole_s: float) -> Iterator[_Bar]:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        yield _Bar(progress, whole_s)
+
+
+def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:
+    """What was typed as far as it decides the numbers; no paths of this machine."""
+    words = ["kurt2rt paper", *(["--quick"] if quick else []), f"--seeds {seeds}"]
+    words += [f"--task {Path(name).name}" for name in tasks]
+    return " ".join([*words, *([] if plain else ["--no-plain"])])

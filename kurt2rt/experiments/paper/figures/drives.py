@@ -1,0 +1,80 @@
+"""Fig. 7, and beyond the paper a picture of a taught robot's drives in each task."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from kurt2rt.experiments.paper.figures.style import ASKED, COLLIDED, START, TRAIL, legend_below, save
+from kurt2rt.experiments.paper.outcome import DriveOutcome, Place
+from kurt2rt.experiments.paper.stage import PaperStage
+from kurt2rt.experiments.report import label_of
+
+_LIFTED_M = 0.5
+"""A robot that is so far from where it was a moment ago was set down elsewhere."""
+_COLUMNS = 3
+
+
+def draw_eight(stage: PaperStage, drive: DriveOutcome, path: Path) -> None:
+    """Fig. 7: the way round the two columns, with its start."""
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    axes = figure.subplots()
+    _draw_drive(axes, stage, drive)
+    legend_below(axes, columns=4)
+    save(figure, path)
+
+
+def draw_drives(stage: PaperStage, drives: Sequence[DriveOutcome], path: Path) -> None:
+    """A panel per drive: the way, its start, where the robot did not know the situation and where it collided."""
+    columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
+    rows = math.ceil(len(drives) / columns)
+    figure = Figure(
+        figsize=(max(5.4, 4.6 * columns), 5.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
+    )
+    panels = figure.subplots(rows, columns, squeeze=False).flatten().tolist()
+    for axes, drive in zip(panels, drives, strict=False):
+        _draw_drive(axes, stage, drive)
+        axes.set_title(_told(drive), fontsize="medium")
+        legend_below(axes, columns=2)
+    for axes in panels[len(drives) :]:
+        axes.set_axis_off()
+    save(figure, path)
+
+
+def _told(drive: DriveOutcome) -> str:
+    collisions = f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
+    verdict = "success" if drive.succeeded else "no success"
+    return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}"
+
+
+def _draw_drive(axes: Axes, stage: PaperStage, drive: DriveOutcome) -> None:
+    stage.draw(axes, drive.world)
+    label: str | None = f"the robot, {drive.duration_s:.0f} s"
+    for way in _ways(drive.trail):
+        axes.plot(*_columns(way), color=TRAIL, linewidth=0.9, zorder=3, label=label)
+        label = None
+    if drive.trail:
+        axes.plot(*_columns(drive.trail[:1]), "s", color=START, markersize=8, zorder=6, label="start")
+    if drive.asked_at:
+        label = f"situation unknown ({len(drive.asked_at)})"
+        axes.plot(*_columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
+    if drive.collided_at:
+        label = f"collided ({len(drive.collided_at)})"
+        axes.plot(*_columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
+
+
+def _ways(trail: Sequence[Place]) -> list[list[Place]]:
+    """The trail in the pieces that the robot drove itself."""
+    ways: list[list[Place]] = []
+    for place in trail:
+        if not ways or math.dist(ways[-1][-1], place) > _LIFTED_M:
+            ways.append([])
+        ways[-1].append(place)
+    return ways
+
+
+def _columns(places: Sequence[Place]) -> tuple[list[float], list[float]]:
+    return [x for x, _ in places], [y for _, y in places]

@@ -1,0 +1,22 @@
+"""What the figures share."""
+
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+TRAIL = "#1f6fb2"
+ASKED = "#d1495b"
+COLLIDED = "#111111"
+START = "#2e8540"
+_DPI = 130
+
+
+def save(figure: Figure, path: Path) -> None:
+    """As a PNG whose bytes depend on nothing but what is drawn."""
+    figure.savefig(path, dpi=_DPI, metadata={"Software": None})
+
+
+def legend_below(axes: Axes, columns: int = 3) -> None:
+    """Below the floor plan, where it hides no wall."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, fontsize="small", frameon=False)

@@ -1,0 +1,75 @@
+"""Fingerprints of what decides a result, so that results of other settings are never mixed in."""
+
+import ast
+import hashlib
+import json
+import platform
+from collections.abc import Iterable
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+
+import yaml
+
+from hal.robot_settings import RobotSettings
+from hal.settings import find_config
+from kurt2rt.experiments.paper.outcome import MadeOf
+from kurt2rt.experiments.paper.stage import PaperStage
+from kurt2rt.tasks.settings import TaskSettings
+
+_PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
+_DO_NOT_DECIDE = {"bench", "channel", "cli", "commission", "doctor", "faults", "page", "paper", "recording"}
+"""Parts of kurt2rt that no lesson and no exam in lockstep runs through, or that only read results."""
+_COMPUTE = ("numpy", "pymunk", "shapely")
+
+
+def versions() -> str:
+    """Of Python and of the packages that compute."""
+    return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
+
+
+def source_hash() -> str:
+    """Of the code that teaches, drives and simulates; comments, docstrings and layout left out."""
+    digest = hashlib.sha256()
+    for package in _PACKAGES:
+        spec = find_spec(package)
+        assert spec is not None
+        for folder in map(Path, spec.submodule_search_locations or ()):
+            for path in sorted(folder.rglob("*.py")):
+                place = path.relative_to(folder)
+                if package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts):
+                    digest.update(f"{package}/{place.as_posix()}\n".encode())
+                    digest.update(_code_of(path).encode())
+    return digest.hexdigest()[:16]
+
+
+def settings_hash(*settings: str) -> str:
+    """Of texts."""
+    return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
+
+
+def made_of(stage: PaperStage, robot: RobotSettings, task: TaskSettings, worlds: Iterable[str], source: str) -> MadeOf:
+    """Of one job that drives in these worlds; `source`: as `source_hash` says."""
+    # The task's own numbers of the paper, and the reading that is not taken, change nothing.
+    of_task = task.model_dump_json(exclude={"paper", "plain"}, serialize_as_any=True)
+    return MadeOf(
+        task=settings_hash(of_task, _file("situations", task.situation), _file("repertoires", task.repertoire)),
+        robot=settings_hash(robot.model_dump_json(serialize_as_any=True)),
+        worlds=settings_hash(*(stage.settings_of(world) for world in sorted(set(worlds)))),
+        source=source,
+        versions=versions(),
+    )
+
+
+def _file(kind: str, name: str) -> str:
+    return json.dumps(yaml.safe_load(find_config(kind, name).read_text(encoding="utf-8")))
+
+
+def _code_of(path: Path) -> str:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            first = node.body[0] if node.body else None
+            if isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant):
+                del node.body[0]
+    return ast.dump(tree)

@@ -1,0 +1,75 @@
+"""What a job comes to, as it is kept in its file."""
+
+from typing import Literal
+
+from hal.settings import Settings
+
+Reading = Literal["shipped", "plain"]
+"""Of the paper's scheme: with the settings of this project, or plainly as the paper says it."""
+
+Place = tuple[float, float]
+"""x and y in m, to the millimetre."""
+
+
+class MadeOf(Settings):
+    """What decides a result: hashes of settings and source, and the versions of what computes.
+
+    The field names are said to the user: made with other ...
+    """
+
+    task: str
+    robot: str
+    worlds: str
+    source: str
+    versions: str
+
+    def differences(self, other: "MadeOf") -> list[str]:
+        """Names of what is not the same."""
+        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
+
+
+class DriveOutcome(Settings):
+    """One exam, beside the teacher's own drive from the same start."""
+
+    world: str
+    unit: str
+    progress: float
+    teachers_progress: float
+    succeeded: bool
+    duration_s: float
+    way_m: float
+    collisions: int
+    stuck: bool
+    alarm: str
+    share_unknown: float
+    findings: dict[str, float]
+    trail: tuple[Place, ...]
+    asked_at: tuple[Place, ...]
+    collided_at: tuple[Place, ...]
+
+
+class TaughtOutcome(Settings):
+    """One robot, taught and examined."""
+
+    made_of: MadeOf
+    seed: int
+    teaching_s: float
+    rlas: int
+    rlas_of: dict[str, int]
+    """By taught behaviour; empty where there is but one."""
+    knowledge_hash: str
+    asks: int
+    corrections: int
+    rescues: int
+    alarms: int
+    drives: tuple[DriveOutcome, ...]
+
+
+class GrowthOutcome(Settings):
+    """One robot, taught in phase 1 only."""
+
+    made_of: MadeOf
+    seed: int
+    radius: float
+    growth: tuple[int, ...]
+    """Number of RLAs after each second."""

@@ -1,0 +1,142 @@
+"""What is to be done: every experiment, reading and seed as a job."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.paper.error import PaperError
+from kurt2rt.experiments.paper.extent import Extent
+from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
+from kurt2rt.experiments.paper.made_of import made_of, source_hash
+from kurt2rt.experiments.paper.outcome import Reading
+from kurt2rt.experiments.paper.results import Results
+from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
+from kurt2rt.experiments.paper.stage import PaperStage
+from kurt2rt.experiments.paper.taught_job import TaughtJob
+from kurt2rt.tasks.settings import TaskSettings, load_task
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """One task in one reading: a job per seed."""
+
+    settings: ExperimentSettings
+    reading: Reading
+    task: TaskSettings
+    jobs: tuple[TaughtJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """Fig. 2 in one reading: a job per radius and seed."""
+
+    reading: Reading
+    task: TaskSettings
+    jobs: tuple[GrowthJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything, in the order in which it is shown."""
+
+    paper: PaperSettings
+    extent: Extent
+    seeds: tuple[int, ...]
+    source: str
+    """Hash of the program's source."""
+    experiments: tuple[Experiment, ...]
+    growth: tuple[Growth, ...]
+    """Empty when its task is not among those to be done."""
+
+    @property
+    def jobs(self) -> list[TaughtJob | GrowthJob]:
+        """All jobs."""
+        return [
+            *(job for experiment in self.experiments for job in experiment.jobs),
+            *(job for growth in self.growth for job in growth.jobs),
+        ]
+
+    def experiments_of(self, reading: Reading) -> tuple[Experiment, ...]:
+        """Those of one reading."""
+        return tuple(each for each in self.experiments if each.reading == reading)
+
+
+def plan(
+    paper: PaperSettings,
+    extent: Extent,
+    seeds: Sequence[int],
+    readings: Sequence[Reading],
+    stage: PaperStage,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    tasks: Sequence[str] = (),
+) -> Programme:
+    """Look at every task and world, and make the jobs. `tasks`: only these, by name or path; empty: all.
+
+    A task that has no experiment in `paper` is done, too; nothing is asked of it. Tasks without plain settings have no
+    plain reading. Raises hal.settings.SettingsError, PaperError.
+    """
+    chosen = _chosen(extent.paper(paper), extent, tasks)
+    paper = extent.paper(paper)
+    source = source_hash()
+    loaded = {each.task: load_task(each.task) for each in chosen}
+    names = [task.name for task in loaded.values()]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise PaperError(f"two tasks have the name {', '.join(twice)}; give one of them another name in its file")
+    for each in chosen:
+        _require_exams_in(each.asked, loaded[each.task])
+    taught = [
+        (each, reading, extent.task(load_task(each.task, plain=reading == "plain")))
+        for reading in readings
+        for each in chosen
+        if reading == "shipped" or loaded[each.task].plain is not None
+    ]
+    worlds = {paper.testing_ground, *paper.worlds}
+    for each, _, task in taught:
+        worlds |= {task.teaching.world, *task.exam.worlds, *(each.unseen.names if each.unseen else ())}
+    stage.require_worlds(*sorted(worlds))
+
+    def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
+        unseen = each.unseen.names if each.unseen else ()
+        jobs = []
+        for place, seed in enumerate(seeds):
+            own = unseen[place :: len(seeds)]  # each world is driven by one robot
+            made = made_of(stage, robot, task, (task.teaching.world, *task.exam.worlds, *own), source)
+            jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
+        return Experiment(each, reading, task, tuple(jobs))
+
+    def growth(reading: Reading, task: TaskSettings) -> Growth:
+        jobs = []
+        for radius in paper.growth.radii:
+            of_radius = with_radius_only(task, radius, paper.growth.duration_s)
+            made = made_of(stage, robot, of_radius, (task.teaching.world,), source)
+            for seed in seeds[: paper.growth.robots]:
+                jobs.append(GrowthJob(stage, robot, of_radius, reading, seed, made, results))
+        return Growth(reading, task, tuple(jobs))
+
+    return Programme(
+        paper,
+        extent,
+        tuple(seeds),
+        source,
+        tuple(experiment(*each) for each in taught),
+        tuple(growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
+    )
+
+
+def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:
+    known = {each.task: each for each in paper.experiments}
+    if tasks:
+        others = {name: ExperimentSettings(task=name, title=name) for name in tasks if name not in known}
+        return [(known | others)[name] for name in dict.fromkeys(tasks)]
+    return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
+
+
+def _require_exams_in(asked: AskedSettings, task: TaskSettings) -> None:
+    nowhere = sorted(set(asked.success_at_least) - set(task.exam.worlds))
+    if nowhere:
+        raise PaperError(
+            f"{task.name}: success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}"
+        )

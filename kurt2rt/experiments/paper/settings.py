@@ -1,0 +1,86 @@
+"""Schema of `config/paper/*.yaml`: the experiments, what is asked of them, and what the figures show."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from hal.settings import Settings, find_config, load_settings
+
+Share = Annotated[float, Field(gt=0, le=1)]
+Count = Annotated[int, Field(ge=1, le=10_000)]
+
+
+class AskedSettings(Settings):
+    """Numbers to reach; what is left out is not asked for."""
+
+    rlas_at_most: Annotated[int, Field(ge=0, le=10_000)] = 0
+    """The median of all robots; 0: not asked for."""
+    success_at_least: dict[str, Share] = Field(default_factory=dict)
+    """Share of the robots, by world."""
+    right_at_least: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """Share of all junctions that are left as asked; 0: not asked for."""
+    collisions_below_per_10_min: Annotated[float, Field(ge=0)] = 0.0
+    """0: not asked for."""
+
+
+class UnseenSettings(Settings):
+    """Generated worlds for exams, each driven by one of the robots in turn."""
+
+    kind: Literal["rooms", "streets"]
+    first: Annotated[int, Field(ge=0)]
+    """Seed of the first one; the others follow."""
+    count: Count
+    success_at_least: Share
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The worlds by name."""
+        return tuple(f"{self.kind}-{seed}" for seed in range(self.first, self.first + self.count))
+
+
+class ExperimentSettings(Settings):
+    """One task, taught and examined with many seeds."""
+
+    task: str
+    """By name, or a path to its YAML file."""
+    title: str
+    asked: AskedSettings = AskedSettings()
+    unseen: UnseenSettings | None = None
+    paper_rlas_of: dict[str, Count] = Field(default_factory=dict)
+    """RLAs that the paper reports for each taught behaviour, where there are several."""
+
+
+class GrowthSettings(Settings):
+    """How the number of RLAs grows in phase 1, for several R (Fig. 2)."""
+
+    task: str
+    radii: Annotated[tuple[Annotated[float, Field(gt=0, le=100_000)], ...], Field(min_length=1)]
+    robots: Count
+    """The first so many seeds."""
+    duration_s: Annotated[float, Field(ge=1, le=100_000)]
+
+
+class PaperSettings(Settings):
+    """All of it."""
+
+    experiments: Annotated[tuple[ExperimentSettings, ...], Field(min_length=1)]
+    growth: GrowthSettings
+    testing_ground: str
+    """World of Fig. 4."""
+    worlds: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Worlds of Fig. 6."""
+    eight: str
+    """Task of Fig. 7."""
+
+    @model_validator(mode="after")
+    def _each_task_once(self) -> Self:
+        tasks = [each.task for each in self.experiments]
+        twice = sorted({task for task in tasks if tasks.count(task) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} stands twice; leave one out")
+        return self
+
+
+def load_paper(name_or_path: str = "basic_level") -> PaperSettings:
+    """Shipped settings by name, or a file by path. Raises hal.settings.SettingsError."""
+    return load_settings(find_config("paper", name_or_path), PaperSettings)

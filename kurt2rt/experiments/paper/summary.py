@@ -1,0 +1,139 @@
+"""What the robots of one experiment come to together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.paper.intervals import Rate, rate_of
+from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
+from kurt2rt.experiments.paper.programme import Experiment
+from kurt2rt.experiments.paper.settings import ExperimentSettings
+from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
+from kurt2rt.tasks.settings import TaskSettings
+
+_TEN_MIN_S = 600.0
+
+
+class Quartiles(NamedTuple):
+    """Median and quartiles."""
+
+    low: float
+    median: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class WorldSummary:
+    """All exams of one experiment in one world, or in all generated ones."""
+
+    world: str
+    """Name of the world, or empty: the generated ones."""
+    label: str
+    robots: int
+    succeeded: int
+    interval: tuple[float, float]
+    """Of the share that succeeded, 95 %."""
+    collided: int
+    """Drives with any collision."""
+    collisions: Rate
+    """In 10 min of driving."""
+    ended_early: int
+    """Stuck, or stopped by the guard for good."""
+    unit: str
+    progress: float
+    """Median."""
+    teachers_progress: float
+    """Median of the teacher's own drives."""
+    share_unknown: float
+    """Median."""
+    junctions: int
+    right: Rate | None
+    """Share of the junctions that were left as asked; None where there were none."""
+    lengths: dict[str, float]
+    """Median of every other measure, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One experiment."""
+
+    settings: ExperimentSettings
+    reading: Reading
+    task: TaskSettings
+    robots: int
+    rlas: Quartiles
+    teaching_s: float
+    asks: float
+    corrections: float
+    rescues: float
+    """Medians, these three."""
+    rlas_of: dict[str, Quartiles]
+    """By taught behaviour, where there are several."""
+    worlds: tuple[WorldSummary, ...]
+    outcomes: tuple[TaughtOutcome, ...]
+    """One per robot, in the order of the seeds."""
+
+    @property
+    def label(self) -> str:
+        """The task as it is shown in tables."""
+        return self.task.name.replace("_", " ")
+
+
+def summarize(experiment: Experiment, outcomes: Sequence[TaughtOutcome]) -> Summary:
+    """The numbers of one experiment; one outcome per robot."""
+    task, unseen = experiment.task, experiment.settings.unseen
+    drives = [drive for outcome in outcomes for drive in outcome.drives]
+    groups = [(world, label_of(world), [each for each in drives if each.world == world]) for world in task.exam.worlds]
+    if unseen is not None:
+        generated = [each for each in drives if each.world in unseen.names]
+        groups.append(("", f"{unseen.names[0]}..{unseen.first + unseen.count - 1}", generated))
+
+    def median(of: str) -> float:
+        return quartiles([float(getattr(outcome, of)) for outcome in outcomes])[1]
+
+    return Summary(
+        settings=experiment.settings,
+        reading=experiment.reading,
+        task=task,
+        robots=len(outcomes),
+        rlas=Quartiles(*quartiles([outcome.rlas for outcome in outcomes])),
+        teaching_s=max(outcome.teaching_s for outcome in outcomes),
+        asks=median("asks"),
+        corrections=median("corrections"),
+        rescues=median("rescues"),
+        rlas_of={
+            name: Quartiles(*quartiles([outcome.rlas_of[name] for outcome in outcomes])) for name in outcomes[0].rlas_of
+        },
+        worlds=tuple(_summarize_world(*group) for group in groups if group[2]),
+        outcomes=tuple(outcomes),
+    )
+
+
+def _summarize_world(world: str, label: str, drives: Sequence[DriveOutcome]) -> WorldSummary:
+    succeeded = sum(each.succeeded for each in drives)
+    at_junctions = [each for each in drives if each.findings.get(JUNCTIONS)]
+    junctions = [round(each.findings[JUNCTIONS]) for each in at_junctions]
+    wrong = [passed - round(each.findings[RIGHT]) for passed, each in zip(junctions, at_junctions, strict=True)]
+    # Of the wrong ones, so that the interval of robots that never err does not shrink to a point.
+    errs = rate_of(wrong, junctions) if junctions else None
+    names = dict.fromkeys(name for each in drives for name in each.findings if not name.startswith(JUNCTIONS))
+    return WorldSummary(
+        world=world,
+        label=label,
+        robots=len(drives),
+        succeeded=succeeded,
+        interval=wilson_interval(succeeded, len(drives)),
+        collided=sum(each.collisions > 0 for each in drives),
+        collisions=rate_of([each.collisions for each in drives], [each.duration_s / _TEN_MIN_S for each in drives]),
+        ended_early=sum(each.stuck or bool(each.alarm) for each in drives),
+        unit=drives[0].unit,
+        progress=quartiles([each.progress for each in drives])[1],
+        teachers_progress=quartiles([each.teachers_progress for each in drives])[1],
+        share_unknown=quartiles([each.share_unknown for each in drives])[1],
+        junctions=sum(junctions),
+        right=None if errs is None else Rate(1 - errs.value, max(0.0, 1 - errs.high), 1 - errs.low),
+        lengths={
+            name: quartiles([each.findings[name] for each in drives if name in each.findings])[1] for name in names
+        },
+    )

@@ -1,0 +1,214 @@
+"""The tables of the results section."""
+
+from collections.abc import Iterator, Sequence
+
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.paper.sheet import Sheet
+from kurt2rt.experiments.paper.study import GrowthStudy, Study
+from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary
+from kurt2rt.experiments.paper.verdict import verdicts
+from kurt2rt.experiments.report import quartiles
+
+_GROWTH_AT_S = (60, 120, 200, 345, 600)
+
+
+def sheets(study: Study) -> Iterator[Sheet]:
+    """All tables, those of each reading of the paper's scheme behind each other."""
+    for reading in study.readings:
+        summaries = study.of(reading)
+        how = "" if reading == "shipped" else "plain reading: "
+        yield asked_sheet(summaries, f"{how}what was asked", judged=study.programme.extent.is_whole)
+        yield knowledge_sheet(summaries, f"{how}what was taught")
+        yield exam_sheet(summaries, f"{how}exams without teacher")
+        yield drive_sheet(summaries, f"{how}drives of these exams")
+        if any(each.rlas_of for each in summaries):
+            yield behaviour_sheet(summaries, f"{how}taught in common")
+    for growth in study.growth:
+        yield growth_sheet(growth)
+
+
+def asked_sheet(summaries: Sequence[Summary], title: str, *, judged: bool) -> Sheet:
+    """Each number that was asked for beside what came; `judged`: whether all of it was done, so that they compare."""
+    found = [(each.label, verdict) for each in summaries for verdict in verdicts(each)]
+    met = sum(verdict.met for _, verdict in found)
+    note = f"{met} of {len(found)} numbers asked for are met." if found else "Of these tasks nothing is asked."
+    return Sheet(
+        _sentence(title),
+        ("task", "what", "asked", "came", "verdict"),
+        tuple(
+            (label, verdict.what, verdict.asked, verdict.came, verdict.word if judged else "not judged")
+            for label, verdict in found
+        ),
+        words=5,
+        note=note if judged else "A part only: nothing is judged by it.",
+    )
+
+
+def knowledge_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+    """RLAs and teaching time beside the paper's."""
+    rows = [
+        (
+            each.label,
+            f"{each.rlas.median:g}",
+            _span(each.rlas),
+            str(each.task.paper.rlas),
+            f"{each.teaching_s:g}",
+            each.task.paper.teaching_told,
+            f"{each.asks:g}",
+            f"{each.corrections:g}",
+            f"{each.rescues:g}",
+        )
+        for each in summaries
+    ]
+    return Sheet(
+        _sentence(title),
+        ("task", "RLAs", "quartiles", "paper", "teaching, s", "paper", "asks", "corrections", "rescues"),
+        tuple(rows),
+        note=f"{_robots(summaries)} RLAs, asks, corrections and rescues by hand are medians. Teaching in robot time.",
+    )
+
+
+def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+    """Success and collisions by world."""
+    rows = []
+    for each, world in _worlds(summaries):
+        low, high = world.interval
+        rate = world.collisions
+        rows.append(
+            (
+                each.label,
+                world.label,
+                f"{world.succeeded} of {world.robots}",
+                f"{low:.0%} to {high:.0%}",
+                str(world.ended_early),
+                str(world.collided),
+                f"{rate.value:.2f}",
+                f"{rate.low:.2f} to {rate.high:.2f}",
+            )
+        )
+    times = sorted({each.task.exam.duration_s for each in summaries})
+    return Sheet(
+        _sentence(title),
+        ("task", "world", "success", "95 %", "stuck", "collided", "in 10 min", "95 %"),
+        tuple(rows),
+        words=2,
+        note=f"Exams of {', '.join(f'{time_s:g}' for time_s in times)} s. Success with Wilson's interval. Stuck: or "
+        "stopped by the guard for good. Collided: robots with any collision. In 10 min: collisions of all robots, with "
+        "a bootstrap interval over robots; where there was none, with Poisson's exact upper end.",
+    )
+
+
+def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+    """How far they came and how well, by world."""
+    names = list(dict.fromkeys(name for _, world in _worlds(summaries) for name in world.lengths))
+    rows = []
+    for each, world in _worlds(summaries):
+        right = world.right
+        of_junctions = "" if right is None else f"{right.value:.1%} of {world.junctions}"
+        interval = "" if right is None else f"{right.low:.1%} to {right.high:.1%}"
+        rows.append(
+            (
+                each.label,
+                world.label,
+                f"{world.progress:.1f} {world.unit}",
+                f"{world.teachers_progress:.1f}",
+                f"{world.share_unknown:.1%}",
+                *(f"{world.lengths[name]:.3f}" if name in world.lengths else "" for name in names),
+                of_junctions,
+                interval,
+            )
+        )
+    return Sheet(
+        _sentence(title),
+        ("task", "world", "progress", "teacher's own", "unknown", *names, "junctions right", "95 %"),
+        tuple(rows),
+        words=2,
+        note="Medians, but for the junctions, which are those of all robots, with a bootstrap interval over robots. "
+        "Unknown: share of the time in which the robot did not know the situation.",
+    )
+
+
+def behaviour_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+    """RLAs and junctions of each taught behaviour, where several were taught in one session."""
+    rows = []
+    for each in summaries:
+        for name, rlas in each.rlas_of.items():
+            paper = each.settings.paper_rlas_of.get(name)
+            drives = [drive for outcome in each.outcomes for drive in outcome.drives]
+            passed = sum(drive.findings.get(f"{JUNCTIONS}, {name}", 0.0) for drive in drives)
+            right = sum(drive.findings.get(f"{RIGHT}, {name}", 0.0) for drive in drives)
+            rows.append(
+                (
+                    each.label,
+                    name,
+                    f"{rlas.median:g}",
+                    _span(rlas),
+                    "not told" if paper is None else str(paper),
+                    f"{right:.0f} of {passed:.0f}",
+                )
+            )
+    columns = ("task", "behaviour", "RLAs, median", "quartiles", "paper's RLAs", "junctions right")
+    return Sheet(_sentence(title), columns, tuple(rows), words=2)
+
+
+def growth_sheet(growth: GrowthStudy) -> Sheet:
+    """Numbers behind Fig. 2."""
+    last_s = min(len(each.growth) for each in growth.outcomes)
+    at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
+    rows = []
+    for radius in growth.radii:
+        curves = growth.curves(radius)
+        cells = [f"{quartiles([curve[time_s - 1] for curve in curves])[1]:g}" for time_s in at_s]
+        rows.append((f"{radius:g}", str(len(curves)), *cells))
+    how = ", plain reading" if growth.reading == "plain" else ""
+    return Sheet(
+        f"RLAs against time in phase 1 ({growth.task}{how})",
+        ("R", "robots", *(f"{time_s} s" for time_s in at_s)),
+        tuple(rows),
+        words=0,
+        note="Medians.",
+    )
+
+
+def unseen_sheet(summary: Summary) -> Sheet:
+    """Which robot drove in which generated world, and how that went."""
+    names = summary.settings.unseen.names if summary.settings.unseen is not None else ()
+    drives = {
+        drive.world: (outcome.seed, drive)
+        for outcome in summary.outcomes
+        for drive in outcome.drives
+        if drive.world in names
+    }
+    rows = []
+    for name in names:
+        seed, drive = drives[name]
+        early = drive.alarm or ("stuck" if drive.stuck else "")
+        rows.append(
+            (
+                name,
+                f"{seed}",
+                "yes" if drive.succeeded else "NO",
+                str(drive.collisions),
+                f"{drive.progress:.1f} ({drive.teachers_progress:.1f}) {drive.unit}",
+                f"{early} after {drive.duration_s:.0f} s" if early else "",
+            )
+        )
+    columns = ("world", "robot", "success", "collisions", "progress (teacher's own)", "ended early")
+    return Sheet(f"{_sentence(summary.label)}: worlds that nobody has seen", columns, tuple(rows))
+
+
+def _worlds(summaries: Sequence[Summary]) -> Iterator[tuple[Summary, WorldSummary]]:
+    return ((each, world) for each in summaries for world in each.worlds)
+
+
+def _robots(summaries: Sequence[Summary]) -> str:
+    robots = max(each.robots for each in summaries)
+    return f"{robots} robots for each task." if robots > 1 else "One robot for each task."
+
+
+def _span(values: Quartiles) -> str:
+    return f"{values.low:g} to {values.high:g}"
+
+
+def _sentence(title: str) -> str:
+    return title[0].upper() + title[1:]
