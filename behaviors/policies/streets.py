@@ -30,7 +30,7 @@ class StreetsSettings(PolicySettings):
     front_m: Distance
     """A wall ahead nearer than this makes the robot turn on the spot."""
     edge_m: Distance
-    """The same for the sensors that look ahead to the sides: the robot turns away from what they see."""
+    """A corner nearer than this to a sensor that looks ahead to the side makes the robot turn away from it."""
     open_m: Distance
     """A wall farther than this leaves a side open."""
 
@@ -40,7 +40,7 @@ class StreetsSettings(PolicySettings):
 
 
 class Streets:
-    """Keeps to the middle between both walls, or off the one there is; curves round the corner that it is to turn at."""
+    """Keeps to the middle between both walls, or off the one there is; curves round the corner where it is to turn."""
 
     def __init__(self, settings: StreetsSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
@@ -59,7 +59,8 @@ class Streets:
         if min(self._front(infrared_counts)) < want.front_m:
             return "spin_right" if behaviour == "turn_right" else "spin_left"
         if min(left_edge, right_edge) < want.edge_m:
-            return "spin_right" if left_edge < right_edge else "spin_left"
+            # Curves, since spins at one corner and at the other would undo each other for ever.
+            return "curve_right" if left_edge < right_edge else "curve_left"
         left, right = self._left(infrared_counts), self._right(infrared_counts)
         if behaviour == "turn_left" and min(left[:2]) > want.open_m:
             return "curve_left"

@@ -1,0 +1,15 @@
+"""Courses in shipped worlds."""
+
+import random
+
+from kurt2rt.experiments.courses.course import Course, CourseSettings
+from tests.experiments.helpers import STAGE
+
+
+def course_in(world: str, settings: CourseSettings, behaviours: tuple[str, ...] = ("",), seed: int = 1) -> Course:
+    """The course at its beginning."""
+    arena = STAGE.open(world, 1, "test")
+    try:
+        return settings.build(arena, behaviours, random.Random(seed))
+    finally:
+        arena.close()
