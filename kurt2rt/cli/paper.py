@@ -68,6 +68,7 @@ def paper(
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
+    from kurt2rt.experiments.paper.made_of import source_hash
     from kurt2rt.experiments.paper.pictures import draw_pictures
     from kurt2rt.experiments.paper.programme import plan
     from kurt2rt.experiments.paper.report import write_report
@@ -85,7 +86,15 @@ def paper(
     readings: tuple[Reading, ...] = ("shipped", "plain") if plain else ("shipped",)
     extent = QUICK if quick else WHOLE
     programme = plan(
-        load_paper(), extent, parse_seeds(typed_seeds), readings, stage, robot, results, tasks=tuple(task or ())
+        load_paper(),
+        extent,
+        parse_seeds(typed_seeds),
+        readings,
+        stage,
+        robot,
+        results,
+        source=source_hash(),
+        tasks=task or (),
     )
     command = _command(quick=quick, seeds=typed_seeds, tasks=task or [], plain=plain)
     with results.held():

@@ -39,7 +39,7 @@ def source_hash() -> str:
                 place = path.relative_to(folder)
                 if package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts):
                     digest.update(f"{package}/{place.as_posix()}\n".encode())
-                    digest.update(_code_of(path).encode())
+                    digest.update(code_of(path).encode())
     return digest.hexdigest()[:16]
 
 
@@ -48,24 +48,46 @@ def settings_hash(*settings: str) -> str:
     return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
 
 
-def made_of(stage: PaperStage, robot: RobotSettings, task: TaskSettings, worlds: Iterable[str], source: str) -> MadeOf:
-    """Of one job that drives in these worlds; `source`: as `source_hash` says."""
-    # The task's own numbers of the paper, and the reading that is not taken, change nothing.
-    of_task = task.model_dump_json(exclude={"paper", "plain"}, serialize_as_any=True)
-    return MadeOf(
-        task=settings_hash(of_task, _file("situations", task.situation), _file("repertoires", task.repertoire)),
-        robot=settings_hash(robot.model_dump_json(serialize_as_any=True)),
-        worlds=settings_hash(*(stage.settings_of(world) for world in sorted(set(worlds)))),
-        source=source,
-        versions=versions(),
-    )
+class Fingerprints:
+    """Takes them, with what many jobs share looked at once."""
+
+    def __init__(self, stage: PaperStage, robot: RobotSettings, source: str) -> None:
+        """`source`: as `source_hash` tells."""
+        self._source = source
+        self._versions = versions()
+        self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
+        self._stage = stage
+        self._known: dict[tuple[str, str], str] = {}
+
+    def of(self, task: TaskSettings, worlds: Iterable[str]) -> MadeOf:
+        """Of one job that drives in these worlds. Raises hal.settings.SettingsError for what cannot be used."""
+        # The task's own numbers of the paper, and the reading that is not taken, change nothing.
+        of_task = task.model_dump_json(exclude={"paper", "plain"}, serialize_as_any=True)
+        return MadeOf(
+            task=settings_hash(
+                of_task,
+                self._settings("situations", task.situation),
+                self._settings("repertoires", task.repertoire),
+            ),
+            robot=self._robot,
+            worlds=settings_hash(*(self._settings("worlds", world) for world in sorted(set(worlds)))),
+            source=self._source,
+            versions=self._versions,
+        )
+
+    def _settings(self, kind: str, name: str) -> str:
+        """All that a file or a generated world holds, in one way of writing it."""
+        if (kind, name) not in self._known:
+            if kind == "worlds":
+                self._known[kind, name] = self._stage.settings_of(name)
+            else:
+                content = yaml.safe_load(find_config(kind, name).read_text(encoding="utf-8"))
+                self._known[kind, name] = json.dumps(content)
+        return self._known[kind, name]
 
 
-def _file(kind: str, name: str) -> str:
-    return json.dumps(yaml.safe_load(find_config(kind, name).read_text(encoding="utf-8")))
-
-
-def _code_of(path: Path) -> str:
+def code_of(path: Path) -> str:
+    """What a module does, as a text that says nothing of how it is written down."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):

@@ -7,7 +7,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
-from kurt2rt.experiments.paper.made_of import made_of, source_hash
+from kurt2rt.experiments.paper.made_of import Fingerprints
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
@@ -70,16 +70,18 @@ def plan(
     robot: RobotSettings,
     results: Results,
     *,
+    source: str,
     tasks: Sequence[str] = (),
 ) -> Programme:
-    """Look at every task and world, and make the jobs. `tasks`: only these, by name or path; empty: all.
+    """Look at every task and world, and make the jobs.
+
+    `source`: as made_of.source_hash tells; `tasks`: only these, by name or path; empty: all.
 
     A task that has no experiment in `paper` is done, too; nothing is asked of it. Tasks without plain settings have no
     plain reading. Raises hal.settings.SettingsError, PaperError.
     """
     chosen = _chosen(extent.paper(paper), extent, tasks)
     paper = extent.paper(paper)
-    source = source_hash()
     loaded = {each.task: load_task(each.task) for each in chosen}
     names = [task.name for task in loaded.values()]
     twice = sorted({name for name in names if names.count(name) > 1})
@@ -93,17 +95,15 @@ def plan(
         for each in chosen
         if reading == "shipped" or loaded[each.task].plain is not None
     ]
-    worlds = {paper.testing_ground, *paper.worlds}
-    for each, _, task in taught:
-        worlds |= {task.teaching.world, *task.exam.worlds, *(each.unseen.names if each.unseen else ())}
-    stage.require_worlds(*sorted(worlds))
+    stage.require_worlds(paper.testing_ground, *paper.worlds)
+    fingerprints = Fingerprints(stage, robot, source)
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
         unseen = each.unseen.names if each.unseen else ()
         jobs = []
         for place, seed in enumerate(seeds):
             own = unseen[place :: len(seeds)]  # each world is driven by one robot
-            made = made_of(stage, robot, task, (task.teaching.world, *task.exam.worlds, *own), source)
+            made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
             jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
         return Experiment(each, reading, task, tuple(jobs))
 
@@ -111,7 +111,7 @@ def plan(
         jobs = []
         for radius in paper.growth.radii:
             of_radius = with_radius_only(task, radius, paper.growth.duration_s)
-            made = made_of(stage, robot, of_radius, (task.teaching.world,), source)
+            made = fingerprints.of(of_radius, (task.teaching.world,))
             for seed in seeds[: paper.growth.robots]:
                 jobs.append(GrowthJob(stage, robot, of_radius, reading, seed, made, results))
         return Growth(reading, task, tuple(jobs))

@@ -1,0 +1,64 @@
+"""Outcomes of robots, written by hand."""
+
+from collections.abc import Sequence
+
+from kurt2rt.experiments.paper.outcome import DriveOutcome, MadeOf, Reading, TaughtOutcome
+from kurt2rt.experiments.paper.programme import Experiment
+from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
+from kurt2rt.experiments.paper.summary import Summary, summarize
+from kurt2rt.tasks.settings import load_task
+
+MADE_OF = MadeOf(task="t", robot="r", worlds="w", source="s", versions="Python 3")
+
+
+def drive(
+    world: str = "a",
+    *,
+    succeeded: bool = True,
+    collisions: int = 0,
+    stuck: bool = False,
+    duration_s: float = 300.0,
+    progress: float = 8.0,
+    findings: dict[str, float] | None = None,
+) -> DriveOutcome:
+    return DriveOutcome(
+        world=world,
+        unit="laps",
+        progress=progress,
+        teachers_progress=9.0,
+        succeeded=succeeded,
+        duration_s=duration_s,
+        way_m=70.0,
+        collisions=collisions,
+        stuck=stuck,
+        alarm="",
+        share_unknown=0.034,
+        findings={"distance error, m": 0.05} if findings is None else findings,
+        trail=((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
+        asked_at=((1.1, 1.0),),
+        collided_at=((1.2, 1.1),) * collisions,
+    )
+
+
+def robot(seed: int, rlas: int, *drives: DriveOutcome, rlas_of: dict[str, int] | None = None) -> TaughtOutcome:
+    return TaughtOutcome(
+        made_of=MADE_OF,
+        seed=seed,
+        teaching_s=345.0,
+        rlas=rlas,
+        rlas_of=rlas_of or {},
+        knowledge_hash="0" * 64,
+        asks=41,
+        corrections=52,
+        rescues=3,
+        alarms=0,
+        drives=drives,
+    )
+
+
+def settings_of(task: str) -> ExperimentSettings:
+    return next(each for each in load_paper().experiments if each.task == task)
+
+
+def summary_of(task: str, robots: Sequence[TaughtOutcome], reading: Reading = "shipped") -> Summary:
+    return summarize(Experiment(settings_of(task), reading, load_task(task), ()), robots)

@@ -1,0 +1,51 @@
+"""What decides a result shows in its fingerprint, and what does not decide it doesn't."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.paper.made_of import Fingerprints, code_of
+from kurt2rt.tasks.settings import load_task
+from tests.experiments.helpers import ROBOT, STAGE
+
+TASK = load_task("wall_following")
+
+
+@pytest.fixture(scope="module")
+def fingerprints() -> Fingerprints:
+    return Fingerprints(STAGE, ROBOT, "s")
+
+
+def test_the_same_is_the_same(fingerprints: Fingerprints) -> None:
+    assert fingerprints.of(TASK, ("a", "b")) == fingerprints.of(TASK, ("b", "a", "a"))
+
+
+def test_a_change_of_the_task_shows(fingerprints: Fingerprints) -> None:
+    made = fingerprints.of(TASK, ("a",))
+    learning = TASK.model_copy(update={"learning": TASK.learning.model_copy(update={"radius": 701.0})})
+    policy = TASK.model_copy(update={"policy": TASK.policy.model_copy(update={"tolerance_m": 0.03})})
+    assert made.differences(fingerprints.of(learning, ("a",))) == ["task"]
+    assert made.differences(fingerprints.of(policy, ("a",))) == ["task"]
+
+
+def test_what_the_paper_reports_decides_nothing(fingerprints: Fingerprints) -> None:
+    other = TASK.model_copy(update={"paper": TASK.paper.model_copy(update={"rlas": 1}), "plain": None})
+    assert fingerprints.of(other, ("a",)) == fingerprints.of(TASK, ("a",))
+
+
+def test_another_world_and_another_robot_show(fingerprints: Fingerprints) -> None:
+    made = fingerprints.of(TASK, ("a",))
+    assert made.differences(fingerprints.of(TASK, ("a", "rooms-3"))) == ["worlds"]
+    other = ROBOT.model_copy(update={"name": "other"})
+    assert made.differences(Fingerprints(STAGE, other, "s").of(TASK, ("a",))) == ["robot"]
+
+
+def test_comments_docstrings_and_layout_are_no_source(tmp_path: Path) -> None:
+    def code(source: str) -> str:
+        path = tmp_path / "module.py"
+        path.write_text(source)
+        return code_of(path)
+
+    plain = code("def speed(m, s):\n    return m / s\n")
+    assert code('"""What."""\n\ndef speed(m, s):  # fast\n    """Metres."""\n    return (m / s)\n') == plain
+    assert code("def speed(m, s):\n    return s / m\n") != plain

@@ -1,0 +1,156 @@
+"""Numbers in the tables, against results that were written by hand."""
+
+import pytest
+from rich.console import Console
+
+from kurt2rt.experiments.paper.outcome import GrowthOutcome
+from kurt2rt.experiments.paper.sheet import Sheet, as_rich
+from kurt2rt.experiments.paper.study import GrowthStudy
+from kurt2rt.experiments.paper.tables import (
+    asked_sheet,
+    behaviour_sheet,
+    drive_sheet,
+    exam_sheet,
+    growth_sheet,
+    knowledge_sheet,
+    unseen_sheet,
+)
+from tests.experiments.paper.outcomes import MADE_OF, drive, robot, summary_of
+
+
+def verdicts_of(sheet: Sheet) -> dict[str, tuple[str, ...]]:
+    return {row[1]: row[2:] for row in sheet.rows}
+
+
+def test_what_was_taught_stands_beside_the_paper() -> None:
+    summary = summary_of("wall_following", [robot(seed, rlas, drive()) for seed, rlas in ((1, 80), (2, 90), (3, 99))])
+    sheet = knowledge_sheet([summary], "what was taught")
+    assert sheet.title == "What was taught"
+    assert sheet.rows == (("wall following", "90", "85 to 94.5", "91", "345", "345", "41", "52", "3"),)
+    assert "3 robots" in sheet.note
+
+
+def test_a_teaching_time_that_the_paper_does_not_tell_is_not_made_up() -> None:
+    sheet = knowledge_sheet([summary_of("turn_left", [robot(1, 40, drive("manhattan"))])], "what was taught")
+    assert sheet.rows[0][3:6] == ("43", "345", "not told")
+
+
+def test_success_and_collisions_come_with_intervals() -> None:
+    robots = [
+        robot(1, 80, drive("a"), drive("b", succeeded=False, collisions=3)),
+        robot(2, 80, drive("a"), drive("b", succeeded=False, stuck=True, duration_s=150.0)),
+        robot(3, 80, drive("a"), drive("b", collisions=0, duration_s=150.0)),
+    ]
+    a, b = exam_sheet([summary_of("wall_following", robots)], "exams").rows
+    # Wilson's interval of 3 of 3; Poisson's exact upper end of no collision in 1.5 times 10 min.
+    assert a == ("wall following", "A", "3 of 3", "44% to 100%", "0", "0", "0.00", "0.00 to 2.46")
+    # 3 collisions in 600 s; drawn robots alone have none, or 3 in 300 s.
+    assert b == ("wall following", "B", "1 of 3", "6% to 79%", "1", "1", "3.00", "0.00 to 6.00")
+
+
+def test_generated_worlds_are_one_row_and_each_is_named_with_its_robot() -> None:
+    robots = [
+        robot(
+            100, 80, drive("a"), drive("rooms-100"), drive("rooms-102", succeeded=False, stuck=True, duration_s=99.0)
+        ),
+        robot(101, 80, drive("a"), drive("rooms-101")),
+    ]
+    summary = summary_of("wall_following", robots)
+    *_, generated = exam_sheet([summary], "exams").rows
+    assert generated[:3] == ("wall following", "rooms-100..129", "2 of 3")
+
+
+def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
+    robots = [robot(seed, 80, *(drive(f"rooms-{room}") for room in range(seed, 130, 2))) for seed in (100, 101)]
+    rows = unseen_sheet(summary_of("wall_following", robots)).rows
+    assert len(rows) == 30
+    assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 (9.0) laps", "")
+    assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
+
+
+def test_junctions_are_counted_over_all_robots() -> None:
+    def driven(junctions: float, right: float) -> dict[str, float]:
+        return {"junctions": junctions, "junctions right": right, "lateral deviation, m": 0.03}
+
+    robots = [
+        robot(1, 130, drive("manhattan", findings=driven(50, 50))),
+        robot(2, 140, drive("manhattan", findings=driven(30, 26))),
+    ]
+    sheet = drive_sheet([summary_of("streets", robots)], "drives")
+    assert sheet.columns[-3:] == ("lateral deviation, m", "junctions right", "95 %")
+    (row,) = sheet.rows
+    assert row[:5] == ("streets", "manhattan", "8.0 laps", "9.0", "3.4%")
+    assert row[5:7] == ("0.030", "95.0% of 80")
+    assert row[7] == "86.7% to 100.0%"  # the second robot drawn twice, and the first
+
+
+def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:
+    found = {
+        "junctions": 9.0,
+        "junctions right": 8.0,
+        "junctions, turn_left": 4.0,
+        "junctions right, turn_left": 3.0,
+        "junctions, straight_on": 5.0,
+        "junctions right, straight_on": 5.0,
+    }
+    of = {"straight_on": 70, "turn_left": 40}
+    robots = [robot(seed, 110, drive("manhattan", findings=found), rlas_of=of) for seed in (1, 2)]
+    sheet = behaviour_sheet([summary_of("streets", robots)], "taught in common")
+    assert sheet.rows == (
+        ("streets", "straight_on", "70", "70 to 70", "71", "10 of 10"),
+        ("streets", "turn_left", "40", "40 to 40", "43", "6 of 8"),
+    )
+
+
+def test_what_is_missed_is_said_in_a_word() -> None:
+    robots = [
+        robot(seed, 92, drive("a"), drive("b", succeeded=seed < 18), drive("c", succeeded=seed < 17))
+        for seed in range(20)
+    ]
+    sheet = asked_sheet([summary_of("wall_following", robots)], "what was asked", judged=True)
+    assert verdicts_of(sheet) == {
+        "RLAs, median": ("at most 91", "92", "MISSED"),
+        "teaching": ("at most 345 s", "345 s", "met"),
+        "success in A": ("at least 19 of 20", "20 of 20", "met"),
+        "success in B": ("at least 18 of 20", "18 of 20", "met"),
+        "success in C": ("at least 18 of 20", "17 of 20", "MISSED"),
+    }
+    assert sheet.note == "3 of 5 numbers asked for are met."
+    console = Console(width=100, no_color=True)
+    with console.capture() as capture:
+        console.print(as_rich(sheet))
+    assert capture.get().count("MISSED") == 2
+
+
+def test_a_part_judges_nothing() -> None:
+    sheet = asked_sheet([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", judged=False)
+    assert {row[-1] for row in sheet.rows} == {"not judged"}
+
+
+@pytest.mark.parametrize(
+    ("right", "collisions", "verdicts"),
+    [(95, 0, ("met", "met")), (94, 1, ("MISSED", "MISSED"))],
+)
+def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: int, verdicts: tuple[str, str]) -> None:
+    found = {"junctions": 100.0, "junctions right": float(right)}
+    robots = [robot(1, 130, drive("manhattan", collisions=collisions, duration_s=600.0, findings=found))]
+    said = verdicts_of(asked_sheet([summary_of("streets", robots)], "what was asked", judged=True))
+    assert said["junctions right in manhattan"] == ("at least 95%", f"{right}.0% of 100", verdicts[0])
+    assert said["collisions in 10 min in manhattan"] == ("below 0.5", f"{collisions:.2f}", verdicts[1])
+
+
+def test_nothing_is_asked_of_tasks_taught_alone() -> None:
+    sheet = asked_sheet([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked", judged=True)
+    assert sheet.rows == ()
+    assert sheet.note == "Of these tasks nothing is asked."
+
+
+def test_growth_is_told_at_the_times_of_the_study() -> None:
+    outcomes = tuple(
+        GrowthOutcome(made_of=MADE_OF, seed=seed, radius=radius, growth=tuple(range(seed, seed + 130)))
+        for radius in (300.0, 150.0)
+        for seed in (1, 2, 3)
+    )
+    sheet = growth_sheet(GrowthStudy("plain", "wall_following", outcomes))
+    assert sheet.columns == ("R", "robots", "60 s", "120 s")
+    assert sheet.rows == (("150", "3", "61", "121"), ("300", "3", "61", "121"))
