@@ -264,6 +264,46 @@ def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_pa
     assert load_task(str(path)).behaviours == ("turn_left", "turn_right")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        (
+            "kind: wall_following",
+            "kind: wall_folowing",
+            "policy.kind: there is no kind 'wall_folowing'; give one of: circle, eight, fleeing, streets, wall",
+        ),
+        ("kind: wall_following", "kind: policy", "policy.kind: there is no kind 'policy'; give one of: circle, eight"),
+        ("kind: wall_following", "kind: 7", "policy.kind: Input should be a valid string (found 7)"),
+        (
+            "kind: laps",
+            "kind: lap",
+            "course.kind: there is no kind 'lap'; give one of: eights, junctions, laps, rounds, way",
+        ),
+        ("front_m: 0.25", "front_m: 2.5", "policy.front_m: Input should be less than or equal to 0.6 (found 2.5)"),
+        ("front_m: 0.25", "fornt_m: 0.25", "policy.fornt_m: no such key; allowed here: kind, wanted_m, tolerance_m"),
+        ("  wanted_m: 0.365", "  #", "course.wanted_m: this key is missing"),
+        ("course:\n", "course: laps\nplaces:\n", "places: no such key; allowed here: name"),
+    ],
+)
+def test_a_policy_or_a_course_is_explained_by_its_own_kind(old: str, new: str, told: str, tmp_path: Path) -> None:
+    task = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()
+    assert old in task
+    path = tmp_path / "task.yaml"
+    path.write_text(task.replace(old, new, 1))
+    assert told in refusal(path, TaskSettings)
+
+
+def test_the_plain_reading_of_the_paper_is_another_way_to_learn_the_same_task() -> None:
+    task, plain = load_task("wall_following"), load_task("wall_following", plain=True)
+    assert plain.learning == task.plain
+    assert (plain.learning.past_weight, plain.learning.insert_beyond_share, plain.learning.minimum_action_s) == (
+        1,
+        1,
+        0,
+    )
+    assert plain.model_copy(update={"learning": task.learning}) == task
+
+
 def test_several_mistakes_are_counted(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace("cycle_s: 0.01 ", "cycle_s: x ").replace("far_m: 0.60", "far_m: x"))

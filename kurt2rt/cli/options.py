@@ -6,6 +6,14 @@ from typing import Annotated
 import typer
 
 TaskName = Annotated[str, typer.Option("--task", help="Task by name (config/tasks) or a path to its YAML file.")]
+Plain = Annotated[
+    bool,
+    typer.Option(
+        "--plain",
+        help="Learn by the plain reading of the paper: all 72 values weigh 1, corrections only replace, and no action "
+        "is held.",
+    ),
+]
 RobotName = Annotated[
     str, typer.Option("--robot-settings", help="Robot by name (config/robots) or a path to its YAML file.")
 ]

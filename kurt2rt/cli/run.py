@@ -24,6 +24,7 @@ from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.scripted_lesson import several_behaviours
 from kurt2rt.timing.priority import take_real_time_priority
 
 
@@ -38,6 +39,13 @@ def run(
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",
+    task: Annotated[
+        str | None,
+        typer.Option(
+            help="Task by name (config/tasks) or a path to its YAML file; with a knowledge file of its own beside that "
+            "of the settings, and in its own world, unless these are given. Default: as the settings say."
+        ),
+    ] = None,
     knowledge: Annotated[
         Path | None, typer.Option(help="Knowledge file; made when absent. Default: as the settings say.")
     ] = None,
@@ -116,14 +124,16 @@ def run(
         raise typer.BadParameter("only the simulated robot in this program has a simulated wire", param_hint="--wire")
     if (page or auto) and teacher == "none":
         raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
-    service = _changed(load_service(settings), knowledge, world, port)
-    robot_settings, task = load_robot(service.robot), load_task(service.task)
+    service = _changed(load_service(settings), task, knowledge, world, port)
+    robot_settings, taught = load_robot(service.robot), load_task(service.task)
+    if auto and len(taught.behaviours) > 1:
+        raise typer.BadParameter(several_behaviours(taught), param_hint="--auto")
     console = Console()
 
     def tell(text: str, style: str | None = None) -> None:
         console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
 
-    tell(f"task {task.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends")
+    tell(f"task {taught.name}, robot {robot}, knowledge {service.knowledge}; Ctrl-C ends")
     if service.real_time_priority:
         tell(take_real_time_priority(service.real_time_priority))
     with ExitStack() as ending:
@@ -155,7 +165,7 @@ def run(
             if page:
                 companions.start("teach", "--port", str(channel.endpoint.port), *at)
             if auto:
-                companions.start("teach", "--auto", "--port", str(channel.endpoint.port))
+                companions.start("teach", "--auto", "--port", str(channel.endpoint.port), "--task", service.task)
 
         openness = None if teacher == "none" else _open(service, opened, listening)
 
@@ -164,7 +174,7 @@ def run(
                 opened.robot,
                 robot_settings,
                 service,
-                task,
+                taught,
                 Screen(status=show, question=lambda question: say(str(question), "yellow"), settled=settled),
                 openness=openness,
                 duration_s=seconds,
@@ -178,7 +188,13 @@ def run(
     tell(f"the robot stands{count}")
 
 
-def _changed(service: ServiceSettings, knowledge: Path | None, world: str | None, port: int | None) -> ServiceSettings:
+def _changed(
+    service: ServiceSettings, task: str | None, knowledge: Path | None, world: str | None, port: int | None
+) -> ServiceSettings:
+    if task is not None:
+        taught = load_task(task)
+        beside = str(Path(service.knowledge).with_name(f"{taught.name}.knowledge"))
+        service = service.model_copy(update={"task": task, "world": taught.teaching.world, "knowledge": beside})
     given = {"knowledge": None if knowledge is None else str(knowledge), "world": world, "port": port}
     return service.model_copy(update={key: value for key, value in given.items() if value is not None})
 

@@ -64,6 +64,9 @@ def teach(
         str | None,
         typer.Option(help="Where a TLS proxy in front of the page serves it, such as https://robot.example."),
     ] = None,
+    task: Annotated[
+        str | None, typer.Option(help="Task that the scripted teacher teaches. Default: as the settings say.")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Decides the scripted teacher's chance.")] = 1,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
@@ -108,7 +111,11 @@ def teach(
     if terminal:
         _teach(way, lambda client, say: _by_typing(client, say, f"{way.host}:{way.port}"), while_stdin=False)
     elif auto:
-        _teach(way, lambda client, say: _by_script(client, say, service, seed), while_stdin=while_stdin)
+        _teach(
+            way,
+            lambda client, say: _by_script(client, say, service.robot, task or service.task, seed),
+            while_stdin=while_stdin,
+        )
     else:
         # Here, because the robot's own machine may do without the packages that a page needs: they are an extra.
         from kurt2rt.cli.teach_page import serve_page
@@ -155,5 +162,5 @@ async def _by_typing(client: TeacherClient, say: Callable[[str], None], where: s
     await TerminalTeacher(client, sys.stdin, say, where).teach()
 
 
-async def _by_script(client: TeacherClient, say: Callable[[str], None], service: ServiceSettings, seed: int) -> None:
-    await teach_by_script(client, load_robot(service.robot), load_task(service.task), say, seed=seed)
+async def _by_script(client: TeacherClient, say: Callable[[str], None], robot: str, task: str, seed: int) -> None:
+    await teach_by_script(client, load_robot(robot), load_task(task), say, seed=seed)

@@ -34,6 +34,8 @@ async def teach_by_script(
     A robot that a person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning,
     and RefusedError when it is no simulated one or refuses its teacher.
     """
+    if len(task.behaviours) > 1:
+        raise RefusedError(several_behaviours(task))
     hello = await robot.hello()
     if not hello.simulated:
         raise RefusedError(f"{hello.robot} is a real robot; the scripted teacher teaches simulated ones only")
@@ -74,6 +76,14 @@ async def teach_by_script(
     async for state in robot.states():
         if state.teacher != robot.name:
             return
+
+
+def several_behaviours(task: TaskSettings) -> str:
+    """Why the scripted teacher does not teach such a task over the channel."""
+    return (
+        f"task {task.name} has several behaviours, and over the channel the scripted teacher does not see the streets "
+        f"that say which is wanted when; kurt2rt lesson --task {task.name} teaches it in simulated time"
+    )
 
 
 async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:

@@ -193,6 +193,16 @@ def test_what_passed_on_the_bus_is_kept_in_a_log_that_other_tools_read(kurt2rt: 
     assert "frames are in drive-2.log" in said.out
 
 
+def test_another_task_has_its_own_world_and_its_own_knowledge(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    said = kurt2rt("run", "--seconds", "0.1", "--teacher", "none", "--task", "circle")
+    assert "task circle, robot sim, knowledge var/circle.knowledge" in said.out
+    assert (tmp_path / "var" / "circle.knowledge").is_file()
+
+
+def test_the_scripted_teacher_does_not_teach_several_behaviours_in_real_time(kurt2rt: CommandLine) -> None:
+    assert "kurt2rt lesson --task streets teaches it" in kurt2rt.misused("run", "--auto", "--task", "streets")
+
+
 def test_a_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
     assert "drive.doc: no known kind of CAN log; give a name" in kurt2rt.refused("run", "--can-log", "drive.doc")
 

@@ -142,6 +142,14 @@ def phases(robot: StandInRobot) -> list[Phase]:
     return [each.phase for each in dict.fromkeys(robot.all_of(PhaseRequest))]
 
 
+async def test_a_task_of_several_behaviours_is_not_taught_over_the_channel(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    with pytest.raises(RefusedError, match=r"task streets has several behaviours.* kurt2rt lesson --task streets"):
+        await teach_by_script(client, load_robot(), load_task("streets"), print)
+    assert robot.state.teacher != AUTO
+
+
 async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, simulated=False)
     with pytest.raises(RefusedError, match="kurt2-indoor is a real robot; the scripted teacher teaches simulated"):

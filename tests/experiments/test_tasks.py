@@ -1,0 +1,107 @@
+"""Every shipped task: its teacher can drive it, its course measures it, and it can be taught."""
+
+from pathlib import Path
+
+import anyio
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from config import CONFIG_DIR
+from kurt2rt.experiments.curriculum import run_lesson
+from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from tests.experiments.helpers import ROBOT, STAGE
+
+TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
+UNITS = {
+    "wall_following": "laps",
+    "fleeing": "m",
+    "circle": "rounds",
+    "circle_repositioned": "rounds",
+    "eight": "eights",
+}
+
+
+def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, exam_s: float = 10.0) -> TaskSettings:
+    task = load_task(name)
+    teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
+    exam = task.exam.model_copy(update={"duration_s": exam_s})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+
+def teachers_drive(task: TaskSettings) -> ExamResult:
+    world = task.exam.worlds[0]
+    arena = STAGE.open(world, 1, "exam")
+
+    async def drive() -> ExamResult:
+        return await examine(arena, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
+
+    try:
+        return anyio.run(drive)
+    finally:
+        arena.close()
+
+
+def lesson(task: TaskSettings, folder: Path) -> LessonResult:
+    async def teach() -> LessonResult:
+        result, _ = await run_lesson(STAGE, ROBOT, task, folder / "knowledge", seed=1, report=lambda *_: None)
+        return result
+
+    return anyio.run(teach)
+
+
+@pytest.mark.parametrize("name", [name for name in TASKS if name != "circle_repositioned"])  # driven as the circle is
+def test_the_teacher_drives_what_he_teaches(name: str) -> None:
+    drive = teachers_drive(lasting(name))
+    assert drive.unit == UNITS.get(name, "junctions")
+    assert (drive.collisions, drive.stuck, drive.alarm) == (0, False, "")
+    assert 1.0 < drive.way_m < 4.0
+    if name != "eight":  # of which the first half takes longer
+        assert drive.progress > 0.0
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_files_fit_together(name: str) -> None:
+    task = load_task(name)
+    assert task.name == name
+    assert load_repertoire(task.repertoire, ROBOT)
+    STAGE.require_worlds(task.teaching.world, *task.exam.worlds)
+    assert task.exam.success.right_at_least == (0.95 if task.course.kind == "junctions" else 0.0)
+
+
+def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
+    result = lesson(lasting("streets", 50.0, 10.0), tmp_path)
+    assert {rla.behaviour for rla in result.rlas} == {"straight_on", "turn_left", "turn_right"}
+    assert result.unit == "junctions"
+    assert result.findings["junctions"] >= 2.0
+
+
+def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> None:
+    task = lasting("circle_repositioned", 4.0, 4.5)
+    often = task.teaching.model_copy(update={"reposition_every_s": 1.0})
+    result = lesson(task.model_copy(update={"teaching": often}), tmp_path)
+    assert result.repositions == 8
+    places = {(round(each.x_m, 1), round(each.y_m, 1)) for each in result.trail}
+    assert len(places) > 8
+
+
+def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_its_street() -> None:
+    drive = teachers_drive(lasting("straight_on", exam_s=25.0))
+    steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
+    assert max(steps_m) > 0.5  # through the air
+    assert drive.way_m < 8.0
+    assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
+
+
+def test_what_is_replaced_too_often_is_deleted(tmp_path: Path) -> None:
+    task = lasting("wall_following", 5.0, 25.0)
+    strict = task.teaching.teacher.model_copy(update={"delete_after": 1, "error_rate": 0.3})
+    replacing = task.learning.model_copy(update={"insert_beyond_share": 1.0})
+    task = task.model_copy(
+        update={"learning": replacing, "teaching": task.teaching.model_copy(update={"teacher": strict})}
+    )
+    result = lesson(task, tmp_path)
+    assert result.deletions > 0
+    # Numbers are not used again: gaps are what was deleted.
+    assert max(rla.rla_id for rla in result.rlas) > len(result.rlas)

@@ -1,0 +1,63 @@
+import math
+import random
+
+import pytest
+
+from hal.robot_settings import load_robot
+from simbridge.free_poses import FreePoses
+from simbridge.nearest import Nearest
+from simbridge.pose import Pose
+from simbridge.world import World
+from simbridge.world_settings import load_world
+
+ROBOT = load_robot()
+
+
+def poses(world: str, count: int = 12) -> list[Pose]:
+    free = FreePoses(World(load_world(world)), ROBOT)
+    chance = random.Random(1)
+    return [free.draw(chance) for _ in range(count)]
+
+
+def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
+    world = load_world("one_object")
+    found = poses("one_object")
+    assert all(clear_m >= 0.05 for clear_m in world.clearances_m(found, ROBOT.geometry))
+    (post,) = world.round_obstacles
+    away_m = [math.dist(pose[:2], (post.x_m, post.y_m)) for pose in found]
+    assert all(away < 0.04 + ROBOT.infrared.far_m + 0.26 for away in away_m)
+    assert len({int(2 * math.atan2(pose.y_m - post.y_m, pose.x_m - post.x_m)) for pose in found}) > 4
+    assert len({round(pose.heading_rad) for pose in found}) > 3
+
+
+def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
+    world = World(load_world("a"))
+    nearest = Nearest(world)
+    assert all(nearest.away_m((pose.x_m, pose.y_m)) < ROBOT.infrared.far_m + 0.26 for pose in poses("a"))
+
+
+def test_the_same_chance_draws_the_same() -> None:
+    assert poses("two_objects", 4) == poses("two_objects", 4)
+
+
+@pytest.mark.parametrize(
+    ("world", "position", "away_m"),
+    [
+        ("a", (0.3, 3.0), 0.3),
+        ("a", (0.6, 1.5), 0.37),  # to the tongue, which is 6 cm thick
+        ("a", (0.6, 1.9), 0.0),  # within it
+        ("one_object", (2.2, 2.7), 0.46),
+        ("one_object", (2.2, 2.21), 0.0),
+        ("manhattan", (1.3, 0.3), 0.3),
+    ],
+)
+def test_the_nearest_face_in_whatever_direction(world: str, position: tuple[float, float], away_m: float) -> None:
+    assert Nearest(World(load_world(world))).away_m(position) == pytest.approx(away_m, abs=1e-9)
+
+
+def test_a_wall_that_was_moved_is_nearest_where_it_stands_now() -> None:
+    world = World(load_world("a"))
+    nearest = Nearest(world)
+    before_m = nearest.away_m((0.6, 1.5))
+    world.move_wall("tongue", 0.0, 0.2)
+    assert nearest.away_m((0.6, 1.5)) == pytest.approx(before_m + 0.2)
