@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, MutableMapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from multiprocessing import connection
+from multiprocessing.managers import SyncManager
 from typing import NamedTuple, Protocol, TypeVar
 
 from threadpoolctl import threadpool_limits
@@ -62,7 +63,7 @@ def run_jobs(
     """
     # The longest last would leave the other processes idle at the end.
     order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
-    if processes == 1 or len(jobs) == 1:
+    if processes == 1 or len(jobs) <= 1:
         return _run_here(jobs, order, on_done, on_standing)
     return _run_apart(jobs, order, min(processes, len(jobs)), on_done, on_standing)
 
@@ -100,7 +101,9 @@ def _run_apart(
     # Fresh interpreters: a fork would share the parent's threads and buses half-way.
     context = multiprocessing.get_context("spawn")
     results: dict[int, ResultT] = {}
-    with context.Manager() as manager:
+    manager = SyncManager(ctx=context)
+    manager.start(_belong_to_the_parent)
+    with manager:
         clocks = manager.dict()
         others = set(multiprocessing.active_children())
         with ProcessPoolExecutor(processes, mp_context=context, initializer=_belong_to_the_parent) as pool:
