@@ -9,18 +9,21 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import anyio
 import pytest
 import yaml
 
+import behaviors.policies
 from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, load_settings
+from kurt2rt.experiments.curriculum import run_exams
 from kurt2rt.perception.definition import SituationDefinition
 from kurt2rt.service_settings import ServiceSettings
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.world_settings import WorldSettings
-from tests.experiments.helpers import short_task, teach
+from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])
@@ -163,6 +166,33 @@ def test_examples_in_python_run(tmp_path: Path) -> None:
         assert done.returncode == 0, f"{where(block)}: {done.stderr}"
 
 
+@pytest.fixture
+def documented_policies(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Policies of the documentation are where a reader would put them."""
+    folder = tmp_path_factory.mktemp("policies")
+    for block in blocks("python"):
+        if named := re.match(r"# behaviors/policies/(\w+)\.py\n", block.text):
+            (folder / f"{named[1]}.py").write_text(block.text, encoding="utf-8")
+            monkeypatch.delitem(sys.modules, f"behaviors.policies.{named[1]}", raising=False)
+    monkeypatch.setattr(behaviors.policies, "__path__", [*behaviors.policies.__path__, str(folder)])
+
+
+@pytest.mark.usefixtures("documented_policies")
+def test_the_task_of_the_documentation_is_taught_and_examined(tmp_path: Path) -> None:
+    (block,) = (block for block in blocks("yaml") if block.text.startswith("# config/tasks/wandering.yaml"))
+    content = yaml.safe_load(block.text)
+    content["teaching"].update(supervised_s=6.0, corrections_s=6.0)
+    content["exam"].update(worlds=["a"], duration_s=6.0)
+    (tmp_path / "wandering.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    task = load_task(str(tmp_path / "wandering.yaml"))
+    taught = teach(tmp_path / "knowledge", task)
+    assert {rla.action for rla in taught.result.rlas} == {"forward", "spin_right"}
+    (exam,) = anyio.run(lambda: run_exams(STAGE, ROBOT, task, taught.events, ("a",), seed=1, report=lambda *_: None))
+    assert exam.learned.unit == "m"
+    assert exam.learned.progress > 0.5
+
+
+@pytest.mark.usefixtures("documented_policies")
 @pytest.mark.parametrize("block", list(blocks("yaml")), ids=where)
 def test_an_example_of_settings_loads(block: Block, tmp_path: Path) -> None:
     named = re.match(
