@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.table import Table
 
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.tasks.settings import TaskSettings
@@ -58,19 +59,40 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
-            *(_shown(exam.findings.get(name)) for name in measures),
+            *(_shown(exam.findings, name) for name in measures),
             "[green]yes[/]" if each.succeeded else "[red]no[/]",
         )
     return driven
 
 
 def _measures(exams: Sequence[ExamResult]) -> list[str]:
-    """Names of all findings, in the order in which they come."""
-    return list(dict.fromkeys(name for exam in exams for name in exam.findings))
+    """Names of all findings, in the order in which they come; all junctions are told beside the right ones."""
+    names = dict.fromkeys(name for exam in exams for name in exam.findings)
+    return [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
 
 
-def _shown(finding: float | None) -> str:
-    return "" if finding is None else f"{finding:.3g}"
+def _shown(findings: Findings, name: str) -> str:
+    if name not in findings:
+        return ""
+    if name.startswith(RIGHT):
+        return f"{findings[name]:.0f} of {findings[_all_of(name)]:.0f}"
+    return f"{findings[name]:.3g}"
+
+
+def _all_of(right: str) -> str:
+    """Name of the finding that tells of how many `right` is a part."""
+    return JUNCTIONS + right.removeprefix(RIGHT)
+
+
+def _shown_in_all(exams: Sequence[ExamResult], name: str) -> str:
+    """The median, or of junctions all that there were."""
+    findings = [exam.findings for exam in exams if name in exam.findings]
+    if not findings:
+        return ""
+    if name.startswith(RIGHT):
+        total = {each: sum(found[each] for found in findings) for each in (name, _all_of(name))}
+        return _shown(total, name)
+    return f"{quartiles([found[name] for found in findings])[1]:.3g}"
 
 
 def _early_end(exam: ExamResult, stuck: str) -> str:
@@ -105,11 +127,6 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
         return ordered[low] + (place - low) * (ordered[high] - ordered[low])
 
     return at(0.25), at(0.5), at(0.75)
-
-
-def _median(values: Sequence[float | None]) -> float | None:
-    known = [value for value in values if value is not None]
-    return quartiles(known)[1] if known else None
 
 
 def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> RenderableType:
@@ -148,8 +165,8 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
 
     success = Table(title="Exams without teacher", title_justify="left")
     measures = _measures([each.learned for result in results for each in result.exams])
-    medians = (f"{name}, median" for name in (unit, "unknown", *measures))
-    for heading in ("world", "success", "95 % interval", "collided", "stuck", *medians):
+    heads = [name if name.startswith(RIGHT) else f"{name}, median" for name in (unit, "unknown", *measures)]
+    for heading in ("world", "success", "95 % interval", "collided", "stuck", *heads):
         success.add_column(heading, justify="left" if heading == "world" else "right")
     for place, world in enumerate(worlds):
         exams = [result.exams[place] for result in results]
@@ -163,6 +180,6 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             str(sum(each.learned.stuck or bool(each.learned.alarm) for each in exams)),
             f"{quartiles([each.learned.progress for each in exams])[1]:.2f}",
             f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
-            *(_shown(_median([each.learned.findings.get(name) for each in exams])) for name in measures),
+            *(_shown_in_all([each.learned for each in exams], name) for name in measures),
         )
     return Group(seeds, summary, success)
