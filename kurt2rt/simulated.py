@@ -61,6 +61,7 @@ class SimulatedArena:
         """What a course may go by, with walls where they stand now."""
         world = self.simulation.world.settings
         return Plan(
+            world=world.name,
             posts=tuple(Post(post.x_m, post.y_m, post.radius_m) for post in world.round_obstacles),
             streets=tuple(Street(street.from_m, street.to_m, street.width_m) for street in world.streets),
             junctions=tuple(world.junctions),

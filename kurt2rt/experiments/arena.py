@@ -45,6 +45,8 @@ class Street(NamedTuple):
 class Plan:
     """What a course may go by, from above."""
 
+    world: str
+    """Its name."""
     posts: tuple[Post, ...]
     streets: tuple[Street, ...]
     junctions: tuple[tuple[float, float], ...]

@@ -1,6 +1,8 @@
 """Pictures of a lesson and its exams: where the robot drove, where it asked, how its knowledge grew."""
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -13,6 +15,8 @@ from kurt2rt.tasks.settings import TaskSettings
 
 _TRAIL = "#1f6fb2"
 _TEACHER = "#b0b0b0"
+_CARRIED_M = 0.2
+"""Between two points of a trail, 0.1 s apart, it does not drive so far."""
 _ASK = "#d1495b"
 
 
@@ -66,7 +70,16 @@ def _draw_growth(axes: Axes, growth: Sequence[int], task: TaskSettings) -> None:
 
 
 def _columns(positions: Sequence[Position]) -> tuple[list[float], list[float]]:
-    return [each.x_m for each in positions], [each.y_m for each in positions]
+    """To plot; with a gap where the robot was set down elsewhere."""
+    x_m: list[float] = []
+    y_m: list[float] = []
+    for before, each in pairwise([*positions[:1], *positions]):
+        if math.dist(before, each) > _CARRIED_M:
+            x_m.append(math.nan)
+            y_m.append(math.nan)
+        x_m.append(each.x_m)
+        y_m.append(each.y_m)
+    return x_m, y_m
 
 
 def _places(what: str, count: int) -> str:

@@ -23,9 +23,12 @@ class EightsSettings(CourseSettings):
 
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        posts = arena.plan.posts
+        plan = arena.plan
+        posts = plan.posts
         if len(posts) != 2:
-            raise SettingsError(f"course eights: the world has {len(posts)} round obstacles; choose one with two")
+            raise SettingsError(
+                f"course eights: world {plan.world} has {len(posts)} round obstacles; choose one with two"
+            )
         west, east = sorted(posts)
         return Eights(self, west, east, behaviours[0])
 

@@ -26,7 +26,9 @@ class JunctionsSettings(CourseSettings):
             raise SettingsError(f"course junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
         plan = arena.plan
         if not plan.junctions:
-            raise SettingsError("course junctions: the world has no streets that meet; choose one with streets")
+            raise SettingsError(
+                f"course junctions: world {plan.world} has no streets that meet; choose one with streets"
+            )
         return Junctions(StreetMap(plan), behaviours, chance)
 
 

@@ -25,10 +25,11 @@ class RoundsSettings(CourseSettings):
 
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        posts = arena.plan.posts
+        plan = arena.plan
+        posts = plan.posts
         if len(posts) != 1:
             raise SettingsError(
-                f"course rounds: the world has {len(posts)} round obstacles; choose one with a single one"
+                f"course rounds: world {plan.world} has {len(posts)} round obstacles; choose one with a single one"
             )
         return Rounds(self, posts[0], behaviours[0])
 

@@ -62,6 +62,8 @@ def test_the_distance_error_is_that_from_the_nearer_post() -> None:
 
 
 def test_a_world_without_two_posts_is_refused() -> None:
-    with pytest.raises(SettingsError, match="course eights: the world has 1 round obstacles; choose one with two"):
+    with pytest.raises(
+        SettingsError, match="course eights: world one object has 1 round obstacles; choose one with two"
+    ):
         course_in("one_object", SETTINGS)
     assert course_in("two_objects", SETTINGS).unit == "eights"

@@ -139,7 +139,7 @@ def test_streets_of_other_widths_and_missing_blocks_have_a_map_too() -> None:
 
 
 def test_a_world_without_streets_and_a_task_with_other_behaviours_are_refused() -> None:
-    with pytest.raises(SettingsError, match="course junctions: the world has no streets that meet"):
+    with pytest.raises(SettingsError, match="course junctions: world A has no streets that meet"):
         course_in("a", SETTINGS, ALL)
     with pytest.raises(SettingsError, match="must be among straight_on, turn_left, turn_right"):
         course_in("manhattan", SETTINGS, ("",))

@@ -42,6 +42,8 @@ def test_what_lies_between_here_and_where_a_hand_puts_it_was_not_driven() -> Non
 
 
 def test_a_world_without_a_single_post_is_refused() -> None:
-    with pytest.raises(SettingsError, match="course rounds: the world has 2 round obstacles; choose one with a single"):
+    with pytest.raises(
+        SettingsError, match="course rounds: world two objects has 2 round obstacles; choose one with a single"
+    ):
         course_in("two_objects", LEFT)
     assert course_in("one_object", LEFT).unit == "rounds"
