@@ -37,17 +37,7 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
     """Table of one exam per world, beside the teacher's own drive there."""
     driven = Table(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each", title_justify="left")
     unit = exams[0].learned.unit
-    measures = _measures([each.learned for each in exams])
-    headings = (
-        "world",
-        unit,
-        f"teacher's own {unit}",
-        "collisions",
-        "stuck",
-        "unknown situations",
-        *measures,
-        "success",
-    )
+    headings = ("world", unit, f"teacher's own {unit}", "collisions", "stuck", "unknown situations", "success")
     for heading in headings:
         driven.add_column(heading, justify="left" if heading == "world" else "right")
     for each in exams:
@@ -59,40 +49,37 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
-            *(_shown(exam.findings, name) for name in measures),
             "[green]yes[/]" if each.succeeded else "[red]no[/]",
         )
-    return driven
+    measured = _render_measures("Measures", [each.learned.world for each in exams], [[each.learned] for each in exams])
+    return Group(driven, *measured)
 
 
-def _measures(exams: Sequence[ExamResult]) -> list[str]:
-    """Names of all findings, in the order in which they come; all junctions are told beside the right ones."""
-    names = dict.fromkeys(name for exam in exams for name in exam.findings)
-    return [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
+def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[Table]:
+    """What courses found besides, a column for the exams of each world; no table where they found nothing."""
+    names = dict.fromkeys(name for each in exams for exam in each for name in exam.findings)
+    # How many junctions there were is told beside how many were right.
+    shown = [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
+    table = Table(title=title, title_justify="left")
+    table.add_column("")
+    for world in worlds:
+        table.add_column(label_of(world), justify="right")
+    for name in shown:
+        table.add_row(
+            name, *(_measure([exam.findings for exam in each if name in exam.findings], name) for each in exams)
+        )
+    return [table] if shown else []
 
 
-def _shown(findings: Findings, name: str) -> str:
-    if name not in findings:
-        return ""
-    if name.startswith(RIGHT):
-        return f"{findings[name]:.0f} of {findings[_all_of(name)]:.0f}"
-    return f"{findings[name]:.3g}"
-
-
-def _all_of(right: str) -> str:
-    """Name of the finding that tells of how many `right` is a part."""
-    return JUNCTIONS + right.removeprefix(RIGHT)
-
-
-def _shown_in_all(exams: Sequence[ExamResult], name: str) -> str:
+def _measure(findings: Sequence[Findings], name: str) -> str:
     """The median, or of junctions all that there were."""
-    findings = [exam.findings for exam in exams if name in exam.findings]
     if not findings:
         return ""
-    if name.startswith(RIGHT):
-        total = {each: sum(found[each] for found in findings) for each in (name, _all_of(name))}
-        return _shown(total, name)
-    return f"{quartiles([found[name] for found in findings])[1]:.3g}"
+    values = [found[name] for found in findings]
+    if not name.startswith(RIGHT):
+        return f"{quartiles(values)[1]:.3g}"
+    passed = JUNCTIONS + name.removeprefix(RIGHT)
+    return f"{sum(values):.0f} of {sum(found[passed] for found in findings):.0f}"
 
 
 def _early_end(exam: ExamResult, stuck: str) -> str:
@@ -164,9 +151,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         summary.add_row(name, f"{median:.0f}", f"{low:.0f} to {high:.0f}", paper)
 
     success = Table(title="Exams without teacher", title_justify="left")
-    measures = _measures([each.learned for result in results for each in result.exams])
-    heads = [name if name.startswith(RIGHT) else f"{name}, median" for name in (unit, "unknown", *measures)]
-    for heading in ("world", "success", "95 % interval", "collided", "stuck", *heads):
+    for heading in ("world", "success", "95 % interval", "collided", "stuck", f"{unit}, median", "unknown, median"):
         success.add_column(heading, justify="left" if heading == "world" else "right")
     for place, world in enumerate(worlds):
         exams = [result.exams[place] for result in results]
@@ -180,6 +165,6 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             str(sum(each.learned.stuck or bool(each.learned.alarm) for each in exams)),
             f"{quartiles([each.learned.progress for each in exams])[1]:.2f}",
             f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
-            *(_shown_in_all([each.learned for each in exams], name) for name in measures),
         )
-    return Group(seeds, summary, success)
+    by_world = [[result.exams[place].learned for result in results] for place in range(len(worlds))]
+    return Group(seeds, summary, success, *_render_measures("Measures, median", worlds, by_world))

@@ -69,7 +69,8 @@ def test_a_lesson_stands_beside_the_paper() -> None:
     assert ["asks", "41", ""] in rows
     assert ["corrections", "52", ""] in rows
     assert ["rescues by hand", "3", ""] in rows
-    assert ["A", "8.00", "9.00", "0", "no", "3.4%", "0.0321", "yes"] in rows
+    assert ["A", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
+    assert ["distance error, m", "0.0321"] in rows
 
 
 def test_deletions_and_repositions_are_told_where_there_were_any() -> None:
@@ -87,8 +88,7 @@ def test_tables_speak_of_what_the_task_counts() -> None:
     rows = printed(render_exams([world_result(streets)], short_task()))
     words = " ".join(word for row in rows for word in row)
     assert "teacher's own junctions" in words
-    assert "junctions right" in words
-    assert "11 of 12" in words
+    assert ["junctions right", "11 of 12"] in rows
     assert "laps" not in words
 
 
@@ -101,9 +101,9 @@ def test_each_exam_is_a_row_with_its_verdict() -> None:
     exams = [exam_result("b", laps=2.0), exam_result("kitchen", collisions=2), exam_result("c", stuck=True)]
     rows = printed(render_exams([world_result(each) for each in exams], short_task(exam_s=300.0)))
     assert ["Exams without teacher, 300 s each"] in rows
-    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "0.0321", "no"] in rows
-    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "0.0321", "no"] in rows
-    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "0.0321", "no"] in rows
+    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "no"] in rows
+    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "no"] in rows
+    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
 
 
 def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
@@ -117,8 +117,8 @@ def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
     assert ["102", "100", "41", "52", "3", "8.0 of 9.0, 0", "7.5 of 9.0, 1"] in rows
     assert ["RLAs", "90", "85 to 95", "91"] in rows
     assert ["teaching, s of robot time", "345", "345 to 345", "345"] in rows
-    assert ["A", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%", "0.0321"] in rows
-    assert ["B", "1 of 3", "6% to 79%", "1", "1", "7.50", "3.4%", "0.0321"] in rows
+    assert ["A", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["B", "1 of 3", "6% to 79%", "1", "1", "7.50", "3.4%"] in rows
 
 
 def test_junctions_of_many_seeds_are_added_up() -> None:
@@ -129,4 +129,5 @@ def test_junctions_of_many_seeds_are_added_up() -> None:
         for seed, right in ((100, 20.0), (101, 17.0), (102, 19.0))
     ]
     rows = printed(render_seeds([curriculum_result(drive.seed, 90, drive) for drive in drives], short_task()))
-    assert ["manhattan", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%", "56 of 60"] in rows
+    assert ["manhattan", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["junctions right", "56 of 60"] in rows
