@@ -68,7 +68,6 @@ def paper(
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
-    from kurt2rt.experiments.paper.made_of import source_hash
     from kurt2rt.experiments.paper.pictures import draw_pictures
     from kurt2rt.experiments.paper.programme import plan
     from kurt2rt.experiments.paper.report import write_report
@@ -93,7 +92,6 @@ def paper(
         stage,
         robot,
         results,
-        source=source_hash(),
         tasks=task or (),
     )
     command = _command(quick=quick, seeds=typed_seeds, tasks=task or [], plain=plain)

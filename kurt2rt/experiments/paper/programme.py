@@ -1,13 +1,14 @@
 """What is to be done: every experiment, reading and seed as a job."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
-from kurt2rt.experiments.paper.made_of import Fingerprints
+from kurt2rt.experiments.paper.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
@@ -70,12 +71,12 @@ def plan(
     robot: RobotSettings,
     results: Results,
     *,
-    source: str,
+    source_of: Callable[[], str] = source_hash,
     tasks: Sequence[str] = (),
 ) -> Programme:
     """Look at every task and world, and make the jobs.
 
-    `source`: as made_of.source_hash tells; `tasks`: only these, by name or path; empty: all.
+    `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
 
     A task that has no experiment in `paper` is done, too; nothing is asked of it. Tasks without plain settings have no
     plain reading. Raises hal.settings.SettingsError, PaperError.
@@ -96,6 +97,7 @@ def plan(
         if reading == "shipped" or loaded[each.task].plain is not None
     ]
     stage.require_worlds(paper.testing_ground, *paper.worlds)
+    source = source_of()
     fingerprints = Fingerprints(stage, robot, source)
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
@@ -129,7 +131,7 @@ def plan(
 def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:
     known = {each.task: each for each in paper.experiments}
     if tasks:
-        others = {name: ExperimentSettings(task=name, title=name) for name in tasks if name not in known}
+        others = {name: ExperimentSettings(task=name, title=Path(name).stem) for name in tasks if name not in known}
         return [(known | others)[name] for name in dict.fromkeys(tasks)]
     return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
 

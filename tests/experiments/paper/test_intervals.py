@@ -1,5 +1,5 @@
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.experiments.paper.intervals import rate_of
@@ -25,6 +25,7 @@ def test_the_interval_is_the_same_every_time() -> None:
     assert rate_of([3, 0, 1], [0.5, 0.4, 0.5]) == rate_of([3, 0, 1], [0.5, 0.4, 0.5])
 
 
+@settings(max_examples=20)  # each draws 10 000 samples
 @given(st.lists(st.tuples(st.integers(0, 9), st.floats(0.1, 2.0)), min_size=1, max_size=20))
 def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) -> None:
     counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]

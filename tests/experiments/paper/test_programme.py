@@ -42,7 +42,7 @@ def planned(
         STAGE,
         ROBOT,
         Results(Path("never-made")),
-        source="s",
+        source_of=lambda: "s",
         tasks=tasks,
     )
 

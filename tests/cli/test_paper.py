@@ -1,0 +1,93 @@
+"""`kurt2rt paper` as a user meets it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from tests.cli.helpers import CommandLine
+
+
+def short_task(folder: Path, **teaching: Any) -> Path:
+    """The circle, taught and examined for seconds only."""
+    content = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())
+    content["name"] = "short_circle"
+    content["teaching"] |= {"supervised_s": 4.0, "corrections_s": 2.0} | teaching
+    content["exam"]["duration_s"] = 2.0
+    path = folder / "short.yaml"
+    path.write_text(yaml.safe_dump(content))
+    return path
+
+
+def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    words = ("paper", "--task", short_task(tmp_path), "--seeds", "100", "--jobs", "1", "--no-plain", "--out", "made")
+    first = kurt2rt(*words)
+    assert first.exit_code == 0, first.err
+    assert "Exams without teacher" in first.out
+    assert "short circle" in first.out
+    assert "Plain reading" not in first.out
+    assert first.out.endswith("report  made/report.html\n")
+    made = sorted(str(path.relative_to("made")) for path in Path("made").rglob("*") if path.is_file())
+    assert made == [
+        ".lock",
+        "drive-short_circle.png",
+        "fig4.png",
+        "fig6.png",
+        "knowledge/shipped/short_circle-100.knowledge",
+        "report.html",
+        "results/shipped/short_circle-100.json",
+    ]
+    report = Path("made/report.html").read_text()
+    assert "kurt2rt paper --seeds 100 --task short.yaml --no-plain" in report
+    assert str(tmp_path) not in report
+
+    short_task(tmp_path, supervised_s=5.0)
+    assert kurt2rt.refused(*words).endswith(
+        "made: results/shipped/short_circle-100.json were made with other settings or another program "
+        "(what differs: task); give a new folder with --out, or delete the results in this one"
+    )
+
+
+def test_an_unknown_task_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
+    said = kurt2rt.refused("paper", "--task", "sledging", "--out", "made")
+    assert "sledging: no such file in tasks; give a path to a .yaml file or one of: circle, " in said
+    assert not Path("made").exists()
+
+
+def test_an_unknown_world_is_refused_before_anything_runs(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    said = kurt2rt.refused("paper", "--task", short_task(tmp_path, world="nowhere"), "--out", "made")
+    assert "nowhere: no such file in worlds" in said
+    assert not Path("made").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    Path("made").write_text("a file")
+    said = kurt2rt.refused("paper", "--task", short_task(tmp_path), "--out", "made")
+    assert "made" in said
+    assert "give a path that can be written" in said
+
+
+def test_seeds_that_are_none_are_refused(kurt2rt: CommandLine) -> None:
+    assert "is no list of seeds" in kurt2rt.misused("paper", "--seeds", "many")
+
+
+@pytest.mark.deep
+def test_quick_does_a_part_of_everything_and_goes_on_where_it_was(kurt2rt: CommandLine) -> None:
+    words = ("paper", "--quick", "--jobs", "2")
+    first = kurt2rt(*words)
+    assert first.exit_code == 0, first.err
+    assert "A part only" in first.out
+    assert "MISSED" not in first.out
+    results = sorted(Path("results/paper-quick/results").rglob("*.json"))
+    assert len(results) == 28
+    contents = [path.read_bytes() for path in results]
+    stamps_ns = [path.stat().st_mtime_ns for path in results]
+
+    results[3].unlink()
+    again = kurt2rt(*words)
+    assert again.out == first.out
+    assert [path.read_bytes() for path in results] == contents
+    changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
+    assert changed == [place == 3 for place in range(28)]

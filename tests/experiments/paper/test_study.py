@@ -1,0 +1,145 @@
+"""From a plan to results, pictures and a report, on the simulated robot."""
+
+import base64
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from kurt2rt.experiments.paper.report import write_report
+from kurt2rt.experiments.paper.results import Results
+from kurt2rt.experiments.paper.study import conduct
+from kurt2rt.experiments.paper.tables import sheets
+from kurt2rt.knowledge.opening import read_lessons
+from tests.experiments.helpers import ROBOT
+from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
+
+_VOID = {"meta", "img", "br", "hr", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Reads a page as strictly as it was meant: every tag that opens closes, in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.images: list[str] = []
+        self.tags: list[str] = []
+        self.addresses: list[str] = []
+        self._open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self._open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        for name, value in attrs:
+            if name in ("src", "href", "action", "srcset", "data"):
+                self.addresses.append(value or "")
+            if tag == "img" and name == "alt":
+                self.images.append(value or "")
+        if tag not in _VOID:
+            self._open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self._open.pop() == tag
+
+
+def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> None:
+    folder = tiny.results.folder
+    assert tiny.results.missing(tiny.programme.jobs) == []
+    assert not list(folder.glob("unfinished-*"))
+    for experiment in tiny.programme.experiments:
+        (job,) = experiment.jobs
+        (outcome,) = next(
+            each.outcomes for each in tiny.study.of(job.reading) if each.task.name == experiment.task.name
+        )
+        lessons = read_lessons(folder / f"knowledge/{job.reading}/{job.task.name}-100.knowledge", ROBOT, job.task)
+        assert len(lessons) >= outcome.rlas > 0
+        assert [drive.world for drive in outcome.drives] == [*job.task.exam.worlds, *job.unseen]
+        assert all(len(drive.trail) == 5 for drive in outcome.drives)  # 1 s, 0.2 s from one to the next
+    growth = tiny.programme.growth[0].jobs
+    assert {job.radius for job in growth} == {700.0}
+
+
+def test_a_run_that_was_interrupted_does_only_what_is_missing(tiny: Tiny, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    programme = tiny_programme(results, "eight")
+    first, second = (job.file for job in programme.jobs)
+    (tmp_path / first).parent.mkdir(parents=True)
+    (tmp_path / first).write_bytes((tiny.results.folder / first).read_bytes())
+    stamp_ns = (tmp_path / first).stat().st_mtime_ns
+
+    conduct(programme, results.missing(programme.jobs), 1, lambda _: None)
+    assert (tmp_path / first).stat().st_mtime_ns == stamp_ns
+    assert (tmp_path / second).read_bytes() == (tiny.results.folder / second).read_bytes()
+    assert results.missing(programme.jobs) == []
+
+
+def test_two_runs_come_to_the_same_file_byte_for_byte(tiny: Tiny, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    programme = tiny_programme(results, "eight")
+    conduct(programme, [0], 1, lambda _: None)
+    file = programme.jobs[0].file
+    assert (tmp_path / file).read_bytes() == (tiny.results.folder / file).read_bytes()
+
+
+def test_every_figure_is_drawn_under_its_name(tiny: Tiny) -> None:
+    assert [each.path.name for each in tiny.pictures] == [
+        "fig2.png",
+        "fig4.png",
+        "fig6.png",
+        "fig7.png",
+        "drive-wall_following.png",
+        "drive-eight.png",
+    ]
+    for each in tiny.pictures:
+        height, width, _ = imread(each.path).shape
+        assert min(height, width) > 500
+
+
+def test_the_report_holds_every_figure_and_every_table(tiny: Tiny) -> None:
+    text = tiny.report.read_text(encoding="utf-8")
+    page = Page(text)
+    assert page.images == [each.title for each in tiny.pictures]
+    pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
+    assert pictures == [each.path.read_bytes() for each in tiny.pictures]
+    titles = [sheet.title for sheet in sheets(tiny.study)]
+    assert len(titles) == len(set(titles)) == 10
+    assert all(f"<caption>{title}</caption>" in text for title in titles)
+    assert page.tags.count("table") == len(titles) + 3  # generated worlds in both readings, and the settings
+
+
+def test_the_report_needs_nothing_but_itself(tiny: Tiny) -> None:
+    text = re.sub(r"data:image/png;base64,[A-Za-z0-9+/=]+", "", tiny.report.read_text(encoding="utf-8"))
+    assert "://" not in text
+    assert "url(" not in text
+    assert "<script" not in text
+    assert str(tiny.results.folder) not in text
+
+
+def test_the_report_says_how_it_was_made_and_that_it_is_a_part(tiny: Tiny) -> None:
+    text = tiny.report.read_text(encoding="utf-8")
+    assert f"<code>{COMMAND}</code>" in text
+    assert "Lessons last at most 4 s" in text
+    assert "nothing about the paper" in text
+    assert "numpy" in text
+    assert "MISSED" not in text  # seconds of teaching judge nothing
+
+
+def test_what_is_filled_into_the_report_is_escaped(tiny: Tiny, tmp_path: Path) -> None:
+    evil = [replace(tiny.pictures[1], caption="<script>alert(1)</script>")]
+    report = tmp_path / "report.html"
+    write_report(tiny.study, evil, "kurt2rt paper --task a<b", report)
+    text = report.read_text(encoding="utf-8")
+    assert "<script" not in text
+    assert "a&lt;b" in text
+
+
+@pytest.mark.parametrize("how", ["", "Plain reading: "], ids=["shipped", "plain"])
+def test_both_readings_have_their_tables(tiny: Tiny, how: str) -> None:
+    titles = {sheet.title.lower() for sheet in sheets(tiny.study)}
+    for what in ("what was asked", "what was taught", "exams without teacher", "drives of these exams"):
+        assert (how + what).lower() in titles
