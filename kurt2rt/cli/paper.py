@@ -121,7 +121,10 @@ class _Bar:
 
     def look(self, standing: "Standing") -> None:
         """How far the jobs are."""
-        self._progress.update(self._id, completed=standing.done_s, description="; ".join(standing.running))
+        first, *others = standing.running or ("",)
+        # One name and a number, so that the times beside it have room.
+        doing = f"{first} and {len(others)} more" if others else first
+        self._progress.update(self._id, completed=standing.done_s, description=doing)
 
     def say(self, what: str) -> None:
         """What is done after them."""
@@ -132,7 +135,7 @@ class _Bar:
 def _bar(whole_s: float) -> Iterator[_Bar]:
     columns = (
         TextColumn("{task.description}"),
-        BarColumn(),
+        BarColumn(bar_width=20),
         TaskProgressColumn(),
         TimeElapsedColumn(),
         TimeRemainingColumn(),
