@@ -117,7 +117,7 @@ def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("demo", "--task", "nope"), "nope: no such file in tasks; give a path to a .yaml file or one of: wall_follow"),
+        (("demo", "--task", "nope"), "nope: no such file in tasks; give a path to a .yaml file or one of: circle"),
         (("lesson", "--task", "nope"), "nope: no such file in tasks"),
         (("lesson", "--robot-settings", "nope"), "nope: no such file in robots; give a path to a .yaml file or one of"),
         (("demo", "--robot-settings", "nope"), "nope: no such file in robots"),
