@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kurt2rt.experiments.pool import Standing
 
 _SEEDS, _QUICK_SEEDS = "100-119", "100-101"
+_WIDTH = 120
 _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 
@@ -105,6 +106,8 @@ def paper(
             report = results.folder / "report.html"
             write_report(study, pictures, command, report)
     console = Console()
+    if not console.is_terminal:
+        console = Console(width=_WIDTH)  # in a file a table need not be as narrow as a terminal that nobody has
     for sheet in sheets(study):
         console.print(as_rich(sheet))
     if not extent.is_whole:

@@ -27,6 +27,8 @@ def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
     total = sum(exposures)
     if not any(counts):
         return Rate(0.0, 0.0, -math.log(0.025) / total)
+    if len(counts) == 1:  # it says nothing of how robots differ
+        return Rate(sum(counts) / total, 0.0, math.inf)
     chance = np.random.default_rng(_BOOTSTRAP_SEED)
     drawn = chance.integers(len(counts), size=(_RESAMPLES, len(counts)))
     rates = np.asarray(counts)[drawn].sum(axis=1) / np.asarray(exposures)[drawn].sum(axis=1)

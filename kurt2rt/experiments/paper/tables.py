@@ -92,7 +92,7 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         ("task", "world", "success", "95 %", "stuck", "collided", "in 10 min", "95 %"),
         tuple(rows),
         words=2,
-        note=f"Exams of {', '.join(f'{time_s:g}' for time_s in times)} s. Success with Wilson's interval. Stuck: or "
+        note=f"Exams of {' or '.join(f'{time_s:g}' for time_s in times)} s. Success with Wilson's interval. Stuck: or "
         "stopped by the guard for good. Collided: robots with any collision. In 10 min: collisions of all robots, with "
         "a bootstrap interval over robots; where there was none, with Poisson's exact upper end.",
     )

@@ -1,3 +1,5 @@
+import math
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -19,6 +21,10 @@ def test_collisions_of_one_bad_robot_are_less_sure_than_those_of_many() -> None:
     assert (spread.low, spread.high) == (1.0, 1.0)
     assert clustered.low == 0.0
     assert clustered.high >= 3.0
+
+
+def test_one_robot_says_nothing_of_others() -> None:
+    assert rate_of([3], [0.5]) == (6.0, 0.0, math.inf)
 
 
 def test_the_interval_is_the_same_every_time() -> None:

@@ -47,7 +47,9 @@ def draw_drives(stage: PaperStage, drives: Sequence[DriveOutcome], path: Path) -
 def _told(drive: DriveOutcome) -> str:
     collisions = f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
     verdict = "success" if drive.succeeded else "no success"
-    return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}"
+    early = drive.alarm or ("stuck" if drive.stuck else "")
+    end = f", {early} after {drive.duration_s:.0f} s" if early else ""
+    return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}{end}"
 
 
 def _draw_drive(axes: Axes, stage: PaperStage, drive: DriveOutcome) -> None:
@@ -57,7 +59,10 @@ def _draw_drive(axes: Axes, stage: PaperStage, drive: DriveOutcome) -> None:
         axes.plot(*_columns(way), color=TRAIL, linewidth=0.9, zorder=3, label=label)
         label = None
     if drive.trail:
-        axes.plot(*_columns(drive.trail[:1]), "s", color=START, markersize=8, zorder=6, label="start")
+        # Hollow, for a robot that knows nothing asks where it starts.
+        axes.plot(
+            *_columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start"
+        )
     if drive.asked_at:
         label = f"situation unknown ({len(drive.asked_at)})"
         axes.plot(*_columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
