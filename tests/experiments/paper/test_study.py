@@ -64,7 +64,9 @@ def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> 
     assert {job.radius for job in growth} == {700.0}
 
 
-def test_a_run_that_was_interrupted_does_only_what_is_missing(tiny: Tiny, tmp_path: Path) -> None:
+def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same_byte_for_byte(
+    tiny: Tiny, tmp_path: Path
+) -> None:
     results = Results(tmp_path)
     programme = tiny_programme(results, "eight")
     first, second = (job.file for job in programme.jobs)
@@ -76,14 +78,6 @@ def test_a_run_that_was_interrupted_does_only_what_is_missing(tiny: Tiny, tmp_pa
     assert (tmp_path / first).stat().st_mtime_ns == stamp_ns
     assert (tmp_path / second).read_bytes() == (tiny.results.folder / second).read_bytes()
     assert results.missing(programme.jobs) == []
-
-
-def test_two_runs_come_to_the_same_file_byte_for_byte(tiny: Tiny, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    programme = tiny_programme(results, "eight")
-    conduct(programme, [0], 1, lambda _: None)
-    file = programme.jobs[0].file
-    assert (tmp_path / file).read_bytes() == (tiny.results.folder / file).read_bytes()
 
 
 def test_every_figure_is_drawn_under_its_name(tiny: Tiny) -> None:
