@@ -1,5 +1,7 @@
 """Through streets: straight on, left or right at the next junction, in the middle of the street on the way."""
 
+import math
+from collections.abc import Sequence
 from typing import Annotated
 
 from pydantic import Field
@@ -9,6 +11,8 @@ from behaviors.policies.distances import (
     FRONT_LEFT_EDGE,
     FRONT_RIGHT_EDGE,
     LEFT_FRONT_TO_BACK,
+    REAR_LEFT_EDGE,
+    REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
     Distances,
 )
@@ -16,21 +20,29 @@ from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
 
 Distance = Annotated[float, Field(ge=0.05, le=0.6)]
+Tolerance = Annotated[float, Field(gt=0, le=0.2)]
+
+_LEFT = (FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK, REAR_LEFT_EDGE)
+_RIGHT = (FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
+_BESIDE = slice(1, -1)
+_FIRST_BESIDE = 1
 
 
 class StreetsSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face."""
+    """What the teacher looks for; distances from the sensor's face unless said otherwise."""
 
-    beside_m: Distance
-    """Distance to a wall on either side in the middle of the street."""
-    tolerance_m: Annotated[float, Field(gt=0, le=0.2)]
+    half_width_m: Annotated[float, Field(ge=0.2, le=0.8)]
+    """From the middle of the street to a wall; for where only one wall is seen."""
+    look_m: Annotated[float, Field(ge=0, le=1)]
+    """So far ahead of its centre the robot is to be in the middle, which corrects its heading as well."""
+    tolerance_m: Tolerance
     """Dead band round the middle in which the robot drives straight on."""
-    heading_weight_m: Annotated[float, Field(ge=0, le=1)]
-    """Metres of error that one radian of heading error counts for."""
+    curve_m: Tolerance
+    """Farther off the middle than this it takes a sharp curve."""
+    crossing_tolerance_m: Tolerance
+    """Dead band in a crossing, where only corners are seen."""
     front_m: Distance
     """A wall ahead nearer than this makes the robot turn on the spot."""
-    edge_m: Distance
-    """A corner nearer than this to a sensor that looks ahead to the side makes the robot turn away from it."""
     open_m: Distance
     """A wall farther than this leaves a side open."""
 
@@ -40,48 +52,86 @@ class StreetsSettings(PolicySettings):
 
 
 class Streets:
-    """Keeps to the middle between both walls, or off the one there is; curves round the corner where it is to turn."""
+    """Keeps to the middle between both walls, or off the one there is; curves round the corner where it is to turn.
+
+    Straight on through a crossing it goes by what the edge sensors see of the corners: all side sensors look into the
+    open there, and a robot that enters askew would run into the far corner.
+    """
 
     def __init__(self, settings: StreetsSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
-        self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
-        self._left = distances.of(*LEFT_FRONT_TO_BACK)
-        self._right = distances.of(*RIGHT_FRONT_TO_BACK)
-        front_m, *_, back_m = distances.ahead_m(*LEFT_FRONT_TO_BACK)
-        self._baseline_m = front_m - back_m
+        self._left, self._right = distances.of(*_LEFT), distances.of(*_RIGHT)
+        self._left_wall, self._right_wall = _Wall(infrared, _LEFT, 1.0), _Wall(infrared, _RIGHT, -1.0)
+        edge = infrared.sensors[infrared.names.index(FRONT_LEFT_EDGE)]
+        self._half_across = 0.5 * math.sin(math.radians(edge.heading_deg))
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
         """Name of the action."""
         want = self._settings
-        left_edge, right_edge = self._edges(infrared_counts)
-        if min(self._front(infrared_counts)) < want.front_m:
-            return "spin_right" if behaviour == "turn_right" else "spin_left"
-        if min(left_edge, right_edge) < want.edge_m:
-            # Curves, since spins at one corner and at the other would undo each other for ever.
-            return "curve_right" if left_edge < right_edge else "curve_left"
+        front = self._front(infrared_counts)
         left, right = self._left(infrared_counts), self._right(infrared_counts)
-        if behaviour == "turn_left" and min(left[:2]) > want.open_m:
-            return "curve_left"
-        if behaviour == "turn_right" and min(right[:2]) > want.open_m:
-            return "curve_right"
-        errors_m = [error for error in (self._error_m(left), self._minus(self._error_m(right))) if error is not None]
-        if not errors_m:
-            return "forward"
-        error_m = sum(errors_m) / len(errors_m)
+        if min(front) < want.front_m:
+            return f"spin_{_turn_of(behaviour) or ('left' if front[0] > front[-1] else 'right')}"
+        if behaviour == "turn_left" and left[_FIRST_BESIDE] > want.open_m:
+            return "sharp_left"
+        if behaviour == "turn_right" and right[_FIRST_BESIDE] > want.open_m:
+            return "sharp_right"
+        crossing = min(left[_FIRST_BESIDE], right[_FIRST_BESIDE]) > want.open_m
+        error_m = self._error_m(left, right, with_edges=not _turn_of(behaviour))
         side = "left" if error_m > 0 else "right"
-        if abs(error_m) > 3 * want.tolerance_m:
-            return f"curve_{side}"
-        return f"bear_{side}" if abs(error_m) > want.tolerance_m else "forward"
+        if abs(error_m) > want.curve_m and not crossing:
+            return f"sharp_{side}"
+        tolerance_m = want.crossing_tolerance_m if crossing else want.tolerance_m
+        return f"bear_{side}" if abs(error_m) > tolerance_m else "forward"
 
-    def _error_m(self, wall: tuple[float, ...]) -> float | None:
-        """How much too far off the wall, or turned from it; None where there is none along the whole side."""
-        if max(wall) > self._settings.open_m:
+    def _error_m(self, left: Sequence[float], right: Sequence[float], *, with_edges: bool) -> float:
+        """How far the middle of the street lies to the left of where the robot is heading."""
+        want = self._settings
+        sensors = slice(None) if with_edges else _BESIDE
+        to_left_m = self._left_wall.away_m(left, sensors, want.look_m, want.open_m)
+        to_right_m = self._right_wall.away_m(right, sensors, want.look_m, want.open_m)
+        if to_left_m is not None and to_right_m is not None:
+            return (to_left_m - to_right_m) / 2
+        if to_left_m is not None:
+            return to_left_m - want.half_width_m
+        if to_right_m is not None:
+            return want.half_width_m - to_right_m
+        if max(left[0], right[0]) < want.open_m:  # two corners ahead, one to each side
+            return (left[0] - right[0]) * self._half_across
+        return 0.0
+
+
+class _Wall:
+    """Where the wall on one side runs, as far as the sensors of that side show it."""
+
+    def __init__(self, infrared: InfraredSettings, names: Sequence[str], outward: float) -> None:
+        """`names` from front to back; `outward` is 1 for the left side, -1 for the right."""
+        sensors = [infrared.sensors[infrared.names.index(name)] for name in names]
+        self._rays = [
+            (
+                sensor.x_m,
+                outward * sensor.y_m,
+                math.cos(math.radians(sensor.heading_deg)),
+                outward * math.sin(math.radians(sensor.heading_deg)),
+            )
+            for sensor in sensors
+        ]
+
+    def away_m(self, distances: Sequence[float], sensors: slice, look_m: float, reach_m: float) -> float | None:
+        """How far off it is `look_m` ahead of the robot's centre; None where fewer than two points of it are seen."""
+        points = [
+            (x_m + along * distance_m, y_m + across * distance_m)
+            for (x_m, y_m, along, across), distance_m in zip(self._rays[sensors], distances[sensors], strict=True)
+            if distance_m < reach_m
+        ]
+        if len(points) < 2:
             return None
-        turned_away = (wall[0] - wall[-1]) / self._baseline_m
-        return min(wall) - self._settings.beside_m + self._settings.heading_weight_m * turned_away
+        (first_x, first_y), (last_x, last_y) = points[0], points[-1]
+        return first_y + (look_m - first_x) * (first_y - last_y) / (first_x - last_x)
 
-    @staticmethod
-    def _minus(error_m: float | None) -> float | None:
-        return None if error_m is None else -error_m
+
+def _turn_of(behaviour: str) -> str:
+    """`left`, `right`, or empty for straight on."""
+    return behaviour.removeprefix("turn_") if behaviour.startswith("turn_") else ""
