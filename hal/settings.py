@@ -1,6 +1,7 @@
 """The one loader of settings: a YAML file becomes a checked, frozen model, or one clear line says why not."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -65,9 +66,10 @@ def find_config(kind: str, name_or_path: str) -> Path:
     raise SettingsError(f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {names}")
 
 
-def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
-    """Read `path` and check it against `schema`.
+def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
+    """Read `path`, change what `changes` says, and check it against `schema`.
 
+    `changes`: values in YAML by key, with dots between the levels (`learning.radius`).
     Raises SettingsError with one line that names file, key and what is allowed.
     """
     try:
@@ -76,8 +78,12 @@ def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
         raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error
     try:
         content = yaml.load(text, Loader=_StrictLoader)
+        for key, value in (changes or {}).items():
+            _change(content, key, yaml.load(value, Loader=_StrictLoader), path)
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
         as_json = json.dumps(content, default=str)
+    except SettingsError:
+        raise
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict):
@@ -91,6 +97,16 @@ def load_settings(path: Path, schema: type[SettingsT]) -> SettingsT:
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         explained = " ".join(_explain(problems[0], schema).split())  # a key may hold a line break
         raise SettingsError(f"{path}: {explained}{more}") from error
+
+
+def _change(content: Any, key: str, value: Any, path: Path) -> None:
+    """Put a value at a key; a level that is not there is made, and refused by the schema if it should not be."""
+    *levels, last = key.split(".")
+    for level in levels:
+        content = content.setdefault(level, {}) if isinstance(content, dict) else None
+    if not isinstance(content, dict):
+        raise SettingsError(f"{path}: {key}: no such key; nothing stands within {'.'.join(levels)}")
+    content[last] = value
 
 
 def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:

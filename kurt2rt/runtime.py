@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from behaviors.repertoire import load_repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
@@ -13,6 +11,7 @@ from kurt2rt.layers.level import Level
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
+from kurt2rt.perception.weights import weights_of
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
@@ -66,7 +65,8 @@ def build_runtime(
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    weights = np.repeat((1.0, task.learning.past_weight), len(definition.features))
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = weights_of(definition, changed, task.learning.past_weight)
     system = RlaSystem(definition.dimensions, task.learning.radius, weights)
     events = tuple(events)
     system.apply_all(events)

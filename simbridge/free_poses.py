@@ -8,8 +8,10 @@ from simbridge.pose import Pose
 from simbridge.sight import Sight
 from simbridge.world import World
 
-_CLEARANCE_M = 0.05
-"""As of the start poses: nearer to a wall a robot that turns would begin with a collision."""
+_CLEARANCE_M = 0.1
+"""Nearer to a wall a robot that turns on the spot would begin with a collision."""
+_IN_SIGHT_M = 0.45
+"""What is farther from a sensor is hardly told from nothing."""
 _ON_A_POST_M = 0.001
 _TRIES = 100_000
 """Where the only post is small and the room large, some thousands are needed."""
@@ -22,8 +24,7 @@ class FreePoses:
         self._world = world
         self._geometry = robot.geometry
         self._sensors = robot.infrared.sensors
-        self._far_m = robot.infrared.far_m
-        reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + self._far_m
+        reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + _IN_SIGHT_M
         self._sight = Sight(world, reach_m)
 
     def draw(self, chance: random.Random) -> Pose:
@@ -45,9 +46,9 @@ class FreePoses:
             y_m = pose.y_m + sensor.x_m * sin + sensor.y_m * cos
             direction_rad = pose.heading_rad + math.radians(sensor.heading_deg)
             along_x, along_y = math.cos(direction_rad), math.sin(direction_rad)
-            away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, self._far_m)
+            away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, _IN_SIGHT_M)
             at = (x_m + away_m * along_x, y_m + away_m * along_y)
-            if away_m < self._far_m and (
+            if away_m < _IN_SIGHT_M and (
                 not posts or any(math.dist(at, (post.x_m, post.y_m)) <= post.radius_m + _ON_A_POST_M for post in posts)
             ):
                 return True

@@ -304,6 +304,33 @@ def test_the_plain_reading_of_the_paper_is_another_way_to_learn_the_same_task() 
     assert plain.model_copy(update={"learning": task.learning}) == task
 
 
+def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
+    task = load_task("streets", changes={"learning.radius": "300", "exam.worlds": "[streets-3]"})
+    assert task.learning.radius == 300.0
+    assert task.exam.worlds == ("streets-3",)
+    assert task.model_copy(update={"learning": load_task("streets").learning}).teaching == load_task("streets").teaching
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("learning.radios", "3", "learning.radios: no such key; allowed here: radius"),
+        ("learning.radius", "near", "learning.radius: Input should be a valid number (found 'near')"),
+        ("learning.radius", "-1", "learning.radius: Input should be greater than 0 (found -1)"),
+        ("names.first", "x", "names: no such key; allowed here: name"),
+        ("name.first", "x", "name.first: no such key; nothing stands within name"),
+        ("exam.worlds.0", "a", "exam.worlds.0: no such key; nothing stands within exam.worlds"),
+        ("learning.radius", "[", "not valid YAML"),
+    ],
+)
+def test_a_value_from_elsewhere_is_checked_as_the_file_s_own(key: str, value: str, told: str) -> None:
+    with pytest.raises(SettingsError) as caught:
+        load_task("streets", changes={key: value})
+    assert "streets.yaml: " in str(caught.value)
+    assert told in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 def test_several_mistakes_are_counted(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace("cycle_s: 0.01 ", "cycle_s: x ").replace("far_m: 0.60", "far_m: x"))

@@ -4,17 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.policies.distances import (
-    FRONT,
-    FRONT_LEFT_EDGE,
-    FRONT_RIGHT_EDGE,
-    LEFT_FRONT_TO_BACK,
-    REAR,
-    REAR_LEFT_EDGE,
-    REAR_RIGHT_EDGE,
-    RIGHT_FRONT_TO_BACK,
-    Distances,
-)
+from behaviors.policies.distances import LEFT_FRONT_TO_BACK, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
 
@@ -24,16 +14,12 @@ Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 class CircleSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face."""
 
-    wanted_m: Distance
-    """Distance to the object on the left."""
     near_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn right on the spot, until it is on the left."""
+    """An object on the left nearer than this makes the robot drive straight on."""
+    far_m: Distance
+    """Farther than this the object may only be ahead of abeam a little: the robot curves in sooner."""
     lost_m: Distance
-    """What is farther than this is not seen."""
-    inward_share: Annotated[float, Field(ge=0, le=5)]
-    """Metres ahead of the robot's centre at which the object should lie, for each metre that it is too far off."""
-    tolerance_m: Annotated[float, Field(gt=0, le=0.3)]
-    """How far ahead of, or behind, that place it may lie."""
+    """What is farther on the left than this is not seen."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
         """The policy."""
@@ -41,37 +27,24 @@ class CircleSettings(PolicySettings):
 
 
 class Circle:
-    """Curve left with the object abeam; less while it lies ahead, more while it lies behind."""
+    """With the object on the left it curves: sharply where that is behind abeam, else a little.
+
+    Whatever else it sees, or where it sees nothing, it turns on the spot until the object is on the left: one answer to
+    all that looks different and asks for the same, and no way on which the object passes by on the wrong side.
+    """
 
     def __init__(self, settings: CircleSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
-        distances = Distances(infrared)
-        self._left = distances.of(*LEFT_FRONT_TO_BACK)
-        self._left_ahead_m = distances.ahead_m(*LEFT_FRONT_TO_BACK)
-        self._front = distances.of(*FRONT)
-        self._to_turn_right = distances.of(FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
-        self._to_turn_left = distances.of(*REAR, REAR_LEFT_EDGE)
-        self._edge = distances.of(FRONT_LEFT_EDGE)
+        self._left = Distances(infrared).of(*LEFT_FRONT_TO_BACK)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Name of the action."""
         want = self._settings
-        front = min(self._front(infrared_counts))
         left = self._left(infrared_counts)
         nearest = min(left)
-        (edge,) = self._edge(infrared_counts)
-        if front < want.near_m or edge < want.wanted_m / 2:
-            return "spin_right"
-        if nearest < want.lost_m:
-            ahead_m = self._left_ahead_m[left.index(nearest)]
-            error_m = ahead_m - want.inward_share * (nearest - want.wanted_m)
-            if error_m > want.tolerance_m:
-                return "bear_right" if error_m > 3 * want.tolerance_m else "forward"
-            return "spin_left" if error_m < -3 * want.tolerance_m else "curve_left"
-        if edge < want.lost_m or front < want.lost_m:
-            return "forward"
-        if min(self._to_turn_right(infrared_counts)) < want.lost_m:
-            return "spin_right"
-        if min(self._to_turn_left(infrared_counts)) < want.lost_m:
+        if nearest >= want.lost_m:
             return "spin_left"
-        return "curve_left"
+        if nearest < want.near_m:
+            return "forward"
+        ahead = left[:1] if nearest > want.far_m else left[:2]
+        return "bear_left" if min(ahead) <= nearest else "sharp_left"

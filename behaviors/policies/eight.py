@@ -17,20 +17,21 @@ from hal.robot_settings import InfraredSettings
 
 Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
+_UNSEEN = len(LEFT_FRONT_TO_BACK)
+"""Place of a column, from front to back, that none of a side's sensors sees: behind all others."""
+
 
 class EightSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face."""
 
-    wanted_m: Distance
-    """Distance to the column beside the robot."""
-    tolerance_m: Annotated[float, Field(gt=0, le=0.2)]
-    """Dead band round it in which the robot keeps its curve."""
+    near_m: Distance
+    """A column nearer than this makes the robot drive straight on."""
+    far_m: Distance
+    """Farther than this the column may only be ahead of abeam a little: the robot curves in sooner."""
     front_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn right on the spot."""
+    """An obstacle ahead nearer than this makes the robot turn on the spot, away from the column beside it."""
     lost_m: Distance
     """What is farther than this is not seen."""
-    heading_weight: Annotated[float, Field(ge=0, le=2)]
-    """Metres of error for each metre by which the column is farther from the front sensor than from the back one."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
         """The policy."""
@@ -38,7 +39,7 @@ class EightSettings(PolicySettings):
 
 
 class Eight:
-    """Goes round the column that lies more ahead; straight on from one to the other when both do.
+    """Goes round the column that lies farther ahead; straight on from one to the other.
 
     So it needs no memory: it leaves a column as soon as the other one comes into view, and then it has its back to it.
     """
@@ -47,33 +48,38 @@ class Eight:
         self._settings = settings
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
-        self._left = distances.of(FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK)
-        self._right = distances.of(FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK)
+        self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
+        self._left = distances.of(*LEFT_FRONT_TO_BACK)
+        self._right = distances.of(*RIGHT_FRONT_TO_BACK)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Name of the action."""
         want = self._settings
-        if min(self._front(infrared_counts)) < want.front_m:
-            return "spin_right"
         left, right = self._left(infrared_counts), self._right(infrared_counts)
-        left_ahead, right_ahead = min(left[:2]) < want.lost_m, min(right[:2]) < want.lost_m
-        left_seen, right_seen = min(left) < want.lost_m, min(right) < want.lost_m
-        if left_ahead and right_ahead:
+        left_edge, right_edge = self._edges(infrared_counts)
+        if min(self._front(infrared_counts)) < want.front_m:
+            return "spin_right" if min(left) <= min(right) else "spin_left"
+        at_left, at_right = self._place(left), self._place(right)
+        if at_left == at_right == _UNSEEN and min(left_edge, right_edge) >= want.lost_m:
+            return "curve_left"
+        # Across: the other column is ahead to the side where nothing is abeam yet.
+        if (at_left == _UNSEEN and left_edge < want.lost_m) or (at_right == _UNSEEN and right_edge < want.lost_m):
             return "forward"
-        if right_ahead or (right_seen and not left_seen):
-            return self._round(right[1:], "right", "left")
-        if left_seen and (left_ahead or not right_seen):
-            return self._round(left[1:], "left", "right")
-        return "forward" if left_seen else "curve_left"
+        if at_left <= at_right:
+            return self._round(left, at_left, at_right, "left")
+        return self._round(right, at_right, at_left, "right")
 
-    def _round(self, beside: tuple[float, ...], here: str, away: str) -> str:
+    def _place(self, side: tuple[float, ...]) -> int:
+        """Which sensor of a side, from front to back, is nearest to the column."""
+        nearest = min(side)
+        return side.index(nearest) if nearest < self._settings.lost_m else _UNSEEN
+
+    def _round(self, side: tuple[float, ...], at: int, other_at: int, name: str) -> str:
         want = self._settings
-        if min(beside) > want.lost_m:  # only the edge sees it yet
+        if other_at < _UNSEEN and at <= 1:  # across, too: the other one is behind
             return "forward"
-        turned_away_m = min(beside[0], want.lost_m) - min(beside[3], want.lost_m)
-        error_m = min(beside) - want.wanted_m + want.heading_weight * turned_away_m
-        if error_m > want.tolerance_m:
-            return f"curve_{here}"
-        if error_m < -3 * want.tolerance_m:
-            return f"bear_{away}"
-        return "forward" if error_m < -want.tolerance_m else f"bear_{here}"
+        nearest = min(side)
+        if nearest < want.near_m:
+            return "forward" if at < len(side) - 1 else f"bear_{name}"
+        ahead = at == 0 if nearest > want.far_m else at <= 1
+        return f"bear_{name}" if ahead else f"curve_{name}"

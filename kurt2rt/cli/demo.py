@@ -6,7 +6,7 @@ import anyio
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import OutFolder, Plain, RobotName, Seed, TaskName, WireName
+from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.report import render_curriculum
@@ -17,6 +17,7 @@ from kurt2rt.tasks.settings import load_task
 def demo(
     task: TaskName = "wall_following",
     plain: Plain = False,
+    changes: Changes = None,
     seed: Seed = 1,
     out: OutFolder = Path("results/demo"),
     robot_settings: RobotName = "kurt2",
@@ -38,7 +39,7 @@ def demo(
     from kurt2rt.simulated import SimulatedStage
 
     settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain)
+    taught = load_task(task, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
     stage.require_worlds(taught.teaching.world, *taught.exam.worlds)
     out.mkdir(parents=True, exist_ok=True)

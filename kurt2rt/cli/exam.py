@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import Plain, RobotName, Seed, TaskName, WireName
+from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.report import render_exams
@@ -20,6 +20,7 @@ def exam(
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")],
     task: TaskName = "wall_following",
     plain: Plain = False,
+    changes: Changes = None,
     seed: Seed = 1,
     world: Annotated[
         list[str] | None,
@@ -41,7 +42,7 @@ def exam(
     from kurt2rt.simulated import SimulatedStage
 
     settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain)
+    taught = load_task(task, plain=plain, changes=changes_of(changes))
     worlds = tuple(world) if world else taught.exam.worlds
     stage = SimulatedStage(settings, wire)
     stage.require_worlds(*worlds)

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import OutFolder, Plain, RobotName, Seed, TaskName, WireName
+from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.report import render_curriculum, render_seeds
@@ -22,6 +22,7 @@ from kurt2rt.tasks.settings import load_task
 def lesson(
     task: TaskName = "wall_following",
     plain: Plain = False,
+    changes: Changes = None,
     seed: Seed = 1,
     knowledge: Annotated[
         Path | None,
@@ -49,7 +50,7 @@ def lesson(
     from kurt2rt.simulated import SimulatedStage
 
     settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain)
+    taught = load_task(task, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
     stage.require_worlds(taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
     out.mkdir(parents=True, exist_ok=True)

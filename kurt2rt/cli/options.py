@@ -29,3 +29,23 @@ WireName = Annotated[
     ),
 ]
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for what is made; created when absent.")]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Another value for one key of the task's file, dots between its levels, e.g. learning.past_weight=1; "
+        "repeat for several. Teach and examine with the same ones.",
+    ),
+]
+
+
+def changes_of(words: list[str] | None) -> dict[str, str]:
+    """What --set says, by key. Raises typer.BadParameter."""
+    changes = {}
+    for word in words or ():
+        key, equals, value = word.partition("=")
+        if not (key and equals and value):
+            raise typer.BadParameter(f"{word!r} is no KEY=VALUE; give e.g. learning.past_weight=1", param_hint="--set")
+        changes[key] = value
+    return changes

@@ -99,6 +99,8 @@ async def examine(
     # The same course for the learner and for the teacher's own drive.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")
     drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
+    if task.exam.start == "in_sight":
+        drive.reposition(in_sight=True)
     trail: list[Position] = []
     unknown_positions: list[Position] = []
     collision_positions: list[Position] = []

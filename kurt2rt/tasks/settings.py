@@ -1,5 +1,6 @@
 """Schema of `config/tasks/*.yaml`."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -14,10 +15,23 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 
 
+Place = Literal["starts", "in_sight"]
+"""Where a hand sets the robot down: at a start pose, or anywhere free from where it sees something near (a post, where
+there are posts)."""
+
+
 def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
     if len(set(names)) < len(names):
         raise ValueError("each name may stand here once")
     return names
+
+
+class FeatureWeight(Settings):
+    """How much some features count in every distance, recent and averaged ones."""
+
+    weight: Annotated[float, Field(ge=0, le=10)]
+    features: Annotated[tuple[str, ...], Field(min_length=1)]
+    """By their names in the situation definition."""
 
 
 class LearningSettings(Settings):
@@ -26,7 +40,9 @@ class LearningSettings(Settings):
     radius: Annotated[float, Field(gt=0, le=100_000)]
     """Confidence radius R, in the units of the situation (counts)."""
     past_weight: Annotated[float, Field(ge=0, le=10)]
-    """Weight of the averaged features in every distance; the recent ones weigh 1."""
+    """What the averaged features weigh in every distance, as a share of what the recent ones do."""
+    weights: tuple[FeatureWeight, ...] = ()
+    """Features that do not weigh 1."""
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
@@ -65,8 +81,7 @@ class TeachingSettings(Settings):
     """A robot that makes no way for so long, without a question, is set down elsewhere by hand."""
     reposition_every_s: Seconds = 0.0
     """After each such time the robot is set down elsewhere, whatever it does; 0: never."""
-    reposition_to: Literal["starts", "in_sight"] = "starts"
-    """Where to: a start pose, or anywhere free from where it sees something (a post, where there are posts)."""
+    reposition_to: Place = "starts"
     teacher: TeacherSettings
 
     @property
@@ -89,6 +104,7 @@ class ExamSettings(Settings):
     """The course of an exam, without a teacher."""
 
     worlds: Annotated[tuple[str, ...], Field(min_length=1)]
+    start: Place = "starts"
     duration_s: Annotated[float, Field(ge=1, le=100_000)]
     stuck_after_s: Annotated[float, Field(gt=0, le=1000)]
     """No way made for so long is stuck, and ends the exam."""
@@ -128,10 +144,10 @@ class TaskSettings(Settings):
     paper: PaperResult
 
 
-def load_task(name_or_path: str, *, plain: bool = False) -> TaskSettings:
+def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, str] | None = None) -> TaskSettings:
     """Settings of a shipped task by name, or of a file by path; `plain`: for the plain reading of the paper.
 
-    Raises hal.settings.SettingsError.
+    `changes` as in hal.settings.load_settings. Raises hal.settings.SettingsError.
     """
-    task = load_settings(Path(find_config("tasks", name_or_path)), TaskSettings)
+    task = load_settings(Path(find_config("tasks", name_or_path)), TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task

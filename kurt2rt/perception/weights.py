@@ -1,0 +1,33 @@
+"""What each feature counts in the distance between a situation and a condition."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.settings import SettingsError
+from kurt2rt.perception.definition import SituationDefinition
+
+
+def weights_of(
+    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float
+) -> NDArray[np.float64]:
+    """Weights (d,): 1 for recent features but those of `changed`, and `past_weight` times that for averaged ones.
+
+    Raises SettingsError for a feature that the definition has not, or that is changed twice.
+    """
+    names = [feature.name for feature in definition.features]
+    recent = dict.fromkeys(names, 1.0)
+    seen: set[str] = set()
+    for features, weight in changed:
+        for name in features:
+            if name not in recent:
+                raise SettingsError(
+                    f"learning.weights: situation {definition.name} has no feature {name!r}; it has: {', '.join(names)}"
+                )
+            if name in seen:
+                raise SettingsError(f"learning.weights: {name!r} is given two weights; leave one out")
+            seen.add(name)
+            recent[name] = weight
+    values = np.array([recent[name] for name in names])
+    return np.concatenate((values, past_weight * values))
