@@ -27,10 +27,11 @@ class CircleSettings(PolicySettings):
 
 
 class Circle:
-    """With the object on the left it curves: sharply where that is behind abeam, else a little.
+    """With the object on the left it curves, less while that is ahead of abeam.
 
     Whatever else it sees, or where it sees nothing, it turns on the spot until the object is on the left: one answer to
-    all that looks different and asks for the same, and no way on which the object passes by on the wrong side.
+    all that looks different and asks for the same, and no way on which the object passes by on the wrong side. Not for
+    where walls are in reach: it would follow one, and never looks ahead.
     """
 
     def __init__(self, settings: CircleSettings, infrared: InfraredSettings) -> None:
@@ -47,4 +48,4 @@ class Circle:
         if nearest < want.near_m:
             return "forward"
         ahead = left[:1] if nearest > want.far_m else left[:2]
-        return "bear_left" if min(ahead) <= nearest else "sharp_left"
+        return "bear_left" if min(ahead) <= nearest else "curve_left"

@@ -1,6 +1,6 @@
 """An eight round two columns: the one on the left counter-clockwise, the one on the right clockwise."""
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
@@ -9,6 +9,8 @@ from behaviors.policies.distances import (
     FRONT_LEFT_EDGE,
     FRONT_RIGHT_EDGE,
     LEFT_FRONT_TO_BACK,
+    REAR_LEFT_EDGE,
+    REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
     Distances,
 )
@@ -17,25 +19,42 @@ from hal.robot_settings import InfraredSettings
 
 Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
-_UNSEEN = len(LEFT_FRONT_TO_BACK)
-"""Place of a column, from front to back, that none of a side's sensors sees: behind all others."""
+# Where a column is, from front to back; 0 to 3: which of the sensors beside the robot is nearest to it.
+_AHEAD = -1
+_FOREMOST, _HINDMOST = 0, 3
+_BEHIND = 4
+_NOWHERE = 5
 
 
 class EightSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face."""
 
     near_m: Distance
-    """A column nearer than this makes the robot drive straight on."""
+    """A column beside the robot nearer than this widens the curve."""
     far_m: Distance
-    """Farther than this the column may only be ahead of abeam a little: the robot curves in sooner."""
+    """Farther than this it narrows the curve."""
     front_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn on the spot, away from the column beside it."""
+    """An obstacle ahead nearer than this makes the robot turn on the spot, away from the nearer column."""
     lost_m: Distance
-    """What is farther than this is not seen."""
+    """A column beside the robot farther than this is not seen."""
+    edge_m: Distance
+    """The same for the sensors that look ahead to the sides."""
+    rear_m: Distance
+    """The same for those that look back to the sides."""
+    close_m: Distance
+    """A column ahead to the side nearer than this makes the robot curve away."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
         """The policy."""
         return Eight(self, infrared)
+
+
+class _Column(NamedTuple):
+    """What one side sees of a column."""
+
+    place: int
+    beside_m: float
+    edge_m: float
 
 
 class Eight:
@@ -48,38 +67,48 @@ class Eight:
         self._settings = settings
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
-        self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
-        self._left = distances.of(*LEFT_FRONT_TO_BACK)
-        self._right = distances.of(*RIGHT_FRONT_TO_BACK)
+        self._left = distances.of(FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK, REAR_LEFT_EDGE)
+        self._right = distances.of(FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Name of the action."""
+        left, right = self._column(self._left(infrared_counts)), self._column(self._right(infrared_counts))
+        if min(self._front(infrared_counts)) < self._settings.front_m:
+            to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)
+            return "spin_right" if to_left_m <= to_right_m else "spin_left"
+        if left.place <= right.place:
+            return self._round(left, right, "left", "right")
+        return self._round(right, left, "right", "left")
+
+    def _column(self, side: tuple[float, ...]) -> _Column:
         want = self._settings
-        left, right = self._left(infrared_counts), self._right(infrared_counts)
-        left_edge, right_edge = self._edges(infrared_counts)
-        if min(self._front(infrared_counts)) < want.front_m:
-            return "spin_right" if min(left) <= min(right) else "spin_left"
-        at_left, at_right = self._place(left), self._place(right)
-        if at_left == at_right == _UNSEEN and min(left_edge, right_edge) >= want.lost_m:
+        edge_m, *beside, rear_m = side
+        beside_m = min(beside)
+        if beside_m < want.lost_m:
+            place = beside.index(beside_m)
+        elif edge_m < want.edge_m:
+            place = _AHEAD
+        else:
+            place = _BEHIND if rear_m < want.rear_m else _NOWHERE
+        return _Column(place, beside_m, edge_m)
+
+    def _round(self, column: _Column, other: _Column, here: str, away: str) -> str:
+        """Round the column that lies farther ahead, on the side `here`."""
+        want = self._settings
+        if column.place == _NOWHERE:
             return "curve_left"
-        # Across: the other column is ahead to the side where nothing is abeam yet.
-        if (at_left == _UNSEEN and left_edge < want.lost_m) or (at_right == _UNSEEN and right_edge < want.lost_m):
+        if column.place == _AHEAD:  # across to it
+            return f"curve_{away}" if column.edge_m < want.close_m else "forward"
+        if column.place == _BEHIND:
+            return f"sharp_{here}"
+        if column.place == _FOREMOST and other.place < _NOWHERE:  # still on the way across
             return "forward"
-        if at_left <= at_right:
-            return self._round(left, at_left, at_right, "left")
-        return self._round(right, at_right, at_left, "right")
-
-    def _place(self, side: tuple[float, ...]) -> int:
-        """Which sensor of a side, from front to back, is nearest to the column."""
-        nearest = min(side)
-        return side.index(nearest) if nearest < self._settings.lost_m else _UNSEEN
-
-    def _round(self, side: tuple[float, ...], at: int, other_at: int, name: str) -> str:
-        want = self._settings
-        if other_at < _UNSEEN and at <= 1:  # across, too: the other one is behind
-            return "forward"
-        nearest = min(side)
-        if nearest < want.near_m:
-            return "forward" if at < len(side) - 1 else f"bear_{name}"
-        ahead = at == 0 if nearest > want.far_m else at <= 1
-        return f"bear_{name}" if ahead else f"curve_{name}"
+        tighter = (
+            (column.place == _HINDMOST)
+            - (column.place == _FOREMOST)
+            + (column.beside_m > want.far_m)
+            - (column.beside_m < want.near_m)
+        )
+        if tighter > 0:
+            return f"sharp_{here}"
+        return f"bear_{here}" if tighter < 0 else f"curve_{here}"
