@@ -35,8 +35,8 @@ def test_a_motor_primitive_drives_the_same_whatever_it_senses_and_however_long()
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("front_sensor: s1,", "front_sensor: s19,", "actions.9 (along_left_wall): there is no sensor s19"),
-        ("back_sensor: s2,", "back_sensor: s1,", "actions.9 (along_left_wall): s1 and s1 must look to the same side"),
+        ("front_sensor: s1,", "front_sensor: s19,", "actions.14 (along_left_wall): there is no sensor s19"),
+        ("back_sensor: s2,", "back_sensor: s1,", "actions.14 (along_left_wall): s1 and s1 must look to the same side"),
     ],
 )
 def test_an_action_that_the_robot_cannot_do_is_refused_with_its_place(
