@@ -51,7 +51,7 @@ def test_a_robot_that_knows_nothing(desk: Desk) -> None:
         nearest=None,
         nearest_action=None,
         distance=math.inf,
-        radius=700.0,
+        radius=desk.runtime.task.learning.radius,
         taught_by="",
         taught_at="",
         question=(),
@@ -78,7 +78,7 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: Desk) -> None:
     told = picture(desk)
     assert (told.cause, told.action, told.rla) == ("rla", "forward", 1)
     assert (told.left_m_s, told.right_m_s) == (0.3, 0.3)
-    assert (told.nearest, told.nearest_action, told.radius) == (1, "forward", 700.0)
+    assert (told.nearest, told.nearest_action, told.radius) == (1, "forward", desk.runtime.task.learning.radius)
     assert told.distance < 1.0
     assert (told.taught_by, told.taught_at, told.teacher) == ("ann", STAMP, "ann")
     assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)

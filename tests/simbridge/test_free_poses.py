@@ -9,8 +9,10 @@ from simbridge.nearest import Nearest
 from simbridge.pose import Pose
 from simbridge.world import World
 from simbridge.world_settings import load_world
+from tests.simbridge.rig import Rig, quiet_robot
 
 ROBOT = load_robot()
+FARTHEST_SENSOR_M = max(math.hypot(sensor.x_m, sensor.y_m) for sensor in ROBOT.infrared.sensors)
 
 
 def poses(world: str, count: int = 12) -> list[Pose]:
@@ -22,18 +24,28 @@ def poses(world: str, count: int = 12) -> list[Pose]:
 def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
     world = load_world("one_object")
     found = poses("one_object")
-    assert all(clear_m >= 0.05 for clear_m in world.clearances_m(found, ROBOT.geometry))
+    assert all(clear_m >= 0.1 for clear_m in world.clearances_m(found, ROBOT.geometry))
     (post,) = world.round_obstacles
     away_m = [math.dist(pose[:2], (post.x_m, post.y_m)) for pose in found]
-    assert all(away < 0.04 + ROBOT.infrared.far_m + 0.26 for away in away_m)
+    assert all(away < post.radius_m + 0.45 + FARTHEST_SENSOR_M for away in away_m)
     assert len({int(2 * math.atan2(pose.y_m - post.y_m, pose.x_m - post.x_m)) for pose in found}) > 4
     assert len({round(pose.heading_rad) for pose in found}) > 3
 
 
 def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
-    world = World(load_world("a"))
-    nearest = Nearest(world)
-    assert all(nearest.away_m((pose.x_m, pose.y_m)) < ROBOT.infrared.far_m + 0.26 for pose in poses("a"))
+    nearest = Nearest(World(load_world("a")))
+    assert all(nearest.away_m((pose.x_m, pose.y_m)) < 0.45 + FARTHEST_SENSOR_M for pose in poses("a"))
+
+
+def test_a_robot_that_is_set_down_there_tells_what_it_sees_from_nothing() -> None:
+    robot = quiet_robot()
+    nothing = robot.infrared.counts_at(robot.infrared.far_m)
+    with Rig(load_world("one_object"), robot=robot) as rig:
+        for pose in poses("one_object", 6):
+            rig.robot.place(pose)
+            rig.run(0.1)
+            nearest = max(rig.reading(name) for name in robot.infrared.names)
+            assert nearest > nothing + 25
 
 
 def test_the_same_chance_draws_the_same() -> None:

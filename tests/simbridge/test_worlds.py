@@ -160,7 +160,11 @@ def test_the_starts_in_the_streets_are_in_their_middle_and_look_along_them() -> 
 
 @pytest.mark.parametrize(
     ("name", "post", "side", "away_m"),
-    [("one_object", "post", "left", 0.3), ("two_objects", "west", "left", 0.2), ("two_objects", "east", "right", 0.2)],
+    [
+        ("one_object", "post", "left", 0.3),
+        ("two_objects", "west", "left", 0.18),
+        ("two_objects", "east", "right", 0.18),
+    ],
 )
 def test_the_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
     world = load_world(name)
@@ -173,6 +177,14 @@ def test_the_starts_have_an_object_abeam(name: str, post: str, side: str, away_m
         beside_m = (left_m if side == "left" else -left_m) - object_.radius_m - ROBOT.geometry.outline_width_m / 2
         abeam += abs(ahead_m) < 0.002 and abs(beside_m - away_m) < 0.002
     assert abeam == len(world.start_poses) // len(world.round_obstacles)
+
+
+def test_in_the_gap_between_the_columns_both_are_in_reach_of_the_sensors() -> None:
+    west, east = load_world("two_objects").round_obstacles
+    gap_m = east.x_m - west.x_m - west.radius_m - east.radius_m
+    assert gap_m == pytest.approx(0.75)
+    # Clear of both by what a robot keeps from one, and seen well by sensors that reach 0.6 m.
+    assert 0.18 < (gap_m - ROBOT.geometry.outline_width_m) / 2 < 0.25
 
 
 def test_the_small_object_is_smaller_than_the_gap_between_two_sensors() -> None:
