@@ -158,6 +158,31 @@ def test_an_option_that_makes_no_sense_is_named(kurt2rt: CommandLine, words: tup
     assert why in kurt2rt.misused(*words)
 
 
+@pytest.mark.parametrize("command", ["lesson", "demo", "exam", "run"])
+def test_a_weight_for_a_feature_that_there_is_not_is_refused(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path, command: str
+) -> None:
+    def weigh(content: dict[str, object]) -> None:
+        learning = content["learning"]
+        assert isinstance(learning, dict)
+        learning["weights"] = [{"weight": 2.0, "features": ["s1", "s99"]}]
+
+    task = changed("tasks", "wall_following", tmp_path, weigh)
+    service = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
+    words: tuple[str | Path, ...] = {
+        "lesson": ("--task", task),
+        "demo": ("--task", task),
+        "exam": (lessons, "--task", task, "--world", "a"),
+        "run": ("--settings", service, "--seconds", "1", "--knowledge", tmp_path / "new.knowledge"),
+    }[command]
+    # What shows how far it is may stand before the refusal.
+    said = kurt2rt(command, *words)
+    assert said.exit_code == 2, said.err
+    assert "Traceback" not in said.err
+    last = said.err.strip().splitlines()[-1]
+    assert last.startswith("kurt2rt: learning.weights: situation basic has no feature 's99'; it has: s1, s2, ")
+
+
 def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandLine, lessons: Path) -> None:
     said = kurt2rt.refused("exam", lessons, "--world", "a", "--world", "nope")
     assert "nope: no such file in worlds" in said

@@ -1,3 +1,4 @@
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -5,14 +6,16 @@ import anyio
 import pytest
 
 from hal.robot import STANDSTILL
+from kurt2rt.experiments.arena import Position
 from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.exam import ExamResult, NothingIsTaught, examine
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import SuccessSettings, TaskSettings
+from kurt2rt.tasks.settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
+from simbridge.world_settings import load_world
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
 from tests.experiments.results import exam_result
 
@@ -50,14 +53,42 @@ def test_going_round_on_the_spot_is_stuck_too() -> None:
 
 
 def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
-    teacher = exam_of([], short_task(exam_s=25.0, stuck_after_s=10.0)).teacher
+    teacher = exam_of([], short_task(exam_s=25.0)).teacher
     assert teacher.progress > 0.2
-    assert 5.0 < teacher.way_m < 0.32 * 25.0
+    assert 4.0 < teacher.way_m < 0.32 * 25.0  # on the spot at corners
     assert 0.0 < teacher.findings["distance error, m"] < 0.1
     assert teacher.collisions == 0
     assert not teacher.stuck
     assert teacher.duration_s == 25.0
     assert teacher.share_unknown == 0.0
+
+
+def examined_from(start: str, seed: int = 1) -> WorldResult:
+    """An exam beside the post, of a robot that knows nothing and stays where it is set down."""
+    task = load_task("circle")
+    exam = task.exam.model_copy(update={"duration_s": 1.0, "start": start})
+    return exam_of([], task.model_copy(update={"exam": exam}), seed)
+
+
+@pytest.mark.parametrize(("start", "at_a_start_pose"), [("starts", True), ("in_sight", False)])
+def test_an_exam_starts_where_the_task_says(start: str, *, at_a_start_pose: bool) -> None:
+    world = load_world("one_object")
+    (post,) = world.round_obstacles
+    starts = [Position(pose.x_m, pose.y_m) for pose in world.start_poses]
+    for seed in (1, 2, 3):
+        result = examined_from(start, seed)
+        here = result.learned.trail[0]
+        assert any(math.dist(here, pose) < 0.001 for pose in starts) is at_a_start_pose
+        assert math.dist(here, (post.x_m, post.y_m)) < post.radius_m + 0.45 + ROBOT.geometry.outline_length_m / 2 + 0.05
+        assert result.learned.way_m == pytest.approx(0.0, abs=0.001)  # being carried there is no way made
+        # The teacher drives on from the same place.
+        assert math.dist(here, result.teacher.trail[0]) < 0.1
+
+
+def test_where_an_exam_starts_in_sight_is_decided_by_its_seed() -> None:
+    first, again, other = examined_from("in_sight"), examined_from("in_sight"), examined_from("in_sight", seed=2)
+    assert first == again
+    assert first.learned.trail[0] != other.learned.trail[0]
 
 
 def test_a_taught_robot_drives_by_what_it_was_taught(taught: Taught) -> None:

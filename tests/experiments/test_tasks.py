@@ -70,6 +70,15 @@ def test_files_fit_together(name: str) -> None:
     assert task.exam.success.right_at_least == (0.95 if task.course.kind == "junctions" else 0.0)
 
 
+@pytest.mark.parametrize("name", TASKS)
+def test_every_task_has_a_plain_reading_of_the_paper(name: str) -> None:
+    task, plain = load_task(name), load_task(name, plain=True)
+    learning = plain.learning
+    assert (learning.past_weight, learning.weights) == (1.0, ())
+    assert (learning.insert_beyond_share, learning.minimum_action_s) == (1.0, 0.0)
+    assert plain == task.model_copy(update={"learning": task.plain})
+
+
 def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
     result = lesson(lasting("streets", 40.0, 0.0), tmp_path)
     assert {rla.behaviour for rla in result.rlas} == {"straight_on", "turn_left", "turn_right"}

@@ -1,14 +1,22 @@
 """What each feature counts in a distance."""
 
+import anyio
 import numpy as np
 import pytest
 
-from hal.robot_settings import load_robot
 from hal.settings import SettingsError
+from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.perception.weights import weights_of
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import FeatureWeight, load_task
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from tests.experiments.helpers import ROBOT, STAGE
+from tests.rla.helpers import created
 
-DEFINITION = load_situation("basic", load_robot().infrared.names)
+DEFINITION = load_situation("basic", ROBOT.infrared.names)
 NAMES = DEFINITION.names
 
 
@@ -41,3 +49,38 @@ def test_a_feature_that_is_not_there_or_twice_is_refused(
     with pytest.raises(SettingsError) as caught:
         weights_of(DEFINITION, changed, 1.0)
     assert told in str(caught.value)
+
+
+def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) -> TickRecord:
+    """Of the same robot at the same place, whatever it was taught."""
+    task = load_task("fleeing")
+    task = task.model_copy(update={"learning": task.learning.model_copy(update={"weights": weights})})
+    arena = STAGE.open("a", 1, "exam")
+    records: list[TickRecord] = []
+    try:
+        runtime = build_runtime(arena.robot, ROBOT, task, taught, NothingIsTaught(), LockstepClock(arena.step))
+        anyio.run(runtime.scheduler.run, 1, records.append)
+    finally:
+        arena.close()
+    return records[0]
+
+
+def test_a_weight_of_the_task_decides_which_rla_drives() -> None:
+    here = first_tick().situation.vector
+
+    def unlike_in(feature: str, counts: float) -> tuple[float, ...]:
+        condition = here.copy()
+        condition[NAMES.index(feature)] += counts
+        return tuple(condition.tolist())
+
+    taught = (created(1, unlike_in("s15", 100.0), "forward"), created(2, unlike_in("s2", 120.0), "back"))
+    assert first_tick(*taught).decision.action == "forward"
+    heavy = FeatureWeight(weight=2.0, features=("s15",))
+    assert first_tick(*taught, weights=(heavy,)).decision.action == "back"
+    light = FeatureWeight(weight=0.0, features=("s2",))
+    assert first_tick(*taught, weights=(light,)).decision.action == "back"
+
+
+def test_a_weight_for_what_the_situation_has_not_is_refused_before_the_robot_drives() -> None:
+    with pytest.raises(SettingsError, match="situation basic has no feature 's99'"):
+        first_tick(weights=(FeatureWeight(weight=2.0, features=("s99",)),))

@@ -1,0 +1,37 @@
+"""`--set KEY=VALUE`: another value for one key of the task's file, for one command."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.cli.helpers import CommandLine
+
+SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1")
+BRIEF = ("--set", "exam.duration_s=2", "--set", "exam.worlds=[b]")
+KNOWLEDGE = Path("made/wall_following-1.knowledge")
+
+
+def test_what_is_set_is_what_is_taught_and_examined(kurt2rt: CommandLine) -> None:
+    taught = kurt2rt("lesson", *SHORT, "--out", "made")
+    assert taught.exit_code == 0, taught.err
+    assert re.search(r"teaching, s of robot time +│ +3 │", taught.out)
+    examined = kurt2rt("exam", KNOWLEDGE, *BRIEF)
+    assert examined.exit_code == 0, examined.err
+    assert "Exams without teacher, 2 s each" in examined.out
+    assert re.findall(r"^│ ([A-Z]) ", examined.out, re.MULTILINE) == ["B"]
+    both = kurt2rt("demo", *SHORT, *BRIEF, "--out", "made")
+    assert both.exit_code == 0, both.err
+    assert re.search(r"teaching, s of robot time +│ +3 │", both.out)
+    assert "Exams without teacher, 2 s each" in both.out
+
+
+@pytest.mark.parametrize("command", [("lesson",), ("exam", KNOWLEDGE), ("demo",)], ids=lambda words: words[0])
+def test_a_key_that_there_is_not_and_a_word_without_a_value_are_told(
+    kurt2rt: CommandLine, command: tuple[str | Path, ...]
+) -> None:
+    assert "wall_following.yaml: learning.radios: no such key; allowed here: radius" in kurt2rt.refused(
+        *command, "--set", "learning.radios=3"
+    )
+    assert "'learning.radius' is no KEY=VALUE" in kurt2rt.misused(*command, "--set", "learning.radius")
+    assert not Path("made").exists()
