@@ -7,6 +7,8 @@ from simbridge.body import Contact
 
 _FACE_DEPTH_M = 0.01
 """A contact so close to the end face is on the bumper bar."""
+_EDGE_M = 0.001
+"""So far beyond its edge a contact presses a bumper, too: rounding must not decide for a corner of the body."""
 _HEAD_ON = 0.5
 """Share of a push that must come from ahead to press a bumper: a wall that brushes along the side does not."""
 
@@ -38,7 +40,11 @@ class Bumpers:
         if not lateral_m:
             return 0
         right_m, left_m = min(lateral_m), max(lateral_m)
-        return sum(bit for bit, low_m, high_m in self._reaches[end] if low_m <= left_m and right_m <= high_m)
+        return sum(
+            bit
+            for bit, low_m, high_m in self._reaches[end]
+            if low_m - _EDGE_M <= left_m and right_m <= high_m + _EDGE_M
+        )
 
 
 class Collisions:

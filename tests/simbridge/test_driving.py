@@ -144,6 +144,19 @@ def test_a_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
         assert rig.heard["BUMPERC"] == (bits, 0)
 
 
+@pytest.mark.parametrize(("heading_deg", "bits"), [(10, 0b100), (20, 0b100), (30, 0b100), (-20, 0b001)])
+def test_a_corner_that_meets_a_wall_presses_its_bumper_as_long_as_it_touches(heading_deg: float, bits: int) -> None:
+    """The contact lies at the very edge of the bar, where rounding must not decide."""
+    with Rig() as rig:
+        rig.robot.place(Pose(3.5, 2.0, math.radians(heading_deg)))
+        pressed: list[int] = []
+        while len(pressed) < 12:
+            rig.drive(10, 10, 0.01)
+            if rig.robot.touching:
+                pressed.append(rig.heard["BUMPERC"][0])
+    assert set(pressed) == {bits}
+
+
 def test_brushing_along_a_wall_touches_without_a_bumper() -> None:
     with Rig() as rig:
         rig.robot.place(Pose(1.0, 4.0 - ROBOT.geometry.outline_width_m / 2 - 0.005, 0.03))
