@@ -14,6 +14,7 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Teach
+from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.scripted_teacher import Picture, teacher_of
 
 Say = Callable[[str], None]
@@ -32,13 +33,15 @@ async def teach_by_script(
     """Teach the task for its whole time, then let the robot drive alone and look on, until cancelled.
 
     A robot that a person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning,
-    and RefusedError when it is no simulated one or refuses its teacher.
+    and RefusedError when it is no simulated one, was started for another task, or refuses its teacher.
     """
     if len(task.behaviours) > 1:
         raise RefusedError(several_behaviours(task))
     hello = await robot.hello()
     if not hello.simulated:
         raise RefusedError(f"{hello.robot} is a real robot; the scripted teacher teaches simulated ones only")
+    if (hello.task, hello.behaviours) != (task.name, task.behaviours):
+        raise RefusedError(_another_task(hello, task))
     teacher = teacher_of(task, settings, hello.actions, seed=seed, session="unused")
     corrections_from = round(task.teaching.supervised_s / hello.period_s)
     over_at = round(task.teaching.duration_s / hello.period_s)
@@ -47,6 +50,8 @@ async def teach_by_script(
     await _must(robot, robot.take, lambda state: state.teacher == robot.name)
     await _must(robot, lambda: robot.begin_session(session), lambda state: state.session == session)
     await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
+    if task.teaching.reposition_every_s:
+        say(_nobody_sets_it_down(task))
     say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
     first: int | None = None
     before = 0
@@ -83,6 +88,25 @@ def several_behaviours(task: TaskSettings) -> str:
     return (
         f"task {task.name} has several behaviours, and over the channel the scripted teacher does not see the streets "
         f"that say which is wanted when; kurt2rt lesson --task {task.name} teaches it in simulated time"
+    )
+
+
+def _another_task(hello: Hello, task: TaskSettings) -> str:
+    robots, own = (
+        f"{name} (behaviours: {', '.join(behaviours)})" if behaviours != ("",) else name
+        for name, behaviours in ((hello.task, hello.behaviours), (task.name, task.behaviours))
+    )
+    return (
+        f"the robot was started for task {robots}, and the scripted teacher is to teach {own}: what it answered would "
+        f"be lessons of another task; give it --task {hello.task} (or the path of that task's file), or start the "
+        f"robot with --task {task.name}"
+    )
+
+
+def _nobody_sets_it_down(task: TaskSettings) -> str:
+    return (
+        f"task {task.name} has the robot set down elsewhere every {task.teaching.reposition_every_s:g} s; over the "
+        f"channel nobody does, nor where it makes no way; kurt2rt lesson --task {task.name} does, in simulated time"
     )
 
 

@@ -45,12 +45,14 @@ class Mind:
         self._mute = mute
         self._silent: dict[type[Request], set[bytes]] = {}
         self._done: set[bytes] = set()
+        self.hello: dict[str, object] = {}
+        """What it says otherwise when it introduces itself."""
         self.stop_at_phase: Phase | None = None
         self._stopped_tick = -1
 
     async def __call__(self, request: Request) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(Verdict.DONE, {**HELLO, "simulated": self._simulated})
+            return Reply(Verdict.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
         if not isinstance(request, TakeRequest | PhaseRequest | SessionRequest | ResumeRequest):
             return done(self._robot.state.tick, "done")
         reply = done(self._robot.state.tick, "done")
@@ -106,7 +108,9 @@ async def client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherCl
         yield client
 
 
-async def lesson(client: TeacherClient, robot: StandInRobot, ends_with: str) -> list[str]:
+async def lesson(
+    client: TeacherClient, robot: StandInRobot, ends_with: str, task: TaskSettings | None = None
+) -> list[str]:
     """Let it teach until it has said its last; then somebody else takes the robot. What it said."""
     said: list[str] = []
 
@@ -120,7 +124,7 @@ async def lesson(client: TeacherClient, robot: StandInRobot, ends_with: str) -> 
         async with anyio.create_task_group() as tasks:
 
             async def teach() -> None:
-                await teach_by_script(client, SETTINGS, short(), say)
+                await teach_by_script(client, SETTINGS, task or short(), say)
                 tasks.cancel_scope.cancel()
 
             tasks.start_soon(teach)
@@ -157,11 +161,40 @@ async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClien
     assert {type(each) for each in robot.orders()} == {HelloRequest}
 
 
+@pytest.mark.parametrize(
+    ("hello", "robots"),
+    [
+        ({"task": "circle"}, "circle,"),
+        ({"behaviours": ["there", "back"]}, r"wall_following \(behaviours: there, back\),"),
+    ],
+)
+async def test_a_robot_that_was_started_for_another_task_is_not_taught_this_one(
+    client: TeacherClient, robot: StandInRobot, hello: dict[str, object], robots: str
+) -> None:
+    robot.mind = mind = Mind(robot)
+    mind.hello = hello
+    why = f"was started for task {robots} and the scripted teacher is to teach wall_following: .*; give it --task "
+    with pytest.raises(RefusedError, match=why + str(hello.get("task", "wall_following"))):
+        await teach_by_script(client, SETTINGS, short(), lambda _: None)
+    assert {type(each) for each in robot.orders()} == {HelloRequest}
+
+
+async def test_it_says_that_nobody_sets_the_robot_down_elsewhere_where_the_task_asks_for_it(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.mind = Mind(robot)
+    task = short()
+    moved = task.model_copy(update={"teaching": task.teaching.model_copy(update={"reposition_every_s": 7.0})})
+    said = await lesson(client, robot, ALONE, moved)
+    assert said[0].startswith("task wall_following has the robot set down elsewhere every 7 s; over the channel nobody")
+
+
 async def test_it_teaches_both_phases_and_lets_the_robot_drive_alone(
     client: TeacherClient, robot: StandInRobot
 ) -> None:
     robot.mind = Mind(robot)
     said = await lesson(client, robot, ALONE)
+    assert said[0].startswith("phase 1 ")
     assert said[-2:] == ["0 lessons given", "now the robot drives alone (phase 5)"]
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.AUTONOMOUS]
 
