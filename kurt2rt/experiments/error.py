@@ -2,4 +2,4 @@
 
 
 class LessonLostError(RuntimeError):
-    """Lessons could not be saved; the message says why and what to do."""
+    """Lessons could not be saved, or were refused; the message says why and what to do."""

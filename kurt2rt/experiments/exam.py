@@ -10,6 +10,7 @@ from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.lesson import TRAIL_STRIDE
+from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
@@ -81,7 +82,11 @@ async def examine(
     on_progress: Callable[[float], None],
     by_teacher: bool = False,
 ) -> ExamResult:
-    """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy."""
+    """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
+
+    Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
+    names an action which the repertoire lacks.
+    """
     period_s = settings.can.cycle_s
     wanted = Wanted(task.behaviours)
     level: Level | None = None
@@ -118,6 +123,7 @@ async def examine(
 
     def after_tick(record: TickRecord) -> None:
         nonlocal unknown, changes, ticks, stuck, asking, action, alarm
+        require_carried_out(record, task)
         decision = record.decision
         ticks = record.tick
         unknown += decision.asking

@@ -8,6 +8,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
+from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
@@ -68,7 +69,7 @@ async def teach(
     """Teach the task for its whole duration; what was taught goes to `keeper`.
 
     `events`: what an earlier lesson taught, to go on from there; `statistics`: what was counted then, to count on.
-    `on_progress` gets simulated seconds.
+    `on_progress` gets simulated seconds. Raises LessonLostError for a lesson that the robot refused.
     """
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
@@ -90,6 +91,7 @@ async def teach(
 
     def after_tick(record: TickRecord) -> None:
         nonlocal asking, rescues, alarms, latched_ticks, deletions
+        require_carried_out(record, task)
         if record.tick == corrections_from:
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
         command = teacher.watch(picture_of(record))

@@ -11,7 +11,7 @@ from kurt2rt.rla.rla_system import Match, RlaSystem
 
 
 class UnknownActionError(ValueError):
-    """Knowledge names an action that the repertoire does not have."""
+    """Knowledge, or a policy, names an action that the repertoire does not have."""
 
 
 class UnknownBehaviourError(ValueError):
