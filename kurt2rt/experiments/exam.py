@@ -151,6 +151,8 @@ async def examine(
     say_what_is_wanted(wanted.behaviour)
     await runtime.scheduler.run(round(task.exam.duration_s / period_s), after_tick)
     on_progress(task.exam.duration_s)
+    if stuck or alarm:
+        drive.course.end_early()
     return ExamResult(
         world=world,
         seed=seed,

@@ -15,7 +15,7 @@ DISTANCE_ERROR = "distance error, m"
 LATERAL_DEVIATION = "lateral deviation, m"
 """Root of the mean square of the distance from the middle of the street."""
 JUNCTIONS = "junctions"
-"""How many were passed."""
+"""How many were asked for, and passed or not got through: stuck, stopped for good or turned back on the way."""
 RIGHT = "junctions right"
 """How many of them through the side that was asked for."""
 
@@ -54,6 +54,10 @@ class Course(Protocol):
 
     def follow(self, pose: Pose) -> None:
         """Where the robot really is; to be told in every tick."""
+        ...
+
+    def end_early(self) -> None:
+        """The drive ends here before its time, stuck or stopped for good: what is asked now will not be done."""
         ...
 
 

@@ -79,6 +79,9 @@ class Eights:
             self._sides[side].rounds = 0.0
         self._sides[side].follow(pose)
 
+    def end_early(self) -> None:
+        """What was made counts, and nothing else is."""
+
     def _leave(self, side: int) -> None:
         rounds = self._sides[side].rounds
         if (rounds if side == 0 else -rounds) >= _WHOLE and self._rounded != side:

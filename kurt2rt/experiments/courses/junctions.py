@@ -35,8 +35,9 @@ class JunctionsSettings(CourseSettings):
 class Junctions:
     """Asks at random for what is possible at the next junction, and counts how often it is done.
 
-    The next command comes as soon as the robot has left a junction behind. A robot that can do none of its behaviours
-    at the junction that it comes to is stranded.
+    The next command comes as soon as the robot has left a junction behind. What was asked for at a junction that the
+    robot did not get to, or not out of, was not done: who turns back, or ends early, does it wrong. A robot that can do
+    none of its behaviours at the junction that it comes to is stranded.
     """
 
     unit = "junctions"
@@ -50,6 +51,8 @@ class Junctions:
         self._inside: Junction | None = None
         self._asked: Side | None = None
         """The side of that junction that the command means; None when nothing is asked for there."""
+        self._ahead: Junction | None = None
+        """The junction that the command is about while the robot is on the way there; None when about none."""
         self._passed: Counter[str] = Counter()
         self._right: Counter[str] = Counter()
         self._deviation2_m2 = Mean()
@@ -63,7 +66,7 @@ class Junctions:
 
     @property
     def findings(self) -> Findings:
-        """Junctions passed and right, in all and for each behaviour, and the lateral deviation in the streets."""
+        """Junctions asked and right, in all and for each behaviour, and the lateral deviation in the streets."""
         found = {JUNCTIONS: float(self._passed.total()), RIGHT: float(self._right.total())}
         if len(self._behaviours) > 1:
             for each in self._behaviours:
@@ -76,12 +79,12 @@ class Junctions:
         """Set down here: the next junction is the one that the robot looks towards."""
         self.stranded = False
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        self._asked = self._ahead = None
         self._inside = self._streets.junction_at(pose)
         if self._inside is None:
-            self._command(self._streets.next_junction(pose, way), way)
+            self._ahead = self._command(self._streets.next_junction(pose, way), way)
         else:
-            self._command(self._inside, way)
-            self._asked = None  # nobody can say where it came from
+            self._command(self._inside, way)  # not judged: nobody can say where it came from
 
     def follow(self, pose: Pose) -> None:
         """A step further."""
@@ -101,10 +104,19 @@ class Junctions:
         elif not self._inside.holds(pose, _LEFT_BEHIND_M):
             self._leave(self._inside, pose)
 
+    def end_early(self) -> None:
+        """Stuck, or stopped for good: it will not get through the junction that it was asked for."""
+        if self._asked is not None or self._ahead is not None:
+            self._judge(right=False)
+        self._asked = self._ahead = None
+
     def _enter(self, junction: Junction, way: Side) -> None:
+        if self._ahead is not None and self._ahead != junction:
+            self._judge(right=False)  # it turned back on the way
+        self._ahead = None
         self._inside = junction
         if self._side_meant(junction, way, self.behaviour) is None:
-            # It turned back on the way, or its only behaviour leads nowhere here.
+            # It came to another junction than the command is about, or its only behaviour leads nowhere here.
             self._command(junction, way)
         self._asked = self._side_meant(junction, way, self.behaviour)
         self.stranded = self._asked is None
@@ -112,18 +124,26 @@ class Junctions:
     def _leave(self, junction: Junction, pose: Pose) -> None:
         way = junction.side_of(pose)
         if self._asked is not None:
-            self._passed[self.behaviour] += 1
-            self._right[self.behaviour] += way is self._asked
+            self._judge(right=way is self._asked)
         self._inside = self._asked = None
-        self._command(self._streets.next_junction(pose, way), way)
+        self._ahead = self._command(self._streets.next_junction(pose, way), way)
 
-    def _command(self, junction: Junction | None, way: Side) -> None:
-        """Ask for something that is possible at this junction for a robot that comes this way."""
+    def _judge(self, *, right: bool) -> None:
+        self._passed[self.behaviour] += 1
+        self._right[self.behaviour] += right
+
+    def _command(self, junction: Junction | None, way: Side) -> Junction | None:
+        """Ask for something that is possible at this junction for a robot that comes this way.
+
+        Returns the junction, or None where nothing can be asked for.
+        """
         if junction is None:
-            return
+            return None
         possible = [each for each in self._behaviours if self._side_meant(junction, way, each) is not None]
-        if possible:
-            self.behaviour = self._chance.choice(possible)
+        if not possible:
+            return None
+        self.behaviour = self._chance.choice(possible)
+        return junction
 
     @staticmethod
     def _side_meant(junction: Junction, way: Side, behaviour: str) -> Side | None:

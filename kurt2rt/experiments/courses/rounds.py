@@ -74,3 +74,6 @@ class Rounds:
             self._swept.lose()
         else:
             self._swept.follow(pose)
+
+    def end_early(self) -> None:
+        """What was made counts, and nothing else is."""

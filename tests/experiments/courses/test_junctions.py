@@ -65,9 +65,31 @@ def test_a_junction_is_passed_only_once_it_is_left_behind() -> None:
     assert passed(course) == (1.0, 1.0)
 
 
-def test_to_turn_back_on_the_way_passes_no_junction() -> None:
-    course = set_down(("straight_on",))
+def test_who_turns_back_on_the_way_has_not_done_what_was_asked() -> None:
+    course = set_down(("turn_left",))
     follow(course, [SOUTH_OF_A_CROSSING, (2.2, 1.7), (2.2, 0.9)])
+    assert passed(course) == (0.0, 0.0)  # it may turn again
+    follow(course, [(2.2, 0.9), (2.2, 0.5)])  # but it came to the junction in the south
+    assert passed(course) == (1.0, 0.0)
+    follow(course, [(2.2, 0.5), (2.2, 0.4), (3.1, 0.4)])  # where it turns left, as it is still asked to
+    assert passed(course) == (2.0, 1.0)
+
+
+@pytest.mark.parametrize("way", [[SOUTH_OF_A_CROSSING, (2.2, 1.6)], [SOUTH_OF_A_CROSSING, CROSSING]])
+def test_who_ends_early_has_not_done_what_was_asked(way: list[Point]) -> None:
+    course = set_down(("turn_left",))
+    follow(course, way)
+    assert passed(course) == (0.0, 0.0)  # nor does it count where the time is over
+    course.end_early()
+    assert passed(course) == (1.0, 0.0)
+
+
+def test_who_ends_early_where_nothing_could_be_asked_has_done_nothing_wrong() -> None:
+    course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
+    course.end_early()
+    assert passed(course) == (0.0, 0.0)
+    course = set_down(("straight_on",), CROSSING)
+    course.end_early()
     assert passed(course) == (0.0, 0.0)
 
 
