@@ -8,6 +8,8 @@ import numpy as np
 
 _RESAMPLES = 10_000
 _BOOTSTRAP_SEED = 1
+_TAIL = 0.025
+_BISECTIONS = 100
 
 
 class Rate(NamedTuple):
@@ -19,18 +21,43 @@ class Rate(NamedTuple):
 
 
 def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
-    """Events per unit of exposure over several robots, such as collisions per 10 min: one count and exposure each.
+    """Events per unit of exposure over several drives, such as collisions per 10 min: one count and exposure each.
 
-    The interval is bootstrapped over robots, since collisions come in clusters: a robot that was taught badly has many.
-    Where nothing ever happened there is nothing to draw from, and the upper end is Poisson's exact one.
+    The interval is the wider at each end of two. Poisson's exact one holds however rare the events are. The other is
+    bootstrapped over the drives, since collisions come in clusters: a robot that was taught badly has many.
     """
     total = sum(exposures)
-    if not any(counts):
-        return Rate(0.0, 0.0, -math.log(0.025) / total)
-    if len(counts) == 1:  # it says nothing of how robots differ
-        return Rate(sum(counts) / total, 0.0, math.inf)
+    events = sum(counts)
+    fewest, most = poisson_interval(events)
+    if events and len(counts) == 1:  # it says nothing of how robots differ
+        return Rate(events / total, 0.0, math.inf)
     chance = np.random.default_rng(_BOOTSTRAP_SEED)
     drawn = chance.integers(len(counts), size=(_RESAMPLES, len(counts)))
     rates = np.asarray(counts)[drawn].sum(axis=1) / np.asarray(exposures)[drawn].sum(axis=1)
-    low, high = np.quantile(rates, (0.025, 0.975))
-    return Rate(sum(counts) / total, float(low), float(high))
+    low, high = np.quantile(rates, (_TAIL, 1 - _TAIL))
+    return Rate(events / total, min(float(low), fewest / total), max(float(high), most / total))
+
+
+def poisson_interval(events: int) -> tuple[float, float]:
+    """95 % interval of the number that is to be expected where so many events were counted (Garwood 1936)."""
+    # So many or more are as rare at the lower end as so many or fewer at the upper one.
+    low = _expected_where(events - 1, 1 - _TAIL) if events else 0.0
+    return low, _expected_where(events, _TAIL)
+
+
+def _expected_where(at_most: int, probability: float) -> float:
+    """The expected number for which `at_most` events or fewer have this probability; more expected make it less."""
+    low, high = 0.0, 2.0 * at_most + 20.0
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        if _probability_of(at_most, middle) > probability:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _probability_of(at_most: int, expected: float) -> float:
+    """Poisson's, of `at_most` events or fewer."""
+    log = math.log(expected)
+    return math.fsum(math.exp(k * log - expected - math.lgamma(k + 1)) for k in range(at_most + 1))

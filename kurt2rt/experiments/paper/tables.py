@@ -10,6 +10,10 @@ from kurt2rt.experiments.paper.verdict import verdicts
 from kurt2rt.experiments.report import quartiles
 
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
+_OF_RATES = (
+    "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds over "
+    "drives, of which one robot has several."
+)
 
 
 def sheets(study: Study) -> Iterator[Sheet]:
@@ -93,8 +97,8 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         tuple(rows),
         words=2,
         note=f"Exams of {' or '.join(f'{time_s:g}' for time_s in times)} s. Success with Wilson's interval. Stuck: or "
-        "stopped by the guard for good. Collided: robots with any collision. In 10 min: collisions of all robots, with "
-        "a bootstrap interval over robots; where there was none, with Poisson's exact upper end.",
+        "stopped by the guard for good. Collided: drives with any collision. In 10 min: collisions of all drives. "
+        f"{_OF_RATES}",
     )
 
 
@@ -123,8 +127,9 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         ("task", "world", "progress", "teacher's own", "unknown", *names, "junctions right", "95 %"),
         tuple(rows),
         words=2,
-        note="Medians, but for the junctions, which are those of all robots, with a bootstrap interval over robots. "
-        "Unknown: share of the time in which the robot did not know the situation.",
+        note="Medians, but for the junctions, which are those of all drives. A junction that the robot was asked for "
+        "and did not get through, because it got stuck, was stopped for good or turned back, was not left as asked. "
+        f"{_OF_RATES} Unknown: share of the time in which the robot did not know the situation.",
     )
 
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.paper.intervals import rate_of
+from kurt2rt.experiments.paper.intervals import poisson_interval, rate_of
 
 
 def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
@@ -18,9 +18,26 @@ def test_collisions_of_one_bad_robot_are_less_sure_than_those_of_many() -> None:
     clustered = rate_of([20, *[0] * 19], [1.0] * 20)
     spread = rate_of([1] * 20, [1.0] * 20)
     assert clustered.value == spread.value == 1.0
-    assert (spread.low, spread.high) == (1.0, 1.0)
+    # Those are all alike, and Poisson's interval of 20 is left; this one is drawn three times or not at all.
+    assert (spread.low, spread.high) == pytest.approx((12.217 / 20, 30.888 / 20), abs=1e-4)
     assert clustered.low == 0.0
     assert clustered.high >= 3.0
+
+
+@pytest.mark.parametrize(
+    ("events", "low", "high"),
+    [(0, 0.0, 3.6889), (1, 0.0253, 5.5716), (2, 0.2422, 7.2247), (10, 4.7954, 18.3904), (100, 81.3637, 121.6273)],
+)
+def test_poissons_interval_is_garwoods(events: int, low: float, high: float) -> None:
+    # As chi-square tables have it.
+    assert poisson_interval(events) == pytest.approx((low, high), abs=1e-3)
+
+
+def test_a_single_collision_makes_nobody_surer() -> None:
+    none = rate_of([0] * 20, [1.0] * 20)
+    one = rate_of([1, *[0] * 19], [1.0] * 20)
+    assert none.high == pytest.approx(0.1844, abs=1e-4)
+    assert one.high == pytest.approx(0.2786, abs=1e-4)
 
 
 def test_one_robot_says_nothing_of_others() -> None:
@@ -37,4 +54,15 @@ def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) ->
     counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
     rate = rate_of(counts, exposures)
     assert rate.value == pytest.approx(sum(counts) / sum(exposures))
-    assert 0.0 <= rate.low <= rate.high
+    assert 0.0 <= rate.low <= rate.value <= rate.high
+
+
+@settings(max_examples=20)
+@given(st.lists(st.tuples(st.integers(0, 3), st.floats(0.1, 2.0)), min_size=2, max_size=20), st.data())
+def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int, float]], data: st.DataObject) -> None:
+    counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
+    rate = rate_of(counts, exposures)
+    counts[data.draw(st.integers(0, len(counts) - 1))] += 1
+    more = rate_of(counts, exposures)
+    assert more.low >= rate.low
+    assert more.high >= rate.high
