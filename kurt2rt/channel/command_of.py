@@ -55,7 +55,7 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
         case PhaseRequest(phase=phase):
             return SetPhase(command_id, device, phase, request.seen)
         case PursueRequest(behaviour=behaviour):
-            return Pursue(command_id, device, behaviour)
+            return Pursue(command_id, device, behaviour, request.seen)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
         case SessionRequest(name=str(name)):

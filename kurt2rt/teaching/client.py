@@ -204,7 +204,10 @@ class TeacherClient:
 
     async def pursue(self, behaviour: str) -> Answer:
         """Follow another of the behaviours that the task teaches; lessons are about it from then on."""
-        return await self._asking.command(PursueRequest, behaviour=behaviour)
+        # It changes where a robot goes that drives: so a stop ends it, and what was seen is what he looked at.
+        return await self._stopping.move(
+            behaviour, lambda: self._asking.command(PursueRequest, moves=True, behaviour=behaviour)
+        )
 
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins: the teaching clock runs."""

@@ -127,6 +127,10 @@ class Pursue:
     command_id: str
     teacher: str
     behaviour: str
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a stop or another `Pursue` after it goes before.
+    None: he stands by.
+    """
 
 
 @dataclass(frozen=True, slots=True)

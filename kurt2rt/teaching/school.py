@@ -73,6 +73,8 @@ class School:
         self.stopped_because = ""
         """Empty while nobody stopped the robot."""
         self._stopped_by: set[str] = set()
+        self._pursued_seen_tick = -1
+        """What the teacher had seen when he said what is wanted now."""
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
         self.corrections = 0
@@ -180,8 +182,8 @@ class School:
                     self._refuse(self._stopped_since(command))
                 self.phase = command.phase
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
-            case Pursue(behaviour=behaviour):
-                return self._pursue(behaviour), None
+            case Pursue():
+                return self._pursue(command, tick), None
             case RunBehaviour():
                 return self._run(command, tick), None
             case BeginSession() | EndSession():
@@ -210,12 +212,20 @@ class School:
         )
         return "the robot stands until it is told to resume"
 
-    def _pursue(self, behaviour: str) -> str:
+    def _pursue(self, command: Pursue, tick: int) -> str:
+        self._refuse(self._stopped_since(command))
+        seen_tick = tick if command.seen_tick is None else command.seen_tick
+        if seen_tick < self._pursued_seen_tick:
+            raise _RefusedError(
+                f"{self.wanted.behaviour or 'the only behaviour'} was asked for after this was said; "
+                "look at the robot, then say it again"
+            )
         try:
-            self.wanted.pursue(behaviour)
+            self.wanted.pursue(command.behaviour)
         except ValueError as error:
             raise _RefusedError(str(error)) from error
-        return f"{behaviour or 'the only behaviour'} is wanted"
+        self._pursued_seen_tick = seen_tick
+        return f"{command.behaviour or 'the only behaviour'} is wanted"
 
     def _pass_on(self, before: str | None) -> None:
         """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""
@@ -328,8 +338,8 @@ class School:
         others = sorted(self._stopped_by - {teacher})
         return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
 
-    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase) -> str | None:
-        """What was said before a stop, and comes after it, must not lift it."""
+    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase | Pursue) -> str | None:
+        """What was said before a stop, and comes after it, must not lift it, nor change what comes after it."""
         if command.seen_tick is None or command.seen_tick >= self.stopped_at_tick:
             return None
         return "the robot was stopped after this was said; look at it, then say it again"

@@ -532,6 +532,21 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
     assert desk.runtime.wanted.behaviour == "turn_left"
 
 
+async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_comes_late_is_refused() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    older = desk.command(PursueRequest, "straight_on")
+    desk.run(5)
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    late = await desk.ask(older)
+    assert why(late) == "refused"
+    assert late.body["text"].startswith("turn_left was asked for after this was said; look at the robot")
+    before = desk.command(PursueRequest, "straight_on")
+    desk.run(5)
+    await desk.ask(StopRequest(b"stopstop"))
+    assert (await desk.ask(before)).body["text"].startswith("the robot was stopped after this was said")
+    assert desk.runtime.wanted.behaviour == "turn_left"
+
+
 async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:
     desk = Desk(behaviours=("straight_on", "turn_left"))
     seen = desk.tick

@@ -484,6 +484,7 @@ MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitabl
     "forward": (BehaviourRequest, lambda client: client.run("forward", seconds=1.0)),
     "phase 5": (PhaseRequest, lambda client: client.set_phase(Phase.AUTONOMOUS)),
     "take": (TakeRequest, lambda client: client.take()),
+    "turn_left": (PursueRequest, lambda client: client.pursue("turn_left")),
 }
 
 

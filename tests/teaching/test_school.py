@@ -29,6 +29,7 @@ from kurt2rt.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    Pursue,
     Resume,
     Reward,
     RunBehaviour,
@@ -552,6 +553,7 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
         lambda tick: Resume("2", "Ann", tick),
         lambda tick: RunBehaviour("2", "Ann", "a", 10, tick),
         lambda tick: SetPhase("2", "Ann", Phase.AUTONOMOUS, tick),
+        lambda tick: Pursue("2", "Ann", "", tick),
     ],
 )
 def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
@@ -619,6 +621,22 @@ def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None
     lesson.say(Take("take it", "Ann"))
     assert lesson.say(pursue("turn_left")).accepted
     assert lesson.school.stopped_because == "Bob said stop"
+
+
+def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wanted() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(Pursue("1", "Ann", "turn_left", 80))
+    assert lesson.say(Pursue("2", "Ann", "turn_right", 90)).accepted
+    late = lesson.say(Pursue("3", "Ann", "straight_on", 85))
+    assert (late.accepted, late.text) == (
+        False,
+        "turn_right was asked for after this was said; look at the robot, then say it again",
+    )
+    assert not lesson.say(Pursue("4", "Ann", "fly", 95)).accepted  # and it is as if it had not been said
+    assert lesson.say(Pursue("5", "Ann", "turn_left", 90)).accepted
+    lesson.say(pursue("straight_on", "6"))  # by one who stands by
+    assert not lesson.say(Pursue("7", "Ann", "turn_left", 99)).accepted
+    assert lesson.small.wanted.behaviour == "straight_on"
 
 
 @pytest.mark.parametrize("kind", [Teach, Correct])
