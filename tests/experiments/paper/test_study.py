@@ -14,6 +14,7 @@ from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.study import conduct
 from kurt2rt.experiments.paper.tables import sheets
 from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
 
@@ -61,7 +62,7 @@ def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> 
         assert [drive.world for drive in outcome.drives] == [*job.task.exam.worlds, *job.unseen]
         assert all(len(drive.trail) == 5 for drive in outcome.drives)  # 1 s, 0.2 s from one to the next
     growth = tiny.programme.growth[0].jobs
-    assert {job.radius for job in growth} == {700.0}
+    assert {job.radius for job in growth} == {load_task("wall_following").learning.radius}  # as it is shipped
 
 
 def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same_byte_for_byte(
