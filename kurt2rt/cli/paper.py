@@ -64,11 +64,14 @@ def paper(
     changed, what is in the folder is refused and not mixed in: give a new folder.
     Other seeds and other tasks may share a folder.
 
-    Settings were chosen on seeds 0 to 11 and worlds rooms-0 to rooms-29; these
-    robots and worlds are others.
+    Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
+    robots and worlds are others. With one of those, or with fewer than 20 robots,
+    nothing is judged. Which generated worlds a robot drives in follows from its seed;
+    20 seeds that follow each other share all of them.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
+    from kurt2rt.experiments.paper.judging import reasons_not_to_judge
     from kurt2rt.experiments.paper.pictures import draw_pictures
     from kurt2rt.experiments.paper.programme import plan
     from kurt2rt.experiments.paper.report import write_report
@@ -110,8 +113,8 @@ def paper(
         console = Console(width=_WIDTH)  # in a file a table need not be as narrow as a terminal that nobody has
     for sheet in sheets(study):
         console.print(as_rich(sheet))
-    if not extent.is_whole:
-        console.print("A part only: it says that everything works, and nothing about the paper.")
+    for reason in reasons_not_to_judge(programme):
+        console.print(f"Not judged: {reason}", markup=False, highlight=False, soft_wrap=True)
     console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
 
 

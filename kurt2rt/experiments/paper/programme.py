@@ -16,6 +16,9 @@ from kurt2rt.experiments.paper.stage import PaperStage
 from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
+ROBOTS = 20
+"""Robots that the numbers are asked of. So many that follow each other share all generated worlds."""
+
 
 @dataclass(frozen=True, slots=True)
 class Experiment:
@@ -101,10 +104,9 @@ def plan(
     fingerprints = Fingerprints(stage, robot, source)
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
-        unseen = each.unseen.names if each.unseen else ()
         jobs = []
-        for place, seed in enumerate(seeds):
-            own = unseen[place :: len(seeds)]  # each world is driven by one robot
+        for seed in seeds:
+            own = unseen_of(seed, each)
             made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
             jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
         return Experiment(each, reading, task, tuple(jobs))
@@ -126,6 +128,11 @@ def plan(
         tuple(experiment(*each) for each in taught),
         tuple(growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
     )
+
+
+def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
+    """Generated worlds that the robot of a seed drives in; which ones the other seeds are does not matter."""
+    return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
 
 
 def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:

@@ -8,8 +8,10 @@ from pathlib import Path
 import jinja2
 
 from kurt2rt.durable import write_durably
+from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.made_of import versions
 from kurt2rt.experiments.paper.pictures import Picture
+from kurt2rt.experiments.paper.programme import ROBOTS
 from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import Study
 from kurt2rt.experiments.paper.tables import sheets, unseen_sheet
@@ -30,11 +32,12 @@ def write_report(study: Study, pictures: Sequence[Picture], command: str, path: 
     programme = study.programme
     html = environment.get_template(_TEMPLATE).render(
         study=study,
-        is_whole=programme.extent.is_whole,
+        reasons=list(reasons_not_to_judge(programme)),
         extent=programme.extent,
         seeds=_spans(programme.seeds),
         sheets=list(sheets(study)),
-        unseen=[unseen_sheet(each) for each in study.summaries if each.settings.unseen],
+        unseen=[sheet for each in study.summaries if (sheet := unseen_sheet(each)).rows],
+        robots=ROBOTS,
         settings=settings_sheet(study),
         pictures=[(each, _as_uri(each.path)) for each in pictures],
         command=command,

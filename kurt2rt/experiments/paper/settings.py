@@ -24,7 +24,7 @@ class AskedSettings(Settings):
 
 
 class UnseenSettings(Settings):
-    """Generated worlds for exams, each driven by one of the robots in turn."""
+    """Generated worlds for exams, shared among the robots."""
 
     kind: Literal["rooms", "streets"]
     first: Annotated[int, Field(ge=0)]

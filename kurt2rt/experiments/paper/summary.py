@@ -87,7 +87,9 @@ def summarize(experiment: Experiment, outcomes: Sequence[TaughtOutcome]) -> Summ
     groups = [(world, label_of(world), [each for each in drives if each.world == world]) for world in task.exam.worlds]
     if unseen is not None:
         generated = [each for each in drives if each.world in unseen.names]
-        groups.append(("", f"{unseen.names[0]}..{unseen.first + unseen.count - 1}", generated))
+        driven = len({each.world for each in generated})
+        span = f"{unseen.names[0]}..{unseen.first + unseen.count - 1}"
+        groups.append(("", span if driven == unseen.count else f"{driven} of {span}", generated))
 
     def median(of: str) -> float:
         return quartiles([float(getattr(outcome, of)) for outcome in outcomes])[1]

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
 from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary
@@ -11,17 +12,18 @@ from kurt2rt.experiments.report import quartiles
 
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
 _OF_RATES = (
-    "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds over "
-    "drives, of which one robot has several."
+    "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds "
+    "over drives, of which one robot has several."
 )
 
 
 def sheets(study: Study) -> Iterator[Sheet]:
     """All tables, those of each reading of the paper's scheme behind each other."""
+    reasons = list(reasons_not_to_judge(study.programme))
     for reading in study.readings:
         summaries = study.of(reading)
         how = "" if reading == "shipped" else "plain reading: "
-        yield asked_sheet(summaries, f"{how}what was asked", judged=study.programme.extent.is_whole)
+        yield asked_sheet(summaries, f"{how}what was asked", reasons)
         yield knowledge_sheet(summaries, f"{how}what was taught")
         yield exam_sheet(summaries, f"{how}exams without teacher")
         yield drive_sheet(summaries, f"{how}drives of these exams")
@@ -31,8 +33,8 @@ def sheets(study: Study) -> Iterator[Sheet]:
         yield growth_sheet(growth)
 
 
-def asked_sheet(summaries: Sequence[Summary], title: str, *, judged: bool) -> Sheet:
-    """Each number that was asked for beside what came; `judged`: whether all of it was done, so that they compare."""
+def asked_sheet(summaries: Sequence[Summary], title: str, not_judged_because: Sequence[str] = ()) -> Sheet:
+    """Each number that was asked for beside what came, and whether it is met, unless there are reasons not to judge."""
     found = [(each.label, verdict) for each in summaries for verdict in verdicts(each)]
     met = sum(verdict.met for _, verdict in found)
     note = f"{met} of {len(found)} numbers asked for are met." if found else "Of these tasks nothing is asked."
@@ -40,11 +42,11 @@ def asked_sheet(summaries: Sequence[Summary], title: str, *, judged: bool) -> Sh
         _sentence(title),
         ("task", "what", "asked", "came", "verdict"),
         tuple(
-            (label, verdict.what, verdict.asked, verdict.came, verdict.word if judged else "not judged")
+            (label, verdict.what, verdict.asked, verdict.came, "not judged" if not_judged_because else verdict.word)
             for label, verdict in found
         ),
         words=5,
-        note=note if judged else "A part only: nothing is judged by it.",
+        note=" ".join(["Not judged.", *not_judged_because]) if not_judged_because else note,
     )
 
 
@@ -176,21 +178,20 @@ def growth_sheet(growth: GrowthStudy) -> Sheet:
 
 
 def unseen_sheet(summary: Summary) -> Sheet:
-    """Which robot drove in which generated world, and how that went."""
+    """Which robot drove in which generated world, and how that went; no rows where these robots drove in none."""
     names = summary.settings.unseen.names if summary.settings.unseen is not None else ()
-    drives = {
-        drive.world: (outcome.seed, drive)
+    drives = sorted(
+        (names.index(drive.world), outcome.seed, drive)
         for outcome in summary.outcomes
         for drive in outcome.drives
         if drive.world in names
-    }
+    )
     rows = []
-    for name in names:
-        seed, drive = drives[name]
+    for place, seed, drive in drives:
         early = drive.alarm or ("stuck" if drive.stuck else "")
         rows.append(
             (
-                name,
+                names[place],
                 f"{seed}",
                 "yes" if drive.succeeded else "NO",
                 str(drive.collisions),

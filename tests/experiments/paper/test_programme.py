@@ -12,7 +12,7 @@ from hal.settings import SettingsError
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
-from kurt2rt.experiments.paper.programme import Programme, plan
+from kurt2rt.experiments.paper.programme import Programme, plan, unseen_of
 from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
 from kurt2rt.tasks.settings import load_task
@@ -75,11 +75,21 @@ def test_everything_that_is_shipped_can_be_planned() -> None:
     assert len({job.file for job in programme.jobs}) == len(programme.jobs)
 
 
-def test_each_generated_world_is_driven_by_one_robot() -> None:
-    (experiment,) = planned("wall_following", extent=Extent(most_unseen=8)).experiments
-    drives = Counter(world for job in experiment.jobs for world in job.unseen)
-    assert drives == {f"rooms-{seed}": 1 for seed in range(100, 108)}
-    assert experiment.jobs[1].unseen == ("rooms-101", "rooms-104", "rooms-107")
+WALL_FOLLOWING = next(each for each in load_paper().experiments if each.task == "wall_following")
+
+
+@pytest.mark.parametrize("first", [100, 113])
+def test_twenty_robots_share_all_generated_worlds(first: int) -> None:
+    drives = Counter(world for seed in range(first, first + 20) for world in unseen_of(seed, WALL_FOLLOWING))
+    assert drives == {f"rooms-{number}": 1 for number in range(100, 130)}
+
+
+def test_more_robots_may_be_added_to_those_there_are() -> None:
+    extent = Extent(most_unseen=3)
+    (few,) = planned("wall_following", extent=extent, seeds=(100, 101)).experiments
+    (more,) = planned("wall_following", extent=extent, seeds=(102, 101, 100)).experiments
+    assert {job.seed: job.unseen for job in few.jobs} == {100: ("rooms-100",), 101: ("rooms-101",)}
+    assert {(job.file, job.made_of) for job in few.jobs} < {(job.file, job.made_of) for job in more.jobs}
 
 
 def test_fig_2_is_drawn_where_its_task_is_taught() -> None:

@@ -57,7 +57,7 @@ def test_generated_worlds_are_one_row_and_each_is_named_with_its_robot() -> None
     ]
     summary = summary_of("wall_following", robots)
     *_, generated = exam_sheet([summary], "exams").rows
-    assert generated[:3] == ("wall following", "rooms-100..129", "2 of 3")
+    assert generated[:3] == ("wall following", "3 of rooms-100..129", "2 of 3")
 
 
 def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
@@ -66,6 +66,12 @@ def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
     assert len(rows) == 30
     assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 (9.0) laps", "")
     assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
+
+
+def test_a_generated_world_that_several_robots_drove_in_is_told_for_each_and_one_that_none_did_is_left_out() -> None:
+    robots = [robot(seed, 80, drive("rooms-101", collisions=seed - 100)) for seed in (121, 101)]
+    rows = unseen_sheet(summary_of("wall_following", robots)).rows
+    assert [row[:4] for row in rows] == [("rooms-101", "101", "yes", "1"), ("rooms-101", "121", "yes", "21")]
 
 
 def test_junctions_are_counted_over_all_robots() -> None:
@@ -107,7 +113,7 @@ def test_what_is_missed_is_said_in_a_word() -> None:
         robot(seed, 92, drive("a"), drive("b", succeeded=seed < 18), drive("c", succeeded=seed < 17))
         for seed in range(20)
     ]
-    sheet = asked_sheet([summary_of("wall_following", robots)], "what was asked", judged=True)
+    sheet = asked_sheet([summary_of("wall_following", robots)], "what was asked")
     assert verdicts_of(sheet) == {
         "RLAs, median": ("at most 91", "92", "MISSED"),
         "teaching": ("at most 345 s", "345 s", "met"),
@@ -122,9 +128,10 @@ def test_what_is_missed_is_said_in_a_word() -> None:
     assert capture.get().count("MISSED") == 2
 
 
-def test_a_part_judges_nothing() -> None:
-    sheet = asked_sheet([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", judged=False)
+def test_where_there_is_a_reason_nothing_is_judged() -> None:
+    sheet = asked_sheet([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", ["Too few."])
     assert {row[-1] for row in sheet.rows} == {"not judged"}
+    assert sheet.note == "Not judged. Too few."
 
 
 @pytest.mark.parametrize(
@@ -134,13 +141,13 @@ def test_a_part_judges_nothing() -> None:
 def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: int, verdicts: tuple[str, str]) -> None:
     found = {"junctions": 100.0, "junctions right": float(right)}
     robots = [robot(1, 130, drive("manhattan", collisions=collisions, duration_s=600.0, findings=found))]
-    said = verdicts_of(asked_sheet([summary_of("streets", robots)], "what was asked", judged=True))
+    said = verdicts_of(asked_sheet([summary_of("streets", robots)], "what was asked"))
     assert said["junctions right in manhattan"] == ("at least 95%", f"{right}.0% of 100", verdicts[0])
     assert said["collisions in 10 min in manhattan"] == ("below 0.5", f"{collisions:.2f}", verdicts[1])
 
 
 def test_nothing_is_asked_of_tasks_taught_alone() -> None:
-    sheet = asked_sheet([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked", judged=True)
+    sheet = asked_sheet([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked")
     assert sheet.rows == ()
     assert sheet.note == "Of these tasks nothing is asked."
 

@@ -1,0 +1,64 @@
+"""Only enough robots that nobody has seen are judged."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.paper.extent import QUICK, WHOLE
+from kurt2rt.experiments.paper.judging import reasons_not_to_judge
+from kurt2rt.experiments.paper.programme import Experiment, Programme, unseen_of
+from kurt2rt.experiments.paper.results import Results
+from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
+from kurt2rt.experiments.paper.taught_job import TaughtJob
+from kurt2rt.tasks.settings import load_task
+from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.paper.outcomes import MADE_OF, settings_of
+
+TASK = load_task("wall_following")
+NOT_SEEN = range(100, 120)
+
+
+def programme(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> Programme:
+    jobs = tuple(
+        TaughtJob(STAGE, ROBOT, TASK, "shipped", seed, unseen_of(seed, settings), MADE_OF, Results(Path("never-made")))
+        for seed in seeds
+    )
+    experiment = Experiment(settings, "shipped", TASK, jobs)
+    return Programme(load_paper(), WHOLE, tuple(seeds), "s", (experiment,), ())
+
+
+SETTINGS = settings_of("wall_following")
+
+
+def test_twenty_robots_that_nobody_has_seen_are_judged() -> None:
+    assert list(reasons_not_to_judge(programme(NOT_SEEN, SETTINGS))) == []
+
+
+@pytest.mark.parametrize(
+    ("seeds", "reason"),
+    [
+        (range(100, 119), "19 robots only; the numbers are asked of 20."),
+        ((100,), "1 robot only; the numbers are asked of 20."),
+        (range(79, 99), "1 of the seeds are among 0 to 79, on which settings were chosen; give others."),
+        (
+            range(100, 140, 2),
+            "wall_following: 15 of the 30 generated worlds are left out by these seeds; "
+            "give 20 that follow each other.",
+        ),
+    ],
+)
+def test_others_are_not_and_the_reason_is_said(seeds: range | tuple[int, ...], reason: str) -> None:
+    assert list(reasons_not_to_judge(programme(seeds, SETTINGS))) == [reason]
+
+
+def test_a_part_is_not_judged() -> None:
+    (reason,) = reasons_not_to_judge(replace(programme(NOT_SEEN, SETTINGS), extent=QUICK))
+    assert reason.startswith("A part only")
+
+
+def test_rooms_on_which_settings_were_chosen_judge_nothing() -> None:
+    assert SETTINGS.unseen is not None
+    known = SETTINGS.model_copy(update={"unseen": SETTINGS.unseen.model_copy(update={"first": 59})})
+    (reason,) = reasons_not_to_judge(programme(NOT_SEEN, known))
+    assert "among rooms-0 to rooms-59" in reason
