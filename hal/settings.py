@@ -69,7 +69,7 @@ def find_config(kind: str, name_or_path: str) -> Path:
 def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
     """Read `path`, change what `changes` says, and check it against `schema`.
 
-    `changes`: values in YAML by key, with dots between the levels (`learning.radius`).
+    `changes`: values in YAML by key, with dots between the levels (`learning.radius`), as --set on a command line says.
     Raises SettingsError with one line that names file, key and what is allowed.
     """
     try:
@@ -79,7 +79,7 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
     try:
         content = yaml.load(text, Loader=_StrictLoader)
         for key, value in (changes or {}).items():
-            _change(content, key, yaml.load(value, Loader=_StrictLoader), path)
+            _change(content, key, _value_of(key, value, path), path)
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
         as_json = json.dumps(content, default=str)
     except SettingsError:
@@ -96,7 +96,26 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
         problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         explained = " ".join(_explain(problems[0], schema).split())  # a key may hold a line break
-        raise SettingsError(f"{path}: {explained}{more}") from error
+        given = _given_by(problems[0], changes or {})
+        raise SettingsError(f"{path}: {explained}{more}{given}") from error
+
+
+def _value_of(key: str, value: str, path: Path) -> Any:
+    try:
+        return yaml.load(value, Loader=_StrictLoader)
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        told = " ".join(str(error).split())
+        raise SettingsError(f"{path}: {key}: the value {value!r} of --set is not valid YAML: {told}") from error
+
+
+def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
+    """Which change a problem comes from: the file itself may be well."""
+    place = [str(part) for part in problem["loc"]]
+    for key in changes:
+        levels = key.split(".")
+        if place and levels[: len(place)] == place[: len(levels)]:
+            return f"; --set {key} says so"
+    return ""
 
 
 def _change(content: Any, key: str, value: Any, path: Path) -> None:

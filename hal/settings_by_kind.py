@@ -6,6 +6,8 @@ The module `<package>/<kind>.py` holds the class that is named after it: `wall_f
 import json
 import pkgutil
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TypeVar
 
 from pydantic import ValidationError
@@ -27,7 +29,8 @@ def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
     """The settings of a kind. Raises ValueError that lists the kinds there are."""
     found = _settings_in(package, kind, base) if kind in _modules(package) else None
     if found is None:
-        kinds = ", ".join(each for each in _modules(package) if _settings_in(package, each, base))
+        # Read, not imported: a kind that is broken or being written is no reason to hide that another was misspelled.
+        kinds = ", ".join(each for each in _modules(package) if _is_a_kind(package, each, base))
         raise ValueError(f"there is no kind {kind!r}; give one of: {kinds}")
     return found
 
@@ -60,9 +63,19 @@ def _modules(package: str) -> list[str]:
     return sorted(module.name for module in pkgutil.iter_modules(import_module(package).__path__))
 
 
+def _class_name(kind: str) -> str:
+    return "".join(part.capitalize() for part in kind.split("_")) + "Settings"
+
+
+def _is_a_kind(package: str, kind: str, base: type[KindT]) -> bool:
+    spec = find_spec(f"{package}.{kind}")
+    if spec is None or spec.origin is None or _class_name(kind) == base.__name__:
+        return False
+    return f"class {_class_name(kind)}(" in Path(spec.origin).read_text(encoding="utf-8")
+
+
 def _settings_in(package: str, kind: str, base: type[KindT]) -> type[KindT] | None:
-    name = "".join(part.capitalize() for part in kind.split("_")) + "Settings"
-    found = getattr(import_module(f"{package}.{kind}"), name, None)
+    found = getattr(import_module(f"{package}.{kind}"), _class_name(kind), None)
     # The base itself is in no file of its own kind.
     return found if isinstance(found, type) and issubclass(found, base) and found is not base else None
 

@@ -9,11 +9,13 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 
+from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings_by_kind import find_kind
 from kurt2rt.faults.table import FaultTable
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -304,6 +306,34 @@ def test_the_plain_reading_of_the_paper_is_another_way_to_learn_the_same_task() 
     assert plain.model_copy(update={"learning": task.learning}) == task
 
 
+@pytest.mark.parametrize("key", ["learning.radius", "learning"])
+def test_what_is_set_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
+    with pytest.raises(SettingsError, match=rf"streets.yaml: {key} changes nothing .*; give plain"):
+        load_task("streets", plain=True, changes={key: "300"})
+    assert load_task("streets", plain=True, changes={"plain.radius": "300"}).learning.radius == 300.0
+
+
+def test_a_problem_of_the_file_is_not_blamed_on_what_was_set(tmp_path: Path) -> None:
+    path = tmp_path / "task.yaml"
+    path.write_text(TASK.replace("past_weight", "passed_weight", 1))
+    with pytest.raises(SettingsError) as caught:
+        load_task(str(path), changes={"learning.radius": "300"})
+    assert "--set" not in str(caught.value)
+
+
+def test_a_kind_that_cannot_be_imported_does_not_hide_that_another_is_misspelled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    package = tmp_path / "some_policies"
+    package.mkdir()
+    (package / "__init__.py").touch()
+    (package / "broken.py").write_text("import no_such_module\n\n\nclass BrokenSettings(PolicySettings):\n    ...\n")
+    (package / "helpers.py").write_text("")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ValueError, match=r"there is no kind 'brokn'; give one of: broken$"):
+        find_kind("some_policies", "brokn", PolicySettings)  # type: ignore[type-abstract]
+
+
 def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
     task = load_task("streets", changes={"learning.radius": "300", "exam.worlds": "[streets-3]"})
     assert task.learning.radius == 300.0
@@ -315,12 +345,18 @@ def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
     ("key", "value", "told"),
     [
         ("learning.radios", "3", "learning.radios: no such key; allowed here: radius"),
-        ("learning.radius", "near", "learning.radius: Input should be a valid number (found 'near')"),
+        (
+            "learning.radius",
+            "near",
+            "learning.radius: Input should be a valid number (found 'near'); --set learning.radius says so",
+        ),
+        ("learning", "{radius: 3}", "learning.past_weight: this key is missing (and 2 more); --set learning says so"),
+        ("policy.kind", "walls", "policy.kind: there is no kind 'walls'; give one of: circle, "),
         ("learning.radius", "-1", "learning.radius: Input should be greater than 0 (found -1)"),
         ("names.first", "x", "names: no such key; allowed here: name"),
         ("name.first", "x", "name.first: no such key; nothing stands within name"),
         ("exam.worlds.0", "a", "exam.worlds.0: no such key; nothing stands within exam.worlds"),
-        ("learning.radius", "[", "not valid YAML"),
+        ("learning.radius", "[", "learning.radius: the value '[' of --set is not valid YAML: "),
     ],
 )
 def test_a_value_from_elsewhere_is_checked_as_the_file_s_own(key: str, value: str, told: str) -> None:

@@ -1,13 +1,12 @@
 """Schema of `config/tasks/*.yaml`."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
 from behaviors.policies.finding import AnyPolicySettings
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -147,7 +146,15 @@ class TaskSettings(Settings):
 def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, str] | None = None) -> TaskSettings:
     """Settings of a shipped task by name, or of a file by path; `plain`: for the plain reading of the paper.
 
-    `changes` as in hal.settings.load_settings. Raises hal.settings.SettingsError.
+    `changes` as in hal.settings.load_settings, and none of `learning` where `plain` stands for it.
+    Raises hal.settings.SettingsError.
     """
-    task = load_settings(Path(find_config("tasks", name_or_path)), TaskSettings, changes)
+    path = find_config("tasks", name_or_path)
+    for key in changes or ():
+        if plain and key.split(".")[0] == "learning":
+            raise SettingsError(
+                f"{path}: {key} changes nothing in the plain reading of the paper; "
+                f"give {key.replace('learning', 'plain', 1)}"
+            )
+    task = load_settings(path, TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task
