@@ -12,7 +12,7 @@ from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.made_of import versions
 from kurt2rt.experiments.paper.pictures import Picture
 from kurt2rt.experiments.paper.programme import ROBOTS
-from kurt2rt.experiments.paper.sheet import Sheet
+from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import Study
 from kurt2rt.experiments.paper.tables import sheets, unseen_sheet
 
@@ -38,54 +38,14 @@ def write_report(study: Study, pictures: Sequence[Picture], command: str, path: 
         sheets=list(sheets(study)),
         unseen=[sheet for each in study.summaries if (sheet := unseen_sheet(each)).rows],
         robots=ROBOTS,
-        settings=settings_sheet(study),
+        settings=[learning_sheet(study), exams_sheet(study)],
+        success=SUCCESS,
         pictures=[(each, _as_uri(each.path)) for each in pictures],
         command=command,
         versions=", ".join([versions(), *(f"{name} {version(name)}" for name in _MADE_WITH)]),
         source=programme.source,
     )
     write_durably(path, html)
-
-
-def settings_sheet(study: Study) -> Sheet:
-    """How each task was taught."""
-    rows = []
-    for each in study.summaries:
-        learning, teaching, teacher = each.task.learning, each.task.teaching, each.task.teaching.teacher
-        again = f"every {teaching.reposition_every_s:g} s, {teaching.reposition_to}".replace("_", " ")
-        rows.append(
-            (
-                each.label,
-                each.reading,
-                f"{learning.radius:g}",
-                f"{learning.past_weight:g}",
-                f"{learning.insert_beyond_share:g}",
-                f"{learning.minimum_action_s:g}",
-                teaching.world,
-                f"{teaching.supervised_s:g} + {teaching.corrections_s:g}",
-                f"{teacher.reaction_s:g}",
-                f"{teacher.patience_s:g}",
-                f"{teacher.error_rate:.0%}",
-                f"after {teacher.delete_after} replacements" if teacher.delete_after else "never",
-                again if teaching.reposition_every_s else "no",
-            )
-        )
-    columns = (
-        "task",
-        "reading",
-        "R",
-        "weight of the averages",
-        "insert beyond, share of R",
-        "an action lasts at least, s",
-        "taught in",
-        "phases 1 + 2, s",
-        "reaction, s",
-        "patience, s",
-        "wrong answers",
-        "deletes",
-        "re-positions",
-    )
-    return Sheet("Settings of learning and of the scripted teacher", columns, tuple(rows), words=2)
 
 
 def _as_uri(path: Path) -> str:

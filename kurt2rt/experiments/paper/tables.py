@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
+from kurt2rt.experiments.paper.settings_sheets import SUCCESS
 from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
 from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary
@@ -98,7 +99,7 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         ("task", "world", "success", "95 %", "stuck", "collided", "in 10 min", "95 %"),
         tuple(rows),
         words=2,
-        note=f"Exams of {' or '.join(f'{time_s:g}' for time_s in times)} s. Success with Wilson's interval. Stuck: or "
+        note=f"Exams of {' or '.join(f'{time_s:g}' for time_s in times)} s. {SUCCESS} Wilson's interval. Stuck: or "
         "stopped by the guard for good. Collided: drives with any collision. In 10 min: collisions of all drives. "
         f"{_OF_RATES}",
     )

@@ -1,6 +1,7 @@
 """From a plan to results, pictures and a report, on the simulated robot."""
 
 import base64
+import html
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -11,6 +12,7 @@ from matplotlib.image import imread
 
 from kurt2rt.experiments.paper.report import write_report
 from kurt2rt.experiments.paper.results import Results
+from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import conduct
 from kurt2rt.experiments.paper.tables import sheets
 from kurt2rt.knowledge.opening import read_lessons
@@ -104,7 +106,7 @@ def test_the_report_holds_every_figure_and_every_table(tiny: Tiny) -> None:
     titles = [sheet.title for sheet in sheets(tiny.study)]
     assert len(titles) == len(set(titles)) == 10
     assert all(f"<caption>{title}</caption>" in text for title in titles)
-    assert page.tags.count("table") == len(titles) + 3  # generated worlds in both readings, and the settings
+    assert page.tags.count("table") == len(titles) + 4  # generated worlds in both readings, and two of settings
 
 
 def test_the_report_needs_nothing_but_itself(tiny: Tiny) -> None:
@@ -138,3 +140,21 @@ def test_both_readings_have_their_tables(tiny: Tiny, how: str) -> None:
     titles = {sheet.title.lower() for sheet in sheets(tiny.study)}
     for what in ("what was asked", "what was taught", "exams without teacher", "drives of these exams"):
         assert (how + what).lower() in titles
+
+
+def test_the_report_tells_every_setting_of_learning_and_exams_and_what_success_is(tiny: Tiny) -> None:
+    learning, exams = learning_sheet(tiny.study), exams_sheet(tiny.study)
+    shipped, plain = (
+        dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "wall following"
+    )
+    assert shipped["weights that are not 1"].startswith("1.5: s15; 2: maximum front; 0: minimum front; 0.5: s5, s6")
+    assert plain["weights that are not 1"] == "none"
+    eight = next(dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "eight")
+    assert (eight["re-positions"], eight["sets it down at"]) == ("every 30 s", "a start pose")
+    assert eight["rescues"] == "after 15 s within 1 m"
+    assert [row[0] for row in exams.rows] == ["wall following", "eight"]
+    assert exams.rows[1] == ("eight", "a start pose", "1", "20", "1", "0", "80%", "")
+    text = tiny.report.read_text(encoding="utf-8")
+    assert all(f"<caption>{sheet.title}</caption>" in text for sheet in (learning, exams))
+    assert html.escape(SUCCESS, quote=False).replace("'", "&#39;") in text
+    assert all(SUCCESS in sheet.note for sheet in sheets(tiny.study) if "exams without teacher" in sheet.title.lower())
