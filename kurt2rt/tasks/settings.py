@@ -65,7 +65,7 @@ class TeacherSettings(Settings):
     error_rate: Share
     """Share of answers and corrections that name another action than the policy."""
     delete_after: Annotated[int, Field(ge=0, le=1000)] = 0
-    """An RLA whose action was replaced so many times is deleted the next time it is wrong; 0: never."""
+    """An RLA whose action was replaced so many times is deleted the next time it would be again; 0: never."""
 
 
 class TeachingSettings(Settings):

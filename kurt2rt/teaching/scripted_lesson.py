@@ -15,7 +15,7 @@ from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teaching.hello import Hello
-from kurt2rt.teaching.scripted_teacher import Picture, teacher_of
+from kurt2rt.teaching.scripted_teacher import Picture, share_of_radius, teacher_of
 
 Say = Callable[[str], None]
 
@@ -160,6 +160,7 @@ def picture_in(state: State) -> Picture:
         state.infrared_counts,
         state.behaviour,
         state.rla,
+        share_of_radius(state.rla, state.nearest, state.distance, state.radius),
     )
 
 

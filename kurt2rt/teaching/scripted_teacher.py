@@ -1,5 +1,6 @@
 """A teacher that consults a reference policy: answers questions, and corrects what it would do otherwise."""
 
+import math
 import random
 from collections import Counter
 from collections.abc import Sequence
@@ -26,11 +27,21 @@ class Picture(NamedTuple):
     """The taught behaviour that is wanted."""
     rla_id: int | None = None
     """The RLA whose action drives."""
+    share_of_radius: float = math.inf
+    """How far off its condition is, as a share of its R; infinite where another RLA's is nearer."""
+
+
+def share_of_radius(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
+    """As in Picture, of the RLA that drives and of the nearest one."""
+    return distance / radius if driving is not None and driving == nearest else math.inf
 
 
 def picture_of(record: TickRecord) -> Picture:
     """What a tick looks like to a teacher."""
-    decision = record.decision
+    decision, match = record.decision, record.decision.match
+    nearest = math.inf
+    if match is not None:
+        nearest = share_of_radius(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
     return Picture(
         decision.asking,
         decision.driving,
@@ -38,6 +49,7 @@ def picture_of(record: TickRecord) -> Picture:
         record.senses.infrared_counts,
         record.behaviour,
         decision.rla_id,
+        nearest,
     )
 
 
@@ -49,6 +61,7 @@ def teacher_of(
         task.policy.build(robot.infrared),
         actions,
         task.teaching.teacher,
+        replace_within_share=task.learning.insert_beyond_share,
         period_s=robot.can.cycle_s,
         seed=seed,
         session=session,
@@ -67,16 +80,22 @@ class ScriptedTeacher:
         actions: Sequence[str],
         settings: TeacherSettings,
         *,
+        replace_within_share: float,
         period_s: float,
         seed: int,
         session: str,
     ) -> None:
-        """`session` begins the ids of all its commands and must differ between lessons on the same knowledge."""
+        """`session` begins the ids of all its commands and must differ between lessons on the same knowledge.
+
+        `replace_within_share`: up to which share of R a correction replaces an action, and so may be followed by a
+        deletion.
+        """
         self._session = session
         self._policy = policy
         self._actions = tuple(actions)
         self._error_rate = settings.error_rate
         self._delete_after = settings.delete_after
+        self._replace_within_share = replace_within_share
         self._reaction_ticks = round(settings.reaction_s / period_s)
         self._patience_ticks = round(settings.patience_s / period_s)
         self._chance = random.Random(seed)
@@ -133,9 +152,15 @@ class ScriptedTeacher:
         if self._ticks_otherwise < self._patience_ticks:
             return None
         self._ticks_otherwise = 0
-        if self._delete_after and picture.rla_id and self._replaced[picture.rla_id] >= self._delete_after:
+        if picture.rla_id is not None and self._is_to_go(picture.rla_id, picture.share_of_radius):
             return DeleteRla(self._next_id(), _NAME, picture.rla_id)
         return Correct(self._next_id(), _NAME, self._choose(picture))
+
+    def _is_to_go(self, rla_id: int, distance_share: float) -> bool:
+        """Whether an RLA that is wrong has been replaced often enough; farther off a correction leaves it as it is."""
+        if not self._delete_after or self._replaced[rla_id] < self._delete_after:
+            return False
+        return distance_share <= self._replace_within_share
 
     def _note_replaced(self, picture: Picture) -> None:
         """An RLA that drives otherwise than before has had its action replaced."""

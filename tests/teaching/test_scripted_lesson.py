@@ -231,3 +231,5 @@ async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
 def test_it_sees_in_a_picture_what_is_wanted_and_which_rla_drives() -> None:
     seen = picture_in(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
     assert seen == Picture(False, True, "forward", state().infrared_counts, "turn_left", 3)
+    nearest = picture_in(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
+    assert nearest.share_of_radius == 0.1

@@ -1,5 +1,6 @@
 """The scripted teacher: consistent, with a reaction time, patience, and errors where they are asked for."""
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +10,8 @@ import numpy as np
 from hal.robot import STANDSTILL, Grant
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import Origin, Phase, Rla
+from kurt2rt.rla.rla_system import Match
 from kurt2rt.tasks.settings import TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
@@ -32,16 +34,22 @@ class NearIsB:
 
 def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) -> ScriptedTeacher:
     settings = TeacherSettings(**{"reaction_s": 1.0, "patience_s": 0.5, "error_rate": 0.0, **changes})
-    person = ScriptedTeacher(NearIsB(), "abcd", settings, period_s=0.01, seed=seed, session="s")
+    person = ScriptedTeacher(
+        NearIsB(), "abcd", settings, replace_within_share=0.1, period_s=0.01, seed=seed, session="s"
+    )
     if phase is not Phase.SUPERVISED:
         person.enter(phase)
     return person
 
 
-def record(count: int, cause: Cause, action: str | None = None) -> TickRecord:
-    """A tick as the teacher sees it."""
+def record(
+    count: int, cause: Cause, action: str | None = None, nearest: int = 1, share_of_radius: float = 0.0
+) -> TickRecord:
+    """A tick as the teacher sees it: RLA 1 drives, if any does, and `nearest` is so near."""
     rla_id = None if action is None else 1
-    decision = Decision(STANDSTILL, cause, action, rla_id, None)
+    rla = Rla(nearest, (0.0,), action or "a", None, Origin("t", NAME, Phase.SUPERVISED, 1))
+    match = None if action is None else Match(rla, 500.0 * share_of_radius, 500.0, None, math.inf)
+    decision = Decision(STANDSTILL, cause, action, rla_id, match)
     situation = Situation(np.zeros(1), history_frozen=action is None)
     return TickRecord(1, 0.01, sensed(count), situation, decision, Grant(STANDSTILL, (), latched=False), ())
 
@@ -182,6 +190,20 @@ def test_an_rla_whose_action_was_replaced_often_enough_is_deleted_when_it_is_wro
     ]
     assert [type(command) for command in said(person, wrong).values()] == [Correct, Correct, DeleteRla]
     assert said(teacher(delete_after=2), wrong)[3 * PATIENCE_TICKS] == DeleteRla("s-4", NAME, 1)
+
+
+def deletions(last: Sequence[TickRecord]) -> int:
+    """How often RLA 1, which was replaced twice, is deleted in what comes then."""
+    replaced = [doing(action) for action in "bcd" for _ in range(PATIENCE_TICKS - 1)]
+    return sum(isinstance(each, DeleteRla) for each in said(teacher(delete_after=2), [*replaced, *last]).values())
+
+
+def test_it_deletes_only_where_a_correction_would_replace() -> None:
+    beside = [record(FAR, Cause.RLA, "d", share_of_radius=0.2)] * PATIENCE_TICKS
+    held = [record(FAR, Cause.HELD, "d", nearest=2)] * PATIENCE_TICKS
+    assert deletions([record(FAR, Cause.RLA, "d", share_of_radius=0.1)] * PATIENCE_TICKS) == 1
+    assert deletions(beside) == 0
+    assert deletions(held) == 0
 
 
 def test_without_such_a_setting_it_corrects_for_ever() -> None:
