@@ -65,6 +65,16 @@ class ExamResult:
         return self.collisions <= success.collisions_at_most and not self.stuck and not self.alarm and enough and right
 
     @property
+    def failed(self) -> bool:
+        """Whether it collided, got stuck or was stopped by the guard for good."""
+        return self.collisions > 0 or self.stuck or bool(self.alarm)
+
+    @property
+    def got_nowhere(self) -> bool:
+        """Whether there is no progress that another drive could be measured by: it made none, or got stuck."""
+        return self.progress <= 0.0 or self.stuck
+
+    @property
     def right_share(self) -> float:
         """Share of the junctions that were left as asked; 0 where there were none."""
         junctions = self.findings.get(JUNCTIONS, 0.0)

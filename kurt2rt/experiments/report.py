@@ -45,7 +45,7 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
         driven.add_row(
             label_of(exam.world),
             f"{exam.progress:.2f}",
-            f"{each.teacher.progress:.2f}",
+            f"{each.teacher.progress:.2f}{_not_well(each.teacher)}",
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
@@ -87,6 +87,11 @@ def _early_end(exam: ExamResult, stuck: str) -> str:
     if not exam.stuck and not exam.alarm:
         return ""
     return f"{exam.alarm or stuck}{' after' if exam.alarm else ''} {exam.duration_s:.0f} s"
+
+
+def _not_well(teacher: ExamResult) -> str:
+    """Why the teacher's own drive is no good measure; empty when it is."""
+    return " (got nowhere)" if teacher.got_nowhere else " (failed)" if teacher.failed else ""
 
 
 def label_of(world: str) -> str:
@@ -133,7 +138,8 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             early = _early_end(exam, "stuck at")
             end = f", {early}" if early else ""
             colour = "green" if each.succeeded else "red"
-            cells.append(f"[{colour}]{exam.progress:.1f} of {each.teacher.progress:.1f}, {exam.collisions}{end}[/]")
+            of_teacher = f"{each.teacher.progress:.1f}{_not_well(each.teacher)}"
+            cells.append(f"[{colour}]{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}[/]")
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 

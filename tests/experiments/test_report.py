@@ -1,5 +1,6 @@
 import statistics
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -104,6 +105,18 @@ def test_each_exam_is_a_row_with_its_verdict() -> None:
     assert ["B", "2.00", "9.00", "0", "no", "3.4%", "no"] in rows
     assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "no"] in rows
     assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
+
+
+def test_a_comparison_with_a_teacher_who_did_not_do_well_is_shown_as_such() -> None:
+    def told(**teacher: Any) -> str:
+        compared = world_result(exam_result())
+        rows = printed(render_exams([replace(compared, teacher=replace(compared.teacher, **teacher))], short_task()))
+        return next(row[2] for row in rows if row[0] == "A")
+
+    assert told() == "9.00"
+    assert told(progress=-0.5) == "-0.50 (got nowhere)"
+    assert told(stuck=True) == "9.00 (got nowhere)"
+    assert told(collisions=1) == told(alarm="bus lost") == "9.00 (failed)"
 
 
 def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:

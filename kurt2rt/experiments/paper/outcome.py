@@ -35,6 +35,9 @@ class DriveOutcome(Settings):
     unit: str
     progress: float
     teachers_progress: float
+    teachers_collisions: int
+    teachers_stuck: bool
+    teachers_alarm: str
     succeeded: bool
     duration_s: float
     way_m: float
@@ -46,6 +49,16 @@ class DriveOutcome(Settings):
     trail: tuple[Place, ...]
     asked_at: tuple[Place, ...]
     collided_at: tuple[Place, ...]
+
+    @property
+    def teacher_failed(self) -> bool:
+        """Whether the teacher's own drive collided, got stuck or was stopped by the guard for good."""
+        return self.teachers_collisions > 0 or self.teachers_stuck or bool(self.teachers_alarm)
+
+    @property
+    def teacher_got_nowhere(self) -> bool:
+        """Whether it made no progress, or got stuck, so that the comparison says little."""
+        return self.teachers_progress <= 0.0 or self.teachers_stuck
 
 
 class TaughtOutcome(Settings):

@@ -45,6 +45,10 @@ class WorldSummary:
     """Median."""
     teachers_progress: float
     """Median of the teacher's own drives."""
+    teacher_failed: int
+    """Of his drives, how many collided, got stuck or were stopped by the guard for good."""
+    teacher_got_nowhere: int
+    """How many made no progress, or got stuck."""
     share_unknown: float
     """Median."""
     junctions: int
@@ -132,6 +136,8 @@ def _summarize_world(world: str, label: str, drives: Sequence[DriveOutcome]) -> 
         unit=drives[0].unit,
         progress=quartiles([each.progress for each in drives])[1],
         teachers_progress=quartiles([each.teachers_progress for each in drives])[1],
+        teacher_failed=sum(each.teacher_failed for each in drives),
+        teacher_got_nowhere=sum(each.teacher_got_nowhere for each in drives),
         share_unknown=quartiles([each.share_unknown for each in drives])[1],
         junctions=sum(junctions),
         right=None if errs is None else Rate(1 - errs.value, max(0.0, 1 - errs.high), 1 - errs.low),

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
+from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.settings_sheets import SUCCESS
 from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
@@ -119,6 +120,7 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
                 world.label,
                 f"{world.progress:.1f} {world.unit}",
                 f"{world.teachers_progress:.1f}",
+                f"{world.teacher_failed}, {world.teacher_got_nowhere}",
                 f"{world.share_unknown:.1%}",
                 *(f"{world.lengths[name]:.3f}" if name in world.lengths else "" for name in names),
                 of_junctions,
@@ -127,12 +129,14 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         )
     return Sheet(
         _sentence(title),
-        ("task", "world", "progress", "teacher's own", "unknown", *names, "junctions right", "95 %"),
+        ("task", "world", "progress", "teacher's own", "failed, nowhere", "unknown", *names, "junctions right", "95 %"),
         tuple(rows),
         words=2,
         note="Medians, but for the junctions, which are those of all drives. A junction that the robot was asked for "
         "and did not get through, because it got stuck, was stopped for good or turned back, was not left as asked. "
-        f"{_OF_RATES} Unknown: share of the time in which the robot did not know the situation.",
+        f"{_OF_RATES} Failed: so many of the teacher's own drives collided, got stuck or were stopped by the guard for "
+        "good. Nowhere: so many made no progress or got stuck, and a comparison with them says little. "
+        "Unknown: share of the time in which the robot did not know the situation.",
     )
 
 
@@ -196,12 +200,18 @@ def unseen_sheet(summary: Summary) -> Sheet:
                 f"{seed}",
                 "yes" if drive.succeeded else "NO",
                 str(drive.collisions),
-                f"{drive.progress:.1f} ({drive.teachers_progress:.1f}) {drive.unit}",
+                f"{drive.progress:.1f} ({_of_teacher(drive)}) {drive.unit}",
                 f"{early} after {drive.duration_s:.0f} s" if early else "",
             )
         )
     columns = ("world", "robot", "success", "collisions", "progress (teacher's own)", "ended early")
     return Sheet(f"{_sentence(summary.label)}: worlds that nobody has seen", columns, tuple(rows))
+
+
+def _of_teacher(drive: DriveOutcome) -> str:
+    """His progress, and whether it is a measure."""
+    how = ", got nowhere" if drive.teacher_got_nowhere else ", failed" if drive.teacher_failed else ""
+    return f"{drive.teachers_progress:.1f}{how}"
 
 
 def _worlds(summaries: Sequence[Summary]) -> Iterator[tuple[Summary, WorldSummary]]:

@@ -85,9 +85,23 @@ def test_junctions_are_counted_over_all_robots() -> None:
     sheet = drive_sheet([summary_of("streets", robots)], "drives")
     assert sheet.columns[-3:] == ("lateral deviation, m", "junctions right", "95 %")
     (row,) = sheet.rows
-    assert row[:5] == ("streets", "manhattan", "8.0 laps", "9.0", "3.4%")
-    assert row[5:7] == ("0.030", "95.0% of 80")
-    assert row[7] == "86.7% to 100.0%"  # the second robot drawn twice, and the first
+    assert row[:6] == ("streets", "manhattan", "8.0 laps", "9.0", "0, 0", "3.4%")
+    assert row[6:8] == ("0.030", "95.0% of 80")
+    assert row[8] == "86.7% to 100.0%"  # the second robot drawn twice, and the first
+
+
+def test_comparisons_with_a_teacher_who_did_not_do_well_are_told() -> None:
+    robots = [
+        robot(1, 80, drive("a", teachers_stuck=True), drive("rooms-100")),
+        robot(2, 80, drive("a", teachers_collisions=2), drive("rooms-101", teachers_alarm="bus lost")),
+        robot(3, 80, drive("a"), drive("rooms-102", teachers_progress=0.0)),
+    ]
+    summary = summary_of("wall_following", robots)
+    sheet = drive_sheet([summary], "drives")
+    assert sheet.columns[4] == "failed, nowhere"
+    assert [row[4] for row in sheet.rows] == ["2, 1", "1, 1"]
+    told = [row[4] for row in unseen_sheet(summary).rows]
+    assert told == ["8.0 (9.0) laps", "8.0 (9.0, failed) laps", "8.0 (0.0, got nowhere) laps"]
 
 
 def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:
