@@ -194,7 +194,7 @@ def test_an_rla_whose_action_was_replaced_often_enough_is_deleted_when_it_is_wro
 
 def deletions(last: Sequence[TickRecord]) -> int:
     """How often RLA 1, which was replaced twice, is deleted in what comes then."""
-    replaced = [doing(action) for action in "bcd" for _ in range(PATIENCE_TICKS - 1)]
+    replaced = [doing(action) for action in "bcd"]
     return sum(isinstance(each, DeleteRla) for each in said(teacher(delete_after=2), [*replaced, *last]).values())
 
 
