@@ -18,6 +18,7 @@ from kurt2rt.ending import ENDING
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rounds import Rounds, Screen, Status, Watcher
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
@@ -50,15 +51,19 @@ async def serve(
     openness: Openness | None = None,
     duration_s: float | None,
     stopped: bool = False,
+    behaviour: str | None = None,
 ) -> Status | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
-    `stopped`: stand until the teacher says resume, as after a stop.
+    `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
-    UnknownBehaviourError, ChannelError.
+    UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
     path = Path(service.knowledge)
+    wanted = Wanted(task.behaviours)
+    if behaviour is not None:
+        wanted.pursue(behaviour)
     with TimerfdClock() as clock:
         opened = go_on_teaching(path, settings, task)
         stamps = opened.stamps
@@ -72,6 +77,7 @@ async def serve(
                 clock,
                 statistics=opened.counter,
                 attended=openness is not None,
+                wanted=wanted,
             )
             if stopped:
                 runtime.school.stop("the robot program was started")

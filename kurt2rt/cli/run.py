@@ -19,7 +19,9 @@ from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.options import WireName
 from kurt2rt.cli.printer import Printer
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.layers.wanted import Wanted
 from kurt2rt.recording.can_log import open_can_log
+from kurt2rt.rla.rla import rla_title
 from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
 from kurt2rt.service_settings import ServiceSettings, load_service
@@ -56,6 +58,14 @@ def run(
         Literal["channel", "none"],
         typer.Option(help="channel: teachers come over UDP; none: nobody, the robot drives where it knows the way."),
     ] = "channel",
+    behaviour: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Taught behaviour that is wanted at the start, where the task has several; a teacher may say another "
+            "one later. Default: the task's first.",
+        ),
+    ] = None,
     page: Annotated[
         bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")
     ] = False,
@@ -114,7 +124,9 @@ def run(
 
     With --teacher none nobody can say resume: any robot drives at once where
     it knows the situation, and once stopped by the guard it stands until the
-    program is started anew.
+    program is started anew. Of several taught behaviours it follows one:
+
+        kurt2rt run --teacher none --task streets --behaviour turn_left
     """
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
@@ -128,6 +140,11 @@ def run(
     robot_settings, taught = load_robot(service.robot), load_task(service.task)
     if auto and len(taught.behaviours) > 1:
         raise typer.BadParameter(several_behaviours(taught), param_hint="--auto")
+    if behaviour is not None:
+        try:
+            Wanted(taught.behaviours).pursue(behaviour)
+        except ValueError as error:
+            raise typer.BadParameter(str(error), param_hint="--behaviour") from error
     console = Console()
 
     def tell(text: str, style: str | None = None) -> None:
@@ -179,6 +196,7 @@ def run(
                 openness=openness,
                 duration_s=seconds,
                 stopped=robot != SIMULATED and teacher == "channel",
+                behaviour=behaviour,
             )
 
         last = anyio.run(serve_it)
@@ -212,10 +230,13 @@ def status_line(status: Status, health: Health) -> str:
     record, runtime = status.record, status.runtime
     decision, match = record.decision, record.decision.match
     near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
-    if decision.driving:
-        doing = f"{decision.action} by RLA {decision.rla_id}{near}"
+    if decision.rla_id is not None:
+        doing = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
+    elif decision.driving:
+        doing = f"{decision.action}, as the teacher says"
     elif decision.asking:
-        doing = "stands and asks" + ("" if match is None else f", nearest RLA {match.rla.rla_id}{near}")
+        about = f" about {record.behaviour}" if record.behaviour else ""
+        doing = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
     elif runtime.school.stopped_because or record.grant.latched:
         doing = f"stands until Go: {runtime.school.stopped_because or record.grant.reasons[0]}"
     else:

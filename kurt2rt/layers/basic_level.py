@@ -18,6 +18,10 @@ class UnknownBehaviourError(ValueError):
     """Knowledge names a taught behaviour that the task does not have."""
 
 
+def _named(behaviour: str) -> str:
+    return f"the behaviour {behaviour}" if behaviour else "a behaviour without a name, the only one of its task"
+
+
 class BasicLevel:
     """Winner takes all, with a minimum time per action against dithering between neighbours."""
 
@@ -26,8 +30,9 @@ class BasicLevel:
         for rla in system.rlas:
             if rla.behaviour not in wanted.behaviours:
                 raise UnknownBehaviourError(
-                    f"RLA {rla.rla_id} belongs to the taught behaviour {rla.behaviour!r}, which the task lacks; "
-                    f"add it there, or teach with the task it came from: {', '.join(map(repr, wanted.behaviours))}"
+                    f"RLA {rla.rla_id} belongs to {_named(rla.behaviour)}, and this task teaches "
+                    f"{', '.join(wanted.behaviours) or 'one without a name'}; "
+                    "give the task that this knowledge was taught with"
                 )
             if rla.action not in repertoire:
                 raise UnknownActionError(

@@ -203,6 +203,14 @@ def test_the_scripted_teacher_does_not_teach_several_behaviours_in_real_time(kur
     assert "kurt2rt lesson --task streets teaches it" in kurt2rt.misused("run", "--auto", "--task", "streets")
 
 
+def test_without_a_teacher_one_of_several_behaviours_is_chosen_at_the_start(kurt2rt: CommandLine) -> None:
+    words = ("run", "--seconds", "1.1", "--teacher", "none", "--task", "streets")
+    assert "stands and asks about straight_on" in kurt2rt(*words).out
+    assert "stands and asks about turn_left" in kurt2rt(*words, "--behaviour", "turn_left").out
+    refused = kurt2rt.misused(*words, "--behaviour", "fly")
+    assert "there is no taught behaviour 'fly'; this task has: straight_on, turn_left, turn_right" in refused
+
+
 def test_a_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
     assert "drive.doc: no known kind of CAN log; give a name" in kurt2rt.refused("run", "--can-log", "drive.doc")
 

@@ -9,6 +9,7 @@ from hal.guard import BUS_LOST, FOREIGN_CONTROL
 from hal.health import Health
 from kurt2rt.cli.run import status_line
 from kurt2rt.rounds import Status
+from kurt2rt.teaching.commands import Teach
 from tests.channel.desk import Desk
 
 WELL = Health(
@@ -44,6 +45,17 @@ def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
     desk.runtime.school.stop("the robot program was started")
     line = status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
+
+
+def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk.runtime.wanted.pursue("turn_left")
+    assert "stands and asks about turn_left " in status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
+    desk.runtime.school.authority.attended = False
+    desk.runtime.inbox.put(Teach("t", "Ann", "forward"))
+    assert "forward by RLA 1 of turn_left at 0 of R " in status_line(
+        Status(desk.run(), desk.runtime, 0, None, ""), WELL
+    )
 
 
 def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: Status) -> None:
