@@ -19,7 +19,7 @@ from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.wire.line import NO_WIRE, open_line, require_wire
-from simbridge.world_settings import load_world
+from simbridge.world_settings import WorldSettings, load_world
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,13 +59,7 @@ class SimulatedArena:
     @property
     def plan(self) -> Plan:
         """What a course may go by, with walls where they stand now."""
-        world = self.simulation.world.settings
-        return Plan(
-            world=world.name,
-            posts=tuple(Post(post.x_m, post.y_m, post.radius_m) for post in world.round_obstacles),
-            streets=tuple(Street(street.from_m, street.to_m, street.width_m) for street in world.streets),
-            junctions=tuple(world.junctions),
-        )
+        return _plan(self.simulation.world.settings)
 
     @property
     def nearest_m(self) -> float:
@@ -142,6 +136,10 @@ class SimulatedStage:
         for world in worlds:
             load_world(world, self.settings)
 
+    def plan_of(self, world: str) -> Plan:
+        """What stands where in a world, and where its streets lead."""
+        return _plan(load_world(world, self.settings))
+
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
         draw_world(axes, load_world(world, self.settings))
@@ -153,6 +151,15 @@ class SimulatedStage:
     def settings_of(self, world: str) -> str:
         """All that a world is made of, and the wire."""
         return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
+
+
+def _plan(world: WorldSettings) -> Plan:
+    return Plan(
+        world=world.name,
+        posts=tuple(Post(post.x_m, post.y_m, post.radius_m) for post in world.round_obstacles),
+        streets=tuple(Street(street.from_m, street.to_m, street.width_m) for street in world.streets),
+        junctions=tuple(world.junctions),
+    )
 
 
 @contextmanager

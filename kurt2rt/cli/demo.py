@@ -9,6 +9,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
+from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_curriculum
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import load_task
@@ -41,7 +42,9 @@ def demo(
     settings = load_robot(robot_settings)
     taught = load_task(task, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
-    stage.require_worlds(taught.teaching.world, *taught.exam.worlds)
+    worlds = (taught.teaching.world, *taught.exam.worlds)
+    stage.require_worlds(*worlds)
+    require_course(stage, taught, worlds)
     out.mkdir(parents=True, exist_ok=True)
     knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"
     set_aside(knowledge)

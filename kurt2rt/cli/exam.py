@@ -11,6 +11,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
+from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_exams
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import load_task
@@ -46,6 +47,7 @@ def exam(
     worlds = tuple(world) if world else taught.exam.worlds
     stage = SimulatedStage(settings, wire)
     stage.require_worlds(*worlds)
+    require_course(stage, taught, worlds)
     events = read_lessons(knowledge, settings, taught)
 
     async def run(report: Report) -> tuple[WorldResult, ...]:

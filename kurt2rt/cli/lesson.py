@@ -13,6 +13,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
+from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.set_aside import set_aside
@@ -53,7 +54,9 @@ def lesson(
     settings = load_robot(robot_settings)
     taught = load_task(task, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
-    stage.require_worlds(taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
+    worlds = (taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
+    stage.require_worlds(*worlds)
+    require_course(stage, taught, worlds)
     out.mkdir(parents=True, exist_ok=True)
     console = Console()
     if seeds is None:

@@ -127,6 +127,10 @@ class Stage(Protocol):
         """
         ...
 
+    def plan_of(self, world: str) -> Plan:
+        """What stands where in a world, and where its streets lead. Raises hal.settings.SettingsError."""
+        ...
+
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
         ...

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from hal.settings_by_kind import KindSettings
-from kurt2rt.experiments.arena import Arena, Pose
+from kurt2rt.experiments.arena import Arena, Plan, Pose
 
 Findings = Mapping[str, float]
 """Measures by name, with the unit in the name where there is one."""
@@ -64,9 +64,12 @@ class Course(Protocol):
 class CourseSettings(KindSettings):
     """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
 
+    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
+        """Look whether a world has what the course needs, for a task that teaches these behaviours.
+
+        Raises hal.settings.SettingsError.
+        """
+
     @abstractmethod
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:
-        """The course in an arena, for a task that teaches these behaviours.
-
-        Raises hal.settings.SettingsError when the arena's world has not what the course needs.
-        """
+        """The course in an arena. Raises hal.settings.SettingsError as `require` does."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
@@ -100,6 +101,11 @@ def plan(
         if reading == "shipped" or loaded[each.task].plain is not None
     ]
     stage.require_worlds(paper.testing_ground, *paper.worlds)
+    for each in chosen:
+        task = loaded[each.task]
+        require_course(
+            stage, task, (task.teaching.world, *task.exam.worlds, *(each.unseen.names if each.unseen else ()))
+        )
     source = source_of()
     fingerprints = Fingerprints(stage, robot, source)
 

@@ -133,6 +133,12 @@ def test_an_unknown_world_is_refused(tmp_path: Path) -> None:
         planned(changed_task(tmp_path, name="mine", teaching=teaching | {"world": "nowhere"}))
 
 
+def test_a_world_that_cannot_give_the_course_is_refused(tmp_path: Path) -> None:
+    exam = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())["exam"]
+    with pytest.raises(SettingsError, match="task mine: course rounds: world C has 0 round obstacles"):
+        planned(changed_task(tmp_path, name="mine", exam=exam | {"worlds": ["one_object", "c"]}))
+
+
 def test_two_tasks_of_one_name_are_refused(tmp_path: Path) -> None:
     with pytest.raises(PaperError, match="two tasks have the name circle"):
         planned("circle", changed_task(tmp_path))
