@@ -42,6 +42,11 @@ class GrowthJob:
         return f"results/{self.reading}/growth-{self.task.name}-R{self.radius:g}-{self.seed}.json"
 
     @property
+    def outcome(self) -> type[GrowthOutcome]:
+        """Schema of its result."""
+        return GrowthOutcome
+
+    @property
     def robot_time_s(self) -> float:
         """The lesson."""
         return self.task.teaching.duration_s

@@ -4,7 +4,7 @@ import ast
 import hashlib
 import json
 import platform
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,6 +20,8 @@ from kurt2rt.tasks.settings import TaskSettings
 _PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
 _DO_NOT_DECIDE = {"bench", "channel", "cli", "commission", "doctor", "faults", "page", "paper", "recording"}
 """Parts of kurt2rt that no lesson and no exam in lockstep runs through, or that only read results."""
+_DECIDE_ALL_THE_SAME = {f"experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")}
+"""What of those says how long and where robots drive, and what of it is kept."""
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
 
@@ -31,16 +33,23 @@ def versions() -> str:
 def source_hash() -> str:
     """Of the code that teaches, drives and simulates; comments, docstrings and layout left out."""
     digest = hashlib.sha256()
+    for name, path in sources():
+        digest.update(f"{name}\n".encode())
+        digest.update(code_of(path).encode())
+    return digest.hexdigest()[:16]
+
+
+def sources() -> Iterator[tuple[str, Path]]:
+    """Every module that decides a result, as `kurt2rt/tick.py`, and its file."""
     for package in _PACKAGES:
         spec = find_spec(package)
         assert spec is not None
         for folder in map(Path, spec.submodule_search_locations or ()):
             for path in sorted(folder.rglob("*.py")):
                 place = path.relative_to(folder)
-                if package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts):
-                    digest.update(f"{package}/{place.as_posix()}\n".encode())
-                    digest.update(code_of(path).encode())
-    return digest.hexdigest()[:16]
+                decides = package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts)
+                if decides or place.as_posix() in _DECIDE_ALL_THE_SAME:
+                    yield f"{package}/{place.as_posix()}", path
 
 
 def settings_hash(*settings: str) -> str:

@@ -34,6 +34,11 @@ class Kept(Protocol):
         """What decides its result."""
         ...
 
+    @property
+    def outcome(self) -> type[Settings]:
+        """Schema of its result."""
+        ...
+
 
 class _AnyOutcome(Settings, extra="ignore"):
     made_of: MadeOf
@@ -87,6 +92,8 @@ class Results:
             if other:
                 foreign.append(job.file)
                 differences.update(other)
+            else:
+                self.read(job, job.outcome)
         if foreign:
             what = ", ".join(name for name in MadeOf.model_fields if name in differences)
             more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""

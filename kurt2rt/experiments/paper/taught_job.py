@@ -51,6 +51,11 @@ class TaughtJob:
         return (*self.task.exam.worlds, *self.unseen)
 
     @property
+    def outcome(self) -> type[TaughtOutcome]:
+        """Schema of its result."""
+        return TaughtOutcome
+
+    @property
     def robot_time_s(self) -> float:
         """The lesson; and in each world the exam and the teacher's own drive."""
         return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s

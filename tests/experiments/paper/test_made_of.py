@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.paper.made_of import Fingerprints, code_of
+from kurt2rt.experiments.paper.made_of import Fingerprints, code_of, sources
 from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -38,6 +38,18 @@ def test_another_world_and_another_robot_show(fingerprints: Fingerprints) -> Non
     assert made.differences(fingerprints.of(TASK, ("a", "rooms-3"))) == ["worlds"]
     other = ROBOT.model_copy(update={"name": "other"})
     assert made.differences(Fingerprints(STAGE, other, "s").of(TASK, ("a",))) == ["robot"]
+
+
+def test_the_source_is_what_teaches_drives_and_keeps_what_came_and_not_what_only_shows_it() -> None:
+    modules = dict(sources())
+    paper = {name for name in modules if "/paper/" in name}
+    assert paper == {
+        f"kurt2rt/experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")
+    }
+    assert {"kurt2rt/tick.py", "kurt2rt/experiments/exam.py", "simbridge/free_poses.py", "hal/kurt2.py"} <= set(modules)
+    assert "behaviors/policies/streets.py" in modules
+    assert not any(name.startswith(("kurt2rt/cli/", "kurt2rt/page/")) for name in modules)
+    assert all(path.is_file() for path in modules.values())
 
 
 def test_comments_docstrings_and_layout_are_no_source(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """The folder of results: goes on where it was, mixes nothing."""
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from tests.experiments.paper.outcomes import MADE_OF, drive, robot
 class Job:
     file: str
     made_of: MadeOf = MADE_OF
+    outcome: type[TaughtOutcome] = TaughtOutcome
 
 
 JOBS = [Job("results/shipped/one-1.json"), Job("results/shipped/one-2.json"), Job("results/plain/one-1.json")]
@@ -53,6 +55,16 @@ def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
     (tmp_path / JOBS[0].file).write_text("{}")
     with pytest.raises(PaperError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
         Results(tmp_path).missing(JOBS)
+
+
+def test_a_result_that_lacks_something_is_found_before_anything_runs(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    results.write(JOBS[0], robot(1, 90, drive()))
+    content = json.loads((tmp_path / JOBS[0].file).read_text())
+    del content["drives"][0]["teachers_stuck"]
+    (tmp_path / JOBS[0].file).write_text(json.dumps(content))
+    with pytest.raises(PaperError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+        results.missing(JOBS)
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
