@@ -66,7 +66,7 @@ def build_runtime(
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = weights_of(definition, changed, task.learning.past_weight)
+    weights = weights_of(definition, changed, task.learning.past_weight, task.name)
     system = RlaSystem(definition.dimensions, task.learning.radius, weights)
     events = tuple(events)
     system.apply_all(events)

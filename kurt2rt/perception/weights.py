@@ -10,24 +10,28 @@ from kurt2rt.perception.definition import SituationDefinition
 
 
 def weights_of(
-    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float
+    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float, task: str
 ) -> NDArray[np.float64]:
     """Weights (d,): 1 for recent features but those of `changed`, and `past_weight` times that for averaged ones.
 
-    Raises SettingsError for a feature that the definition has not, or that is changed twice.
+    Raises SettingsError, with the name of the `task`, for a feature that the definition has not, or that is changed
+    twice, and when nothing weighs anything.
     """
     names = [feature.name for feature in definition.features]
     recent = dict.fromkeys(names, 1.0)
     seen: set[str] = set()
-    for features, weight in changed:
+    for place, (features, weight) in enumerate(changed):
+        key = f"task {task}: learning.weights.{place}.features"
         for name in features:
             if name not in recent:
                 raise SettingsError(
-                    f"learning.weights: situation {definition.name} has no feature {name!r}; it has: {', '.join(names)}"
+                    f"{key}: situation {definition.name} has no feature {name!r}; it has: {', '.join(names)}"
                 )
             if name in seen:
-                raise SettingsError(f"learning.weights: {name!r} is given two weights; leave one out")
+                raise SettingsError(f"{key}: {name!r} is given two weights; leave one out")
             seen.add(name)
             recent[name] = weight
+    if not any(recent.values()):
+        raise SettingsError(f"task {task}: learning.weights: every feature weighs 0; leave one with more")
     values = np.array([recent[name] for name in names])
     return np.concatenate((values, past_weight * values))

@@ -180,7 +180,9 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     assert said.exit_code == 2, said.err
     assert "Traceback" not in said.err
     last = said.err.strip().splitlines()[-1]
-    assert last.startswith("kurt2rt: learning.weights: situation basic has no feature 's99'; it has: s1, s2, ")
+    assert last.startswith(
+        "kurt2rt: task wall_following: learning.weights.0.features: situation basic has no feature 's99'; it has: s1, "
+    )
 
 
 def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandLine, lessons: Path) -> None:

@@ -21,13 +21,13 @@ NAMES = DEFINITION.names
 
 
 def test_all_recent_features_weigh_one_and_their_averages_a_share_of_it() -> None:
-    weights = weights_of(DEFINITION, (), 0.25)
+    weights = weights_of(DEFINITION, (), 0.25, "mine")
     assert weights.tolist() == [1.0] * 36 + [0.25] * 36
 
 
 def test_some_weigh_something_else_in_both_halves() -> None:
     weights = dict(
-        zip(NAMES, weights_of(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5), strict=True)
+        zip(NAMES, weights_of(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5, "mine"), strict=True)
     )
     assert weights["s15"] == weights["maximum front"] == 3.0
     assert weights["s15 (10 s average)"] == 1.5
@@ -38,16 +38,23 @@ def test_some_weigh_something_else_in_both_halves() -> None:
 @pytest.mark.parametrize(
     ("changed", "told"),
     [
-        ([(("s19",), 2.0)], "has no feature 's19'; it has: s1, s2, "),
+        (
+            [(("s19",), 2.0)],
+            "task mine: learning.weights.0.features: situation basic has no feature 's19'; it has: s1, s2, ",
+        ),
         ([(("s1 (10 s average)",), 2.0)], "has no feature 's1 (10 s average)'"),
-        ([(("s1", "s2"), 2.0), (("s2",), 3.0)], "'s2' is given two weights"),
+        ([(("s1", "s2"), 2.0), (("s2",), 3.0)], "task mine: learning.weights.1.features: 's2' is given two weights"),
+        (
+            [(tuple(each.name for each in DEFINITION.features), 0.0)],
+            "task mine: learning.weights: every feature weighs 0; leave one with more",
+        ),
     ],
 )
 def test_a_feature_that_is_not_there_or_twice_is_refused(
     changed: list[tuple[tuple[str, ...], float]], told: str
 ) -> None:
     with pytest.raises(SettingsError) as caught:
-        weights_of(DEFINITION, changed, 1.0)
+        weights_of(DEFINITION, changed, 1.0, "mine")
     assert told in str(caught.value)
 
 
