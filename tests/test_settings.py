@@ -259,6 +259,34 @@ def test_what_a_task_teaches_has_names_that_differ(behaviours: str, told: str, t
     assert told in refusal(path, TaskSettings)
 
 
+@pytest.mark.parametrize(
+    ("behaviours", "told"),
+    [
+        (
+            ["straight_on", "about_turn"],
+            "policy: Value error, streets knows the behaviours straight_on, turn_left, ",
+        ),
+        (None, "turn_right, and not ''"),
+        ([f"turn_{number}" for number in range(65)], "behaviours: Tuple should have at most 64 items"),
+    ],
+)
+def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, told: str, tmp_path: Path) -> None:
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "streets.yaml").read_text())
+    task["behaviours"] = behaviours
+    if behaviours is None:
+        del task["behaviours"]
+    path = tmp_path / "task.yaml"
+    path.write_text(yaml.safe_dump(task))
+    assert told in refusal(path, TaskSettings)
+
+
+@pytest.mark.parametrize("name", ["wall_following", "streets"])
+def test_a_task_that_is_written_out_keeps_every_key_of_its_policy_and_course(name: str) -> None:
+    written = json.loads(load_task(name).model_dump_json())
+    file = yaml.safe_load((CONFIG_DIR / "tasks" / f"{name}.yaml").read_text())
+    assert (written["policy"], written["course"]) == (file["policy"], file["course"])
+
+
 def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_path: Path) -> None:
     assert load_task("wall_following").behaviours == ("",)
     path = tmp_path / "task.yaml"

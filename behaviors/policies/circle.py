@@ -1,14 +1,8 @@
 """A circle, counter-clockwise, round an object that is smaller than the distance between two sensors."""
 
-from typing import Annotated
-
-from pydantic import Field
-
-from behaviors.policies.distances import LEFT_FRONT_TO_BACK, Distances
+from behaviors.policies.distances import LEFT_FRONT_TO_BACK, Distance, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
-
-Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
 
 class CircleSettings(PolicySettings):

@@ -1,11 +1,17 @@
 """What sensors see, in metres."""
 
 from collections.abc import Callable
+from typing import Annotated
+
+from pydantic import Field
 
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import InfraredSettings
 
 Look = Callable[[tuple[int, ...]], tuple[float, ...]]
+
+Distance = Annotated[float, Field(ge=0.05, le=0.6)]
+"""In the settings of a policy, in metres: what a sensor can tell."""
 
 LEFT_FRONT_TO_BACK = ("s1", "s3", "s4", "s2")
 RIGHT_FRONT_TO_BACK = ("s5", "s7", "s8", "s6")

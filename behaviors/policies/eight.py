@@ -1,8 +1,6 @@
 """An eight round two columns: the one on the left counter-clockwise, the one on the right clockwise."""
 
-from typing import Annotated, NamedTuple
-
-from pydantic import Field
+from typing import NamedTuple
 
 from behaviors.policies.distances import (
     FRONT,
@@ -12,12 +10,11 @@ from behaviors.policies.distances import (
     REAR_LEFT_EDGE,
     REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
+    Distance,
     Distances,
 )
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
-
-Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
 # Where a column is, from front to back; 0 to 3: which of the sensors beside the robot is nearest to it.
 _AHEAD = -1

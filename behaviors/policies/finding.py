@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import PlainValidator
+from pydantic import PlainValidator, SerializeAsAny
 
 from behaviors.policies.policy import PolicySettings
 from hal.settings_by_kind import as_its_kind, find_kind
@@ -19,5 +19,5 @@ def _checked(given: object) -> PolicySettings:
     return as_its_kind(given, _PACKAGE, PolicySettings)  # type: ignore[type-abstract]
 
 
-AnyPolicySettings = Annotated[PolicySettings, PlainValidator(_checked)]
+AnyPolicySettings = Annotated[SerializeAsAny[PolicySettings], PlainValidator(_checked)]
 """In a schema: settings of whatever policy the file names."""

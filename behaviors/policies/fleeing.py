@@ -1,14 +1,8 @@
 """Fleeing with collision avoidance: turn away from whatever is near, and be off."""
 
-from typing import Annotated
-
-from pydantic import Field
-
-from behaviors.policies.distances import FRONT, FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, Distances
+from behaviors.policies.distances import FRONT, FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, Distance, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
-
-Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
 
 class FleeingSettings(PolicySettings):

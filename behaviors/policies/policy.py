@@ -1,7 +1,7 @@
 """The contract of a reference policy."""
 
 from abc import abstractmethod
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from hal.robot_settings import InfraredSettings
 from hal.settings_by_kind import KindSettings
@@ -24,6 +24,9 @@ class ReferencePolicy(Protocol):
 
 class PolicySettings(KindSettings):
     """Base of the settings of every policy: a class named after its file in this folder, which is the kind."""
+
+    behaviours: ClassVar[tuple[str, ...] | None] = None
+    """The taught behaviours that it tells apart; None: it does the same whatever is wanted."""
 
     @abstractmethod
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:

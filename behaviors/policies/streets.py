@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
@@ -14,12 +14,12 @@ from behaviors.policies.distances import (
     REAR_LEFT_EDGE,
     REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
+    Distance,
     Distances,
 )
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
 
-Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 Tolerance = Annotated[float, Field(gt=0, le=0.2)]
 
 _LEFT = (FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK, REAR_LEFT_EDGE)
@@ -31,6 +31,7 @@ _FIRST_BESIDE = 1
 class StreetsSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face unless said otherwise."""
 
+    behaviours: ClassVar[tuple[str, ...] | None] = ("straight_on", "turn_left", "turn_right")
     half_width_m: Annotated[float, Field(ge=0.2, le=0.8)]
     """From the middle of the street to a wall; for where only one wall is seen."""
     look_m: Annotated[float, Field(ge=0, le=1)]

@@ -1,20 +1,24 @@
 """Wall following with the wall on the left: what the scripted teacher of that task says."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.policies.distances import FRONT, FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, LEFT_FRONT_TO_BACK, Distances
+from behaviors.policies.distances import (
+    FRONT,
+    FRONT_LEFT_EDGE,
+    FRONT_RIGHT_EDGE,
+    LEFT_FRONT_TO_BACK,
+    Distance,
+    Distances,
+)
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
-
-Distance = Annotated[float, Field(ge=0.05, le=0.6)]
 
 
 class WallFollowingSettings(PolicySettings):
     """What the teacher looks for; distances from the sensor's face."""
 
-    kind: Literal["wall_following"]
     wanted_m: Distance
     """Distance to the wall on the left."""
     tolerance_m: Annotated[float, Field(gt=0, le=0.2)]

@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
 from behaviors.policies.finding import AnyPolicySettings
+from behaviors.policies.policy import PolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
 
@@ -131,7 +132,7 @@ class TaskSettings(Settings):
     name: str
     situation: str
     repertoire: str
-    behaviours: Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_each_once)] = ("",)
+    behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)
     """What is taught, each with RLAs of its own; the first is wanted at the start. One without a name when absent."""
     learning: LearningSettings
     plain: PlainSettings
@@ -141,6 +142,15 @@ class TaskSettings(Settings):
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult
+
+    @field_validator("policy")
+    @classmethod
+    def _knows_what_is_taught(cls, policy: PolicySettings, others: ValidationInfo) -> PolicySettings:
+        known = policy.behaviours
+        for each in others.data.get("behaviours", ()):
+            if known is not None and each not in known:
+                raise ValueError(f"{policy.kind} knows the behaviours {', '.join(known)}, and not {each!r}")
+        return policy
 
 
 def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, str] | None = None) -> TaskSettings:

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from pydantic import PlainValidator
+from pydantic import PlainValidator, SerializeAsAny
 
 from hal.settings_by_kind import as_its_kind, find_kind
 from kurt2rt.experiments.courses.course import CourseSettings
@@ -19,5 +19,5 @@ def _checked(given: object) -> CourseSettings:
     return as_its_kind(given, _PACKAGE, CourseSettings)  # type: ignore[type-abstract]
 
 
-AnyCourseSettings = Annotated[CourseSettings, PlainValidator(_checked)]
+AnyCourseSettings = Annotated[SerializeAsAny[CourseSettings], PlainValidator(_checked)]
 """In a schema: settings of whatever course the file names."""
