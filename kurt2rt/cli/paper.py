@@ -89,7 +89,7 @@ def paper(
     readings: tuple[Reading, ...] = ("shipped", "plain") if plain else ("shipped",)
     extent = QUICK if quick else WHOLE
     programme = plan(
-        load_paper(),
+        load_paper(stage=stage),
         extent,
         parse_seeds(typed_seeds),
         readings,

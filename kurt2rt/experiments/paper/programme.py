@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from hal.settings import find_config
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.extent import Extent
@@ -82,8 +83,8 @@ def plan(
 
     `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
 
-    A task that has no experiment in `paper` is done, too; nothing is asked of it. Tasks without plain settings have no
-    plain reading. Raises hal.settings.SettingsError, PaperError.
+    A task that has no experiment in `paper` is done, too; nothing is asked of it.
+    Raises hal.settings.SettingsError, PaperError.
     """
     chosen = _chosen(extent.paper(paper), extent, tasks)
     paper = extent.paper(paper)
@@ -98,14 +99,11 @@ def plan(
         (each, reading, extent.task(load_task(each.task, plain=reading == "plain")))
         for reading in readings
         for each in chosen
-        if reading == "shipped" or loaded[each.task].plain is not None
     ]
-    stage.require_worlds(paper.testing_ground, *paper.worlds)
     for each in chosen:
         task = loaded[each.task]
-        require_course(
-            stage, task, (task.teaching.world, *task.exam.worlds, *(each.unseen.names if each.unseen else ()))
-        )
+        generated = each.unseen.names if each.unseen else ()
+        require_course(stage, task, (task.teaching.world, *task.exam.worlds, *generated))
     source = source_of()
     fingerprints = Fingerprints(stage, robot, source)
 
@@ -142,11 +140,16 @@ def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
 
 
 def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:
-    known = {each.task: each for each in paper.experiments}
     if tasks:
-        others = {name: ExperimentSettings(task=name, title=Path(name).stem) for name in tasks if name not in known}
-        return [(known | others)[name] for name in dict.fromkeys(tasks)]
+        # By their files, since a path may lead to a shipped one.
+        known = {_file_of(each.task): each for each in paper.experiments}
+        asked = {_file_of(name): ExperimentSettings(task=name, title=Path(name).stem) for name in tasks}
+        return [known.get(file, own) for file, own in asked.items()]
     return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
+
+
+def _file_of(task: str) -> Path:
+    return find_config("tasks", task).resolve()
 
 
 def _require_exams_in(asked: AskedSettings, task: TaskSettings) -> None:

@@ -4,7 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, SettingsError, find_config, load_settings
+from kurt2rt.experiments.paper.stage import PaperStage
 
 Share = Annotated[float, Field(gt=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=10_000)]
@@ -81,6 +82,25 @@ class PaperSettings(Settings):
         return self
 
 
-def load_paper(name_or_path: str = "basic_level") -> PaperSettings:
-    """Shipped settings by name, or a file by path. Raises hal.settings.SettingsError."""
-    return load_settings(find_config("paper", name_or_path), PaperSettings)
+def load_paper(name_or_path: str = "basic_level", stage: PaperStage | None = None) -> PaperSettings:
+    """Shipped settings by name, or a file by path; with a stage its worlds are looked at, too.
+
+    Raises hal.settings.SettingsError that names file and key.
+    """
+    path = find_config("paper", name_or_path)
+    paper = load_settings(path, PaperSettings)
+    tasks = [each.task for each in paper.experiments]
+    for key, task in (("growth.task", paper.growth.task), ("eight", paper.eight)):
+        if task not in tasks:
+            raise SettingsError(
+                f"{path}: {key}: there is no experiment with task {task!r}; give one of: {', '.join(tasks)}"
+            )
+    if stage is None:
+        return paper
+    worlds = {"testing_ground": paper.testing_ground} | {f"worlds.{k}": each for k, each in enumerate(paper.worlds)}
+    for key, world in worlds.items():
+        try:
+            stage.require_worlds(world)
+        except SettingsError as error:
+            raise SettingsError(f"{path}: {key}: {error}") from error
+    return paper

@@ -29,7 +29,7 @@ def test_a_change_of_the_task_shows(fingerprints: Fingerprints) -> None:
 
 
 def test_what_the_paper_reports_decides_nothing(fingerprints: Fingerprints) -> None:
-    other = TASK.model_copy(update={"paper": TASK.paper.model_copy(update={"rlas": 1}), "plain": None})
+    other = TASK.model_copy(update={"paper": TASK.paper.model_copy(update={"rlas": 1})})
     assert fingerprints.of(other, ("a",)) == fingerprints.of(TASK, ("a",))
 
 
