@@ -4,6 +4,7 @@ import math
 import random
 
 from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
 from simbridge.pose import Pose
 from simbridge.sight import Sight
 from simbridge.world import World
@@ -28,14 +29,18 @@ class FreePoses:
         self._sight = Sight(world, reach_m)
 
     def draw(self, chance: random.Random) -> Pose:
-        """One of them. Raises RuntimeError in a world that has none."""
+        """One of them. Raises hal.settings.SettingsError in a world where none is found."""
         world = self._world.settings
         width_m, height_m = world.size_m
         for _ in range(_TRIES):
             pose = Pose(chance.uniform(0.0, width_m), chance.uniform(0.0, height_m), chance.uniform(-math.pi, math.pi))
             if self._sees(pose) and world.clearance_m(pose, self._geometry) >= _CLEARANCE_M:
                 return pose
-        raise RuntimeError(f"world {world.name}: no place found where the robot is free and sees something")
+        what = "a round obstacle" if world.round_obstacles else "something"
+        raise SettingsError(
+            f"world {world.name}: no place found where the robot stands free and sees {what}; make room there, or let "
+            "reposition_to and exam.start be starts"
+        )
 
     def _sees(self, pose: Pose) -> bool:
         cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)

@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from hal.bus import BusError
 from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.error import JobKilledError, LessonLostError
 from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
@@ -41,6 +41,7 @@ _ONE_LINERS = (
     UnknownActionError,
     UnknownBehaviourError,
     BusError,
+    JobKilledError,
     LessonLostError,
     ChannelError,
     NoAnswerError,
@@ -131,10 +132,11 @@ def _in_one_line(error: BaseException) -> str | None:
         # A task group wraps even the one error that ended it.
         errors = _leaves(error)
         return _in_one_line(errors[0]) if len(errors) == 1 else None
+    whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, _ONE_LINERS):
-        return str(error)
+        return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:
-        return f"{error}; give a path that can be written, on a disk with room"
+        return f"{whose}{error}; give a path that can be written, on a disk with room"
     return None
 
 

@@ -1,5 +1,9 @@
 """What can go wrong with an experiment."""
 
 
+class JobKilledError(RuntimeError):
+    """The process of a job was killed from outside; the message names the job."""
+
+
 class LessonLostError(RuntimeError):
     """Lessons could not be saved, or were refused; the message says why and what to do."""

@@ -4,13 +4,18 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, MutableMapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, MutableMapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from multiprocessing import connection
 from multiprocessing.managers import SyncManager
+from multiprocessing.process import BaseProcess
 from typing import NamedTuple, Protocol, TypeVar
 
 from threadpoolctl import threadpool_limits
+
+from kurt2rt.experiments.error import JobKilledError
 
 Tell = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
@@ -59,7 +64,8 @@ def run_jobs(
     """Run all jobs, the longest first; results in the order of the jobs. With one process it is this one.
 
     `on_done` hears the place of each job that is through, `on_standing` twice a second how far all are.
-    What a job raises ends all the others at once, and so does Ctrl-C.
+    What a job raises ends all the others at once, and so does Ctrl-C; the error's notes name the job.
+    Raises JobKilledError when a process is killed from outside.
     """
     # The longest last would leave the other processes idle at the end.
     order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
@@ -83,7 +89,7 @@ def _run_here(
         def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
             on_standing(Standing(before_s + done_s, (job.name,)))
 
-        with threadpool_limits(limits=1):
+        with threadpool_limits(limits=1), _named(job):
             results[place] = job.run(_now_and_then(tell))
         before_s += job.robot_time_s
         on_done(place)
@@ -105,20 +111,30 @@ def _run_apart(
     manager.start(_belong_to_the_parent)
     with manager:
         clocks = manager.dict()
+        workers = manager.dict()
         others = set(multiprocessing.active_children())
         with ProcessPoolExecutor(processes, mp_context=context, initializer=_belong_to_the_parent) as pool:
+            places: dict[Future[ResultT], int] = {}
+            begun: set[BaseProcess] = set()
             try:
-                places: dict[Future[ResultT], int] = {
-                    pool.submit(_run_in_worker, jobs[place], place, clocks): place for place in order
-                }
+                for place in order:
+                    places[pool.submit(_run_in_worker, jobs[place], place, clocks, workers)] = place
+                    begun.update(set(multiprocessing.active_children()) - others)
                 waiting = set(places)
                 while waiting:
                     done, waiting = wait(waiting, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
                     for future in done:
-                        results[places[future]] = future.result()
+                        with _named(jobs[places[future]]):
+                            results[places[future]] = future.result()
                         on_done(places[future])
                     left = [place for place in order if place not in results]
                     on_standing(_standing(jobs, left, processes, clocks))
+            except BrokenProcessPool as error:
+                left = [place for place in order if place not in results]
+                pool.shutdown()  # how each process ended is known once the pool has waited for all
+                killed = _killed(left, dict(workers), begun) or left[:processes]
+                names = " or ".join(jobs[place].name for place in killed)
+                raise JobKilledError(f"{names}: its process was killed, as happens when memory runs out") from error
             except BaseException:
                 # Else what failed would be said when the jobs that run now are through, minutes later.
                 pool.shutdown(wait=False, cancel_futures=True)
@@ -128,7 +144,26 @@ def _run_apart(
     return [results[place] for place in range(len(jobs))]
 
 
-def _run_in_worker(job: Job[ResultT], place: int, clocks: MutableMapping[int, float]) -> ResultT:
+def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable[BaseProcess]) -> list[int]:
+    """Places of the jobs whose processes did not end by the pool's own hand, which terminates the others."""
+    ends = {process.pid: process.exitcode for process in processes}
+    return [place for place in left if ends.get(workers.get(place)) not in (None, 0, -signal.SIGTERM)]
+
+
+@contextmanager
+def _named(job: Job[object]) -> Iterator[None]:
+    """What the job raises says in a note whose it was."""
+    try:
+        yield
+    except Exception as error:
+        error.add_note(job.name)
+        raise
+
+
+def _run_in_worker(
+    job: Job[ResultT], place: int, clocks: MutableMapping[int, float], workers: MutableMapping[int, int]
+) -> ResultT:
+    workers[place] = os.getpid()
     # As on the command line: this process shares the machine with its siblings.
     with threadpool_limits(limits=1):
         return job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))

@@ -9,6 +9,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.curriculum import CurriculumResult, run_exams, run_lesson
+from kurt2rt.experiments.error import JobKilledError
 from kurt2rt.experiments.pool import Tell, run_jobs
 from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.tasks.settings import TaskSettings
@@ -52,5 +53,11 @@ class SeedJob:
 
 
 def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:
-    """Run all jobs; results in the order of the jobs. `on_done` hears each seed that is through."""
-    return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))
+    """Run all jobs; results in the order of the jobs. `on_done` hears each seed that is through.
+
+    Raises JobKilledError and what a job raises.
+    """
+    try:
+        return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))
+    except JobKilledError as error:
+        raise JobKilledError(f"{error}; run again, with fewer --jobs it needs less") from error

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.experiments.error import JobKilledError
 from kurt2rt.experiments.pool import Standing, Tell, run_jobs
 
 
@@ -50,9 +51,10 @@ def test_how_far_it_is_is_told_in_robot_time() -> None:
 
 def test_what_a_job_raises_ends_the_others() -> None:
     done: list[int] = []
-    with pytest.raises(RuntimeError, match="middle fails"):
+    with pytest.raises(RuntimeError, match="middle fails") as caught:
         run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, on_done=done.append)
     assert done == [1]
+    assert caught.value.__notes__ == ["middle"]
 
 
 def test_no_jobs_are_no_work() -> None:
@@ -66,6 +68,33 @@ def test_other_processes_come_to_the_same() -> None:
     assert run_jobs(JOBS, 2, on_done=done.append, on_standing=told.append) == run_jobs(JOBS, 1)
     assert sorted(done) == [0, 1, 2]
     assert told[-1] == (70.0, ())
+
+
+@pytest.mark.deep
+def test_what_a_job_raises_in_another_process_names_it_too() -> None:
+    with pytest.raises(RuntimeError, match="middle fails") as caught:
+        run_jobs([JOBS[0], Job("middle", 20.0, fails=True)], 2)
+    assert caught.value.__notes__ == ["middle"]
+
+
+@dataclass(frozen=True)
+class Killed:
+    """Kills its own process, as the system does where memory runs out."""
+
+    name: str = "greedy, seed 7"
+    robot_time_s: float = 30.0
+
+    def run(self, tell: Tell) -> str:
+        del tell
+        os.kill(os.getpid(), signal.SIGKILL)
+        return "never"
+
+
+@pytest.mark.deep
+def test_a_job_whose_process_is_killed_is_named() -> None:
+    jobs: list[Job | Killed] = [*JOBS, Killed()]
+    with pytest.raises(JobKilledError, match=r"^greedy, seed 7: its process was killed"):
+        run_jobs(jobs, 2)
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,8 @@ def test_what_fails_in_a_process_is_said_before_the_others_are_through(tmp_path:
     failing = replace(first, worlds=("nowhere",))
     others = [replace(second, seed=seed, knowledge=tmp_path / f"{seed}.knowledge") for seed in range(10, 30)]
     done: list[int] = []
-    with pytest.raises(SettingsError, match="nowhere: no such file in worlds"):
+    with pytest.raises(SettingsError, match="nowhere: no such file in worlds") as caught:
         run_seeds([failing, *others], 1, done.append)
+    assert caught.value.__notes__ == ["wall_following, seed 5"]
     assert done == []
     assert len(list(tmp_path.glob("*.knowledge"))) < 10

@@ -34,7 +34,7 @@ class GrowthJob:
     @property
     def name(self) -> str:
         """What is shown while it runs."""
-        return f"growth at R {self.radius:g} {self.seed}" + (", plain" if self.reading == "plain" else "")
+        return f"growth at R {self.radius:g}, seed {self.seed}" + (", plain" if self.reading == "plain" else "")
 
     @property
     def file(self) -> str:

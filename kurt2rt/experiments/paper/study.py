@@ -3,6 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from kurt2rt.experiments.error import JobKilledError
+from kurt2rt.experiments.paper.error import PaperError
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading, TaughtOutcome
 from kurt2rt.experiments.paper.programme import Programme
 from kurt2rt.experiments.paper.results import Results
@@ -49,9 +51,15 @@ class Study:
 def conduct(
     programme: Programme, missing: Sequence[int], processes: int, on_standing: Callable[[Standing], None]
 ) -> None:
-    """Do the jobs at these places, as `Results.missing` tells them; each leaves its result as soon as it is done."""
+    """Do the jobs at these places, as `Results.missing` tells them; each leaves its result as soon as it is done.
+
+    Raises JobKilledError, PaperError and what a job raises.
+    """
     jobs = programme.jobs
-    run_jobs([jobs[place] for place in missing], processes, on_standing=on_standing)
+    try:
+        run_jobs([jobs[place] for place in missing], processes, on_standing=on_standing)
+    except JobKilledError as error:
+        raise PaperError(f"{error}; run again, it goes on where it was (with fewer --jobs it needs less)") from error
 
 
 def read_study(programme: Programme, results: Results) -> Study:

@@ -38,7 +38,7 @@ class TaughtJob:
     @property
     def name(self) -> str:
         """What is shown while it runs."""
-        return f"{self.task.name} {self.seed}" + (", plain" if self.reading == "plain" else "")
+        return f"{self.task.name}, seed {self.seed}" + (", plain" if self.reading == "plain" else "")
 
     @property
     def file(self) -> str:
