@@ -111,7 +111,7 @@ async def examine(
     runtime = build_runtime(
         arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted
     )
-    # The same course for the learner and for the teacher's own drive.
+    # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")
     drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
     if task.exam.start == "in_sight":

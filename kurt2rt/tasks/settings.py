@@ -49,11 +49,15 @@ class LearningSettings(Settings):
 
 
 class PlainSettings(LearningSettings):
-    """The plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held."""
+    """The plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held.
 
-    past_weight: Annotated[float, Field(ge=0, le=10)] = 1.0
-    insert_beyond_share: Share = 1.0
-    minimum_action_s: Annotated[float, Field(ge=0, le=5)] = 0.0
+    Only the radius is free; with other values than these it would be another reading.
+    """
+
+    past_weight: Annotated[float, Field(ge=1, le=1)] = 1.0
+    weights: Annotated[tuple[FeatureWeight, ...], Field(max_length=0)] = ()
+    insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
+    minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
 
 
 class TeacherSettings(Settings):
@@ -129,7 +133,8 @@ class PaperResult(Settings):
 class TaskSettings(Settings):
     """One task."""
 
-    name: str
+    name: Name
+    """Files that hold what was taught and found are called after it."""
     situation: str
     repertoire: str
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)

@@ -7,6 +7,7 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
+from hal.settings import SettingsError
 from kurt2rt.experiments.curriculum import run_lesson
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult
@@ -81,6 +82,28 @@ def test_every_task_has_a_plain_reading_of_the_paper(name: str) -> None:
     assert (learning.past_weight, learning.weights) == (1.0, ())
     assert (learning.insert_beyond_share, learning.minimum_action_s) == (1.0, 0.0)
     assert plain == task.model_copy(update={"learning": task.plain})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"plain.past_weight": "0.5"},
+        {"plain.weights": "[{weight: 2.0, features: [s1]}]"},
+        {"plain.insert_beyond_share": "0.1"},
+        {"plain.minimum_action_s": "0.1"},
+    ],
+    ids=str,
+)
+def test_another_reading_of_the_paper_is_not_called_the_plain_one(change: dict[str, str]) -> None:
+    (key,) = change
+    with pytest.raises(SettingsError, match=rf"circle\.yaml: {key}: "):
+        load_task("circle", changes=change)
+
+
+@pytest.mark.parametrize("name", ["../circle", "my circle", "a/b", "''"])
+def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
+    with pytest.raises(SettingsError, match=r"circle\.yaml: name: String should match pattern"):
+        load_task("circle", changes={"name": name})
 
 
 def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
