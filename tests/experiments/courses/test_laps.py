@@ -1,0 +1,74 @@
+import math
+import random
+
+import pytest
+
+from hal.robot import WheelSpeeds
+from kurt2rt.experiments.arena import Pose
+from kurt2rt.experiments.courses.course import Course
+from kurt2rt.experiments.courses.laps import LapsSettings
+from kurt2rt.simulated import SimulatedArena
+from simbridge.pose import Pose as SimulatedPose
+from tests.experiments.courses.paths import Point, along
+from tests.experiments.helpers import STAGE
+
+WANTED_M = 0.365
+# In world one_object, a room of 4.4 m by 4.4 m with its walls on the left of who goes round it clockwise.
+ROUND: list[Point] = [(0.4, 0.4), (0.4, 4.0), (4.0, 4.0), (4.0, 0.4), (0.4, 0.4)]
+
+
+def laps_in(arena: SimulatedArena) -> Course:
+    settings = LapsSettings(kind="laps", wanted_m=WANTED_M)
+    return settings.build(arena, ("",), random.Random(1))
+
+
+def carry(arena: SimulatedArena, course: Course, pose: Pose) -> None:
+    arena.simulation.place(SimulatedPose(*pose))
+    course.follow(pose)
+
+
+def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
+    arena = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(arena)
+        for pose in along(ROUND[:2]):
+            carry(arena, course, pose)
+        assert course.unit == "laps"
+        assert course.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
+    finally:
+        arena.close()
+
+
+def test_what_was_carried_is_no_lap() -> None:
+    arena = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(arena)
+        for pose in along(ROUND):
+            carry(arena, course, pose)
+        assert course.progress == 0.0
+        course.end_early()
+        course.put(Pose(0.4, 0.4, math.pi / 2))
+        assert course.progress == 0.0
+        assert not course.stranded
+    finally:
+        arena.close()
+
+
+@pytest.mark.parametrize(("towards_rad", "sign"), [(math.pi / 2, 1), (-math.pi / 2, -1)])
+def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(towards_rad: float, sign: int) -> None:
+    arena = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(arena)
+        arena.simulation.place(SimulatedPose(0.4, 2.2, towards_rad))
+        before = course.progress
+        for tick in range(300):
+            arena.robot.sense(tick * 0.01)
+            arena.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
+            arena.step()
+            course.follow(arena.pose)
+        way_m = abs(arena.pose.y_m - 2.2)
+        assert way_m > 0.5
+        # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.
+        assert sign * (course.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
+    finally:
+        arena.close()
