@@ -1,8 +1,6 @@
 """Pictures of a lesson and its exams: where the robot drove, where it asked, how its knowledge grew."""
 
-import math
 from collections.abc import Sequence
-from itertools import pairwise
 from pathlib import Path
 
 from matplotlib.axes import Axes
@@ -11,13 +9,12 @@ from matplotlib.figure import Figure
 from kurt2rt.experiments.arena import Position, Stage
 from kurt2rt.experiments.curriculum import CurriculumResult
 from kurt2rt.experiments.report import label_of
+from kurt2rt.experiments.trails import ASKED, TRAIL, columns, draw_trail
 from kurt2rt.tasks.settings import TaskSettings
 
-_TRAIL = "#1f6fb2"
 _TEACHER = "#b0b0b0"
 _CARRIED_M = 0.2
 """Between two points of a trail, 0.1 s apart, it does not drive so far."""
-_ASK = "#d1495b"
 
 
 def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, path: Path) -> None:
@@ -33,7 +30,8 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
     _draw_growth(axes[1], lesson.growth, task)
     for panel, each in zip(axes[2:], result.exams, strict=False):
         exam = each.learned
-        panel.plot(*_columns(each.teacher.trail), color=_TEACHER, linewidth=3.0, zorder=2, label="teacher's own drive")
+        teachers = each.teacher.trail
+        draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
         unknown = _places("situation unknown", len(exam.unknown_positions))
         _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
         verdict = "success" if each.succeeded else "failed"
@@ -50,15 +48,15 @@ def _draw_drive(
     axes: Axes, stage: Stage, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
 ) -> None:
     stage.draw(axes, world)
-    axes.plot(*_columns(trail), color=_TRAIL, linewidth=1.0, zorder=3, label="the robot")
+    draw_trail(axes, trail, "the robot", carried_m=_CARRIED_M)
     if marks:
-        axes.plot(*_columns(marks), "o", color=_ASK, markersize=5, zorder=4, label=label)
+        axes.plot(*columns(marks), "o", color=ASKED, markersize=5, zorder=4, label=label)
     # Below the floor plan, where no wall is hidden by it.
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=3, fontsize="small", frameon=False)
 
 
 def _draw_growth(axes: Axes, growth: Sequence[int], task: TaskSettings) -> None:
-    axes.plot(range(1, len(growth) + 1), growth, color=_TRAIL, linewidth=2.0)
+    axes.plot(range(1, len(growth) + 1), growth, color=TRAIL, linewidth=2.0)
     if task.paper.teaching_s:
         axes.plot([task.paper.teaching_s], [task.paper.rlas], "k*", markersize=12, linestyle="none", label="paper")
     axes.axvline(task.teaching.supervised_s, color=_TEACHER, linestyle="--", label="corrections begin (phase 2)")
@@ -67,19 +65,6 @@ def _draw_growth(axes: Axes, growth: Sequence[int], task: TaskSettings) -> None:
     axes.set_ylim(bottom=0)
     axes.set_title("Growth of the RLA system")
     axes.legend(frameon=False)
-
-
-def _columns(positions: Sequence[Position]) -> tuple[list[float], list[float]]:
-    """To plot; with a gap where the robot was set down elsewhere."""
-    x_m: list[float] = []
-    y_m: list[float] = []
-    for before, each in pairwise([*positions[:1], *positions]):
-        if math.dist(before, each) > _CARRIED_M:
-            x_m.append(math.nan)
-            y_m.append(math.nan)
-        x_m.append(each.x_m)
-        y_m.append(each.y_m)
-    return x_m, y_m
 
 
 def _places(what: str, count: int) -> str:

@@ -8,10 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from kurt2rt.experiments.paper.figures.style import ASKED, COLLIDED, START, TRAIL, legend_below, save
-from kurt2rt.experiments.paper.outcome import DriveOutcome, Place
+from kurt2rt.experiments.paper.figures.style import COLLIDED, START, legend_below, save
+from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.stage import PaperStage
 from kurt2rt.experiments.report import label_of
+from kurt2rt.experiments.trails import ASKED, columns, draw_trail
 
 _LIFTED_M = 0.5
 """A robot that is so far from where it was a moment ago was set down elsewhere."""
@@ -54,32 +55,13 @@ def _told(drive: DriveOutcome) -> str:
 
 def _draw_drive(axes: Axes, stage: PaperStage, drive: DriveOutcome) -> None:
     stage.draw(axes, drive.world)
-    label: str | None = f"the robot, {drive.duration_s:.0f} s"
-    for way in _ways(drive.trail):
-        axes.plot(*_columns(way), color=TRAIL, linewidth=0.9, zorder=3, label=label)
-        label = None
+    draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_LIFTED_M, width=0.9)
     if drive.trail:
         # Hollow, for a robot that knows nothing asks where it starts.
-        axes.plot(
-            *_columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start"
-        )
+        axes.plot(*columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
     if drive.asked_at:
         label = f"situation unknown ({len(drive.asked_at)})"
-        axes.plot(*_columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
+        axes.plot(*columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
     if drive.collided_at:
         label = f"collided ({len(drive.collided_at)})"
-        axes.plot(*_columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
-
-
-def _ways(trail: Sequence[Place]) -> list[list[Place]]:
-    """The trail in the pieces that the robot drove itself."""
-    ways: list[list[Place]] = []
-    for place in trail:
-        if not ways or math.dist(ways[-1][-1], place) > _LIFTED_M:
-            ways.append([])
-        ways[-1].append(place)
-    return ways
-
-
-def _columns(places: Sequence[Place]) -> tuple[list[float], list[float]]:
-    return [x for x, _ in places], [y for _, y in places]
+        axes.plot(*columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)

@@ -5,8 +5,6 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-TRAIL = "#1f6fb2"
-ASKED = "#d1495b"
 COLLIDED = "#111111"
 START = "#2e8540"
 _DPI = 130

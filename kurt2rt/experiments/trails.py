@@ -1,0 +1,44 @@
+"""Ways of robots in pictures from above."""
+
+import math
+from collections.abc import Sequence
+from typing import TypeVar
+
+from matplotlib.axes import Axes
+
+TRAIL = "#1f6fb2"
+ASKED = "#d1495b"
+
+PlaceT = TypeVar("PlaceT", bound=tuple[float, float])
+
+
+def draw_trail(
+    axes: Axes,
+    trail: Sequence[tuple[float, float]],
+    label: str,
+    *,
+    carried_m: float,
+    colour: str = TRAIL,
+    width: float = 1.0,
+    zorder: float = 3,
+) -> None:
+    """A line with gaps where the robot was set down elsewhere: where two points are farther apart than `carried_m`."""
+    said: str | None = label
+    for way in ways(trail, carried_m):
+        axes.plot(*columns(way), color=colour, linewidth=width, zorder=zorder, label=said)
+        said = None
+
+
+def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
+    """The trail in the pieces that the robot drove itself."""
+    pieces: list[list[PlaceT]] = []
+    for place in trail:
+        if not pieces or math.dist(pieces[-1][-1], place) > carried_m:
+            pieces.append([])
+        pieces[-1].append(place)
+    return pieces
+
+
+def columns(places: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
+    """x and y, to plot."""
+    return [x for x, _ in places], [y for _, y in places]
