@@ -128,11 +128,12 @@ def main() -> None:
 
 def _in_one_line(error: BaseException) -> str | None:
     """What is wrong and what to do; None when the user cannot mend it."""
+    whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, BaseExceptionGroup):
         # A task group wraps even the one error that ended it.
         errors = _leaves(error)
-        return _in_one_line(errors[0]) if len(errors) == 1 else None
-    whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
+        text = _in_one_line(errors[0]) if len(errors) == 1 else None
+        return None if text is None else f"{whose}{text}"
     if isinstance(error, _ONE_LINERS):
         return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:

@@ -28,6 +28,7 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
     assert "Exams without teacher" in first.out
     assert "short circle" in first.out
     assert "Plain reading" not in first.out
+    assert "Not judged: 1 robot only; the numbers are asked of 20." in first.out
     assert first.out.endswith("report  made/report.html\n")
     made = sorted(str(path.relative_to("made")) for path in Path("made").rglob("*") if path.is_file())
     assert made == [
