@@ -20,6 +20,8 @@ from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
 
+pytestmark = pytest.mark.xdist_group("paper")  # what all of them look at takes seconds: made once, not in every process
+
 _VOID = {"meta", "img", "br", "hr", "link", "input"}
 
 
