@@ -20,7 +20,7 @@ from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
 
-pytestmark = pytest.mark.xdist_group("paper")  # what all of them look at takes seconds: made once, not in every process
+pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
 
 _VOID = {"meta", "img", "br", "hr", "link", "input"}
 
