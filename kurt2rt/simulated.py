@@ -4,6 +4,7 @@ import random
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from hal.kurt2 import Kurt2
@@ -40,8 +41,7 @@ class SimulatedArena:
         self._line = open_line(wire, self._cycle_s, noise_seed)
         self.simulation = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
         self.robot = Kurt2(settings, self._line.notebook_end)
-        self._nearest = Nearest(self.simulation.world)
-        self._free = FreePoses(self.simulation.world, settings)
+        self._settings = settings
         self._starts = [start.pose for start in self._world.start_poses]
         self.simulation.place(chance.choice(self._starts))
 
@@ -60,6 +60,15 @@ class SimulatedArena:
     def plan(self) -> Plan:
         """What a course may go by, with walls where they stand now."""
         return _plan(self.simulation.world.settings)
+
+    # Surveys of the whole world, which a run on a large map never asks for.
+    @cached_property
+    def _nearest(self) -> Nearest:
+        return Nearest(self.simulation.world)
+
+    @cached_property
+    def _free(self) -> FreePoses:
+        return FreePoses(self.simulation.world, self._settings)
 
     @property
     def nearest_m(self) -> float:

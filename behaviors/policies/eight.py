@@ -2,17 +2,7 @@
 
 from typing import NamedTuple
 
-from behaviors.policies.distances import (
-    FRONT,
-    FRONT_LEFT_EDGE,
-    FRONT_RIGHT_EDGE,
-    LEFT_FRONT_TO_BACK,
-    REAR_LEFT_EDGE,
-    REAR_RIGHT_EDGE,
-    RIGHT_FRONT_TO_BACK,
-    Distance,
-    Distances,
-)
+from behaviors.policies.distances import FRONT, LEFT_WITH_EDGES, RIGHT_WITH_EDGES, Distance, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
 
@@ -64,8 +54,8 @@ class Eight:
         self._settings = settings
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
-        self._left = distances.of(FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK, REAR_LEFT_EDGE)
-        self._right = distances.of(FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
+        self._left = distances.of(*LEFT_WITH_EDGES)
+        self._right = distances.of(*RIGHT_WITH_EDGES)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Name of the action."""

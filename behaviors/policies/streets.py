@@ -9,11 +9,8 @@ from pydantic import Field
 from behaviors.policies.distances import (
     FRONT,
     FRONT_LEFT_EDGE,
-    FRONT_RIGHT_EDGE,
-    LEFT_FRONT_TO_BACK,
-    REAR_LEFT_EDGE,
-    REAR_RIGHT_EDGE,
-    RIGHT_FRONT_TO_BACK,
+    LEFT_WITH_EDGES,
+    RIGHT_WITH_EDGES,
     Distance,
     Distances,
 )
@@ -22,8 +19,6 @@ from hal.robot_settings import InfraredSettings
 
 Tolerance = Annotated[float, Field(gt=0, le=0.2)]
 
-_LEFT = (FRONT_LEFT_EDGE, *LEFT_FRONT_TO_BACK, REAR_LEFT_EDGE)
-_RIGHT = (FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
 _BESIDE = slice(1, -1)
 _FIRST_BESIDE = 1
 
@@ -63,8 +58,9 @@ class Streets:
         self._settings = settings
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
-        self._left, self._right = distances.of(*_LEFT), distances.of(*_RIGHT)
-        self._left_wall, self._right_wall = _Wall(infrared, _LEFT, 1.0), _Wall(infrared, _RIGHT, -1.0)
+        self._left, self._right = distances.of(*LEFT_WITH_EDGES), distances.of(*RIGHT_WITH_EDGES)
+        self._left_wall = _Wall(infrared, LEFT_WITH_EDGES, 1.0)
+        self._right_wall = _Wall(infrared, RIGHT_WITH_EDGES, -1.0)
         edge = infrared.sensors[infrared.names.index(FRONT_LEFT_EDGE)]
         self._half_across = 0.5 * math.sin(math.radians(edge.heading_deg))
 
@@ -73,14 +69,13 @@ class Streets:
         want = self._settings
         front = self._front(infrared_counts)
         left, right = self._left(infrared_counts), self._right(infrared_counts)
+        turn = _turn_of(behaviour)
         if min(front) < want.front_m:
-            return f"spin_{_turn_of(behaviour) or ('left' if front[0] > front[-1] else 'right')}"
-        if behaviour == "turn_left" and left[_FIRST_BESIDE] > want.open_m:
-            return "sharp_left"
-        if behaviour == "turn_right" and right[_FIRST_BESIDE] > want.open_m:
-            return "sharp_right"
+            return f"spin_{turn or ('left' if front[0] > front[-1] else 'right')}"
+        if turn and (left if turn == "left" else right)[_FIRST_BESIDE] > want.open_m:
+            return f"sharp_{turn}"
         crossing = min(left[_FIRST_BESIDE], right[_FIRST_BESIDE]) > want.open_m
-        error_m = self._error_m(left, right, with_edges=not _turn_of(behaviour))
+        error_m = self._error_m(left, right, with_edges=not turn)
         side = "left" if error_m > 0 else "right"
         if abs(error_m) > want.curve_m and not crossing:
             return f"sharp_{side}"

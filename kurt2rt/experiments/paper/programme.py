@@ -86,8 +86,8 @@ def plan(
     A task that has no experiment in `paper` is done, too; nothing is asked of it.
     Raises hal.settings.SettingsError, PaperError.
     """
-    chosen = _chosen(extent.paper(paper), extent, tasks)
     paper = extent.paper(paper)
+    chosen = _chosen(paper, extent, tasks)
     loaded = {each.task: load_task(each.task) for each in chosen}
     names = [task.name for task in loaded.values()]
     twice = sorted({name for name in names if names.count(name) > 1})
