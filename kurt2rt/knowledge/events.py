@@ -6,7 +6,11 @@ from typing import Any
 
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.rla.rla import (
+    BASIC,
     ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    Credit,
     LessonUndone,
     Origin,
     Phase,
@@ -19,20 +23,30 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 
-EVENT_VERSION = 3
+EVENT_VERSION = 4
 """Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
 
 Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
-behaviour: all RLAs belonged to one without a name.
+behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
+rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
 """
 
-_BEHAVIOURS_SINCE = 3
+_ADDED: tuple[tuple[int, str, str, object], ...] = (
+    (3, "created", "behaviour", ""),
+    (4, "created", "level", BASIC),
+    (4, "rewarded", "credits", []),
+    (4, "rewarded", "said", None),
+)
+"""Since which version an event of a kind has a field, and what that field is in older ones."""
+
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
-    "created": ("rla_id", "condition", "action", "radius", "behaviour", *_ORIGIN),
+    "created": ("rla_id", "condition", "action", "radius", "behaviour", "level", *_ORIGIN),
     "replaced": ("rla_id", "action", "instead_of", *_ORIGIN),
+    "withdrawn": ("rla_id", "instead_of", *_ORIGIN),
     "deleted": ("rla_id", *_ORIGIN),
-    "rewarded": ("rla_id", "value", "decided_at_tick", *_ORIGIN),
+    "rewarded": ("rla_id", "value", "decided_at_tick", "credits", "said", *_ORIGIN),
+    "appraised": ("appraisal", "value", "decided_at_tick", *_ORIGIN),
     "undone": ("lesson", *_ORIGIN),
     "session begun": ("name", *_ORIGIN),
     "session ended": ("lasted_ticks", *_ORIGIN),
@@ -69,13 +83,25 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
                 "action": rla.action,
                 "radius": rla.radius,
                 "behaviour": rla.behaviour,
+                "level": rla.level,
             }
         case ActionReplaced(rla_id, action, instead_of, _):
             own = {"kind": "replaced", "rla_id": rla_id, "action": action, "instead_of": instead_of}
+        case ActionWithdrawn(rla_id, instead_of, _):
+            own = {"kind": "withdrawn", "rla_id": rla_id, "instead_of": instead_of}
         case RlaDeleted(rla_id, _):
             own = {"kind": "deleted", "rla_id": rla_id}
-        case RlaRewarded(rla_id, value, decided_at_tick, _):
-            own = {"kind": "rewarded", "rla_id": rla_id, "value": value, "decided_at_tick": decided_at_tick}
+        case RlaRewarded(rla_id, value, decided_at_tick, _, credits_, said):
+            own = {
+                "kind": "rewarded",
+                "rla_id": rla_id,
+                "value": value,
+                "decided_at_tick": decided_at_tick,
+                "credits": [[credit.rla_id, credit.change] for credit in credits_],
+                "said": said,
+            }
+        case Appraised(appraisal, value, decided_at_tick, _):
+            own = {"kind": "appraised", "appraisal": appraisal, "value": value, "decided_at_tick": decided_at_tick}
         case LessonUndone(lesson, _):
             own = {"kind": "undone", "lesson": lesson}
         case SessionBegun(name, _):
@@ -94,10 +120,7 @@ def _event(content: object) -> TeachingEvent:
     if version > EVENT_VERSION:
         raise ValueError(f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}")
     kind = _text(content, "kind")
-    if version < _BEHAVIOURS_SINCE and kind == "created":
-        if "behaviour" in content:
-            raise ValueError(f"created has no 'behaviour' in version {version}")
-        content = {**content, "behaviour": ""}
+    content = _as_of_now(content, kind, version)
     if kind not in _FIELDS:
         raise ValueError(f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
     foreign = sorted(content.keys() - {"version", "kind", *_FIELDS[kind]})
@@ -112,11 +135,25 @@ def _event(content: object) -> TeachingEvent:
     match kind:
         case "undone":
             return LessonUndone(_text(content, "lesson"), origin)
+        case "appraised":
+            value = _opinion(content, "value")
+            return Appraised(_text(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)
         case "session begun":
             return SessionBegun(_text(content, "name"), origin)
         case "session ended":
             return SessionEnded(_whole(content, "lasted_ticks", least=0), origin)
     return _about_an_rla(kind, content, origin)
+
+
+def _as_of_now(content: dict[str, Any], kind: str, version: int) -> dict[str, Any]:
+    """The fields that this version knows, of an event that an older one wrote."""
+    content = dict(content)
+    for since, of_kind, field, default in _ADDED:
+        if version < since and kind == of_kind:
+            if field in content:
+                raise ValueError(f"{kind} has no {field!r} in version {version}")
+            content[field] = default
+    return content
 
 
 def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> TeachingEvent:
@@ -129,17 +166,38 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
             numbers = tuple(_number(each, "condition") for each in condition)
             radius = _value(content, "radius")
             own_radius = None if radius is None else _number(radius, "radius")
-            behaviour = _text(content, "behaviour")
-            return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin, behaviour))
+            behaviour, level = _text(content, "behaviour"), _text(content, "level")
+            return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin, behaviour, level))
         case "replaced":
             return ActionReplaced(rla_id, _text(content, "action"), _text(content, "instead_of"), origin)
+        case "withdrawn":
+            return ActionWithdrawn(rla_id, _text(content, "instead_of"), origin)
         case "rewarded":
             value = _whole(content, "value", least=-1)
             if value not in (1, -1):
                 raise ValueError(f"value must be 1 or -1, not {value}")
-            return RlaRewarded(rla_id, value, _whole(content, "decided_at_tick", least=0), origin)
+            meant = _whole(content, "decided_at_tick", least=0)
+            said = None if _value(content, "said") is None else _opinion(content, "said")
+            return RlaRewarded(rla_id, value, meant, origin, _credits(content), said)
         case _:
             return RlaDeleted(rla_id, origin)
+
+
+def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
+    pairs = _value(content, "credits")
+    if not isinstance(pairs, list) or not all(isinstance(pair, list) and len(pair) == 2 for pair in pairs):
+        raise ValueError("credits must be a list of pairs of an RLA's id and a number")
+    return tuple(
+        Credit(_whole({"rla_id of a credit": rla_id}, "rla_id of a credit", least=1), _number(change, "credits"))
+        for rla_id, change in pairs
+    )
+
+
+def _opinion(content: dict[str, Any], key: str) -> int:
+    value = _whole(content, key, least=-1)
+    if value > 1:
+        raise ValueError(f"{key} must be -1, 0 or 1, not {value}")
+    return value
 
 
 def _value(content: dict[str, Any], key: str) -> object:

@@ -2,7 +2,17 @@
 
 from dataclasses import dataclass, replace
 
-from kurt2rt.rla.rla import ActionReplaced, Lesson, RlaCreated, RlaDeleted, RlaRewarded, rla_title
+from kurt2rt.rla.rla import (
+    ASK,
+    BASIC,
+    ActionReplaced,
+    ActionWithdrawn,
+    Lesson,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    rla_title,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,19 +23,25 @@ class LessonRecord:
     undone: bool = False
     behaviour: str = ""
     """The taught behaviour of its RLA; empty where the task has only one."""
+    level: str = BASIC
+    """The level of its RLA."""
 
     @property
     def text(self) -> str:
         """In a few words, for a teacher."""
-        rla = rla_title(rla_of(self.event), self.behaviour)
+        rla = rla_title(rla_of(self.event), self.behaviour, self.level)
         match self.event:
             case RlaCreated(taught):
                 return f"{rla} taught: {taught.action}"
             case ActionReplaced(_, action, instead_of, _):
+                if instead_of == ASK:
+                    return f"{rla} answered anew: {action}"
                 return f"{rla} corrected: {action} instead of {instead_of}"
+            case ActionWithdrawn():
+                return f"{rla} withdrawn: it asks again"
             case RlaDeleted():
                 return f"{rla} deleted"
-            case RlaRewarded(_, value, _, _):
+            case RlaRewarded(value=value):
                 return f"{rla} {'rewarded' if value > 0 else 'punished'}"
 
 
@@ -43,8 +59,8 @@ class LessonBook:
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
         self._standing_of: dict[int, list[int]] = {}
-        self._behaviour_of: dict[int, str] = {}
-        """Of each RLA that ever lived."""
+        self._home_of: dict[int, tuple[str, str]] = {}
+        """Behaviour and level of each RLA that ever lived."""
         self._newest: list[int] = []
         """Places of all lessons but the undone ones at the end: each is put on and taken off once."""
 
@@ -70,8 +86,9 @@ class LessonBook:
         self._standing_of.setdefault(rla_of(lesson), []).append(place)
         self._newest.append(place)
         if isinstance(lesson, RlaCreated):
-            self._behaviour_of[lesson.rla.rla_id] = lesson.rla.behaviour
-        self._records.append(LessonRecord(lesson, behaviour=self._behaviour_of[rla_of(lesson)]))
+            self._home_of[lesson.rla.rla_id] = (lesson.rla.behaviour, lesson.rla.level)
+        behaviour, level = self._home_of[rla_of(lesson)]
+        self._records.append(LessonRecord(lesson, behaviour=behaviour, level=level))
         self.standing += 1
 
     def why_not_undo(self, command_id: str) -> str | None:

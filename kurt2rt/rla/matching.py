@@ -99,6 +99,10 @@ class ConditionIndex:
             self._largest_norm = float(self._norms[: self._count].max(initial=_SMALLEST_NORM))
         self._narrow_views()
 
+    def distances(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Exact distance of each condition to `situation` (d,), shape (n,), in order of age: not for every tick."""
+        return exact_distances(self._exact[: self._count], situation)
+
     def nearest(self, situation: NDArray[np.float64]) -> Nearest | None:
         """Nearest condition to `situation` (d,) and the one behind it; None when there is none."""
         if self._count == 0:

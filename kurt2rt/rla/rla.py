@@ -2,6 +2,16 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
+
+ASK = "ask"
+"""Instead of an action: the RLA's was withdrawn, so where it is nearest the robot asks. No repertoire has this name."""
+
+BASIC = "basic"
+"""The level whose RLAs drive the wheels."""
+
+CRITIC = "critic"
+"""The level whose RLAs say what a situation is worth, in place of a teacher; also the critic's name as a teacher."""
 
 
 class Phase(IntEnum):
@@ -30,9 +40,10 @@ class Origin:
     """Tick of the run in which the command acted."""
 
 
-def rla_title(rla_id: int, behaviour: str) -> str:
-    """How an RLA is spoken of: RLA 17, or RLA 17 of turn_left where the taught behaviour has a name."""
-    return f"RLA {rla_id} of {behaviour}" if behaviour else f"RLA {rla_id}"
+def rla_title(rla_id: int, behaviour: str, level: str = BASIC) -> str:
+    """How an RLA is spoken of: RLA 17, RLA 17 of turn_left where the behaviour has a name, appraisal RLA 40."""
+    kind = {BASIC: "RLA", CRITIC: "appraisal RLA"}.get(level, f"{level} RLA")
+    return f"{kind} {rla_id} of {behaviour}" if behaviour else f"{kind} {rla_id}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +54,25 @@ class Rla:
     """1, 2, 3 ... in the order of teaching; of two equally near RLAs the older, smaller one wins."""
     condition: Condition
     action: str
-    """A name in the repertoire."""
+    """A name in the repertoire of its level, or ASK."""
     radius: float | None
     """Own confidence radius; None: that of the system."""
     origin: Origin
     """Who taught the action it has now, and when."""
     behaviour: str = ""
     """The taught behaviour it belongs to: it answers only while that one is wanted. Empty where a task has only one."""
+    level: str = BASIC
+    """Whose situations it answers: the features of its condition are that level's."""
 
     @property
     def title(self) -> str:
         """How it is spoken of."""
-        return rla_title(self.rla_id, self.behaviour)
+        return rla_title(self.rla_id, self.behaviour, self.level)
+
+    @property
+    def asks(self) -> bool:
+        """Whether its action was withdrawn: it knows the situation as one in which the teacher is asked."""
+        return self.action == ASK
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +94,16 @@ class ActionReplaced:
     rla_id: int
     action: str
     instead_of: str
+    """May be ASK: the teacher answered where an action had been withdrawn."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class ActionWithdrawn:
+    """An RLA's value has sunk, so it loses its action: where it is nearest the robot asks from now on (phase 3)."""
+
+    rla_id: int
+    instead_of: str
     origin: Origin
 
 
@@ -87,15 +115,41 @@ class RlaDeleted:
     origin: Origin
 
 
-@dataclass(frozen=True, slots=True)
-class RlaRewarded:
-    """The teacher praised or blamed what an RLA decided (phase 3)."""
+class Credit(NamedTuple):
+    """An RLA's share in a reward."""
 
     rla_id: int
+    change: float
+    """What its value was changed by."""
+
+
+@dataclass(frozen=True, slots=True)
+class RlaRewarded:
+    """The teacher, or the critic in his place, praised or blamed what an RLA decided (phase 3)."""
+
+    rla_id: int
+    """The one that drove in the tick that was meant."""
     value: int
     """+1 reward, -1 punishment."""
     decided_at_tick: int
     """Tick of the decision that was meant."""
+    origin: Origin
+    credits: tuple[Credit, ...] = ()
+    """What the values of RLAs were changed by, its own and those that had driven before it; undo takes it off."""
+    said: int | None = None
+    """What the critic thought of that tick before it was told: -1, 0 or +1; None: nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Appraised:
+    """The teacher said what a situation is worth, and the critic thought so too: changes no RLA (phase 4)."""
+
+    appraisal: str
+    """Its name in the critic's repertoire."""
+    value: int
+    """-1, 0 or +1."""
+    decided_at_tick: int
+    """Tick of the situation that was meant."""
     origin: Origin
 
 
@@ -125,8 +179,8 @@ class SessionEnded:
     origin: Origin
 
 
-Lesson = RlaCreated | ActionReplaced | RlaDeleted | RlaRewarded
+Lesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewarded
 """A teaching act that can be undone."""
 
-TeachingEvent = Lesson | LessonUndone | SessionBegun | SessionEnded
+TeachingEvent = Lesson | LessonUndone | Appraised | SessionBegun | SessionEnded
 """What the knowledge journal holds; the RLA system is the fold of these."""

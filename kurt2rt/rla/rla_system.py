@@ -1,24 +1,33 @@
 """The RLA system: a set of RLAs, of which the nearest one inside its radius answers a situation (paper, III).
 
-Where a task teaches several behaviours there is one such system for each, and one history of lessons for all.
+Where a task teaches several behaviours there is one such system for each, and where there is a critic one more for it
+(its level); ids and the history of lessons run through all of them.
 """
 
 import hashlib
 from bisect import bisect_left
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.rla.competitors import CompetitorGroups
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
 from kurt2rt.rla.matching import ConditionIndex
 from kurt2rt.rla.rla import (
+    ASK,
+    BASIC,
     ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
     Condition,
     Lesson,
     LessonUndone,
+    Origin,
     Rla,
     RlaCreated,
     RlaDeleted,
@@ -42,8 +51,8 @@ class Match(NamedTuple):
 
     @property
     def known(self) -> bool:
-        """Whether the situation lies within the nearest RLA's confidence radius."""
-        return self.distance <= self.radius
+        """Whether the situation lies within the nearest RLA's confidence radius, and that one has an action."""
+        return self.distance <= self.radius and not self.rla.asks
 
 
 class Appraisal(NamedTuple):
@@ -57,17 +66,32 @@ class UnfitEventError(ValueError):
     """A teaching event does not fit the knowledge it should change."""
 
 
+class Space(NamedTuple):
+    """What distances of one level are measured in."""
+
+    dimensions: int
+    radius: float
+    """Confidence radius of RLAs that have none of their own."""
+    weights: NDArray[np.float64] | None = None
+    """Shape (dimensions,): how much each feature counts in a distance; None: all count 1."""
+
+
 class _Contest:
-    """The RLAs of one taught behaviour, by their ids: the same rows as in the index of their conditions."""
+    """The RLAs of one level and taught behaviour, by their ids: the same rows as in the index of their conditions."""
 
-    def __init__(self, dimensions: int) -> None:
+    def __init__(self, space: Space) -> None:
+        self.radius = space.radius
+        self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self.ids: list[int] = []  # oldest first
-        self.index = ConditionIndex(dimensions)
+        self.index = ConditionIndex(space.dimensions)
 
-    def enter(self, rla_id: int, condition: tuple[float, ...]) -> None:
+    def enter(self, rla_id: int, condition: Condition) -> None:
         """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
+        dimensions = len(self.weights)
+        if len(condition) != dimensions:
+            raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
         position = bisect_left(self.ids, rla_id)
-        self.index.insert(position, condition)
+        self.index.insert(position, tuple(self._weighted(condition).tolist()))
         self.ids.insert(position, rla_id)
 
     def leave(self, rla_id: int) -> None:
@@ -76,32 +100,60 @@ class _Contest:
         self.index.remove(position)
         del self.ids[position]
 
+    def nearest_first(self, condition: Condition) -> list[int]:
+        """Ids of all, the nearest to a condition first; of equally near ones the older."""
+        order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
+        return [self.ids[position] for position in order.tolist()]
+
+    def _weighted(self, condition: Condition) -> NDArray[np.float64]:
+        weighted: NDArray[np.float64] = np.array(condition, dtype=np.float64) * self.weights
+        return weighted
+
 
 class RlaSystem:
     """The fold of teaching events; winner takes all by Euclidean distance, among the RLAs of one taught behaviour."""
 
-    def __init__(self, dimensions: int, radius: float, weights: NDArray[np.float64] | None = None) -> None:
-        """`weights`, shape (dimensions,): how much each feature counts in a distance; all count 1 unless given."""
+    def __init__(
+        self,
+        dimensions: int,
+        radius: float,
+        weights: NDArray[np.float64] | None = None,
+        *,
+        others: Mapping[str, Space] | None = None,
+    ) -> None:
+        """`weights`, shape (dimensions,): how much each feature counts in a distance; all count 1 unless given.
+
+        `others`: the spaces of further levels, by name. RLAs of a level that is not among them are kept and can be
+        undone, but nothing is matched with them: a robot without a critic can go on with knowledge that has one.
+        """
         self.dimensions = dimensions
         self.radius = radius
         self.weights = np.ones(dimensions) if weights is None else weights
         self.teaching_ticks = 0
         """How long all sessions that have ended lasted, together."""
+        self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
         self._rlas: dict[int, Rla] = {}
-        self._contests: dict[str, _Contest] = {}
+        self._contests: dict[tuple[str, str], _Contest] = {}
+        """By level and behaviour."""
+        self._groups = CompetitorGroups()
+        self._count_at: Counter[str] = Counter()
         self._last_id = 0
         self._appraisals: dict[int, Appraisal] = {}
         self._book = LessonBook()
         self._before: dict[str, Rla] = {}
-        """The RLA as it was before a lesson that stands, which replaced its action or deleted it, by command id."""
+        """The RLA as it was before a lesson that stands, which changed its action or deleted it, by command id."""
 
     def __len__(self) -> int:
-        return len(self._rlas)
+        return self._count_at[BASIC]
 
     @property
     def rlas(self) -> tuple[Rla, ...]:
-        """All living RLAs of all behaviours, oldest first."""
-        return tuple(self._rlas[rla_id] for rla_id in sorted(self._rlas))
+        """All living RLAs of the basic level, of all behaviours, oldest first."""
+        return self.rlas_at(BASIC)
+
+    def rlas_at(self, level: str) -> tuple[Rla, ...]:
+        """All living RLAs of a level, of all behaviours, oldest first."""
+        return tuple(rla for rla in self._all_rlas() if rla.level == level)
 
     @property
     def next_id(self) -> int:
@@ -109,7 +161,7 @@ class RlaSystem:
         return self._last_id + 1
 
     def get(self, rla_id: int) -> Rla | None:
-        """The living RLA of that id."""
+        """The living RLA of that id, of whatever level."""
         return self._rlas.get(rla_id)
 
     def appraisal(self, rla_id: int) -> Appraisal:
@@ -139,19 +191,34 @@ class RlaSystem:
         """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
         return self._book.why_not_undo(command_id)
 
-    def match(self, situation: NDArray[np.float64], behaviour: str = "") -> Match | None:
-        """The RLA of a taught behaviour nearest to a situation vector (d,), and the one behind it.
+    def match(self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC) -> Match | None:
+        """The RLA of a level and taught behaviour nearest to a situation vector (d,), and the one behind it.
 
-        None when nothing was taught for that behaviour yet.
+        None when nothing was taught there yet.
         """
-        contest = self._contests.get(behaviour)
-        nearest = None if contest is None else contest.index.nearest(situation * self.weights)
+        contest = self._contests.get((level, behaviour))
+        nearest = None if contest is None else contest.index.nearest(situation * contest.weights)
         if contest is None or nearest is None:
             return None
         rla = self._rlas[contest.ids[nearest.position]]
         runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
-        radius = self.radius if rla.radius is None else rla.radius
+        radius = contest.radius if rla.radius is None else rla.radius
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
+
+    def competitors(self, rla: Rla) -> tuple[Rla, ...]:
+        """The living RLAs of its level and behaviour with exactly its condition, itself among them, oldest first."""
+        return self._groups.of(rla)
+
+    def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
+        """The RLAs of its level and behaviour with another condition, nearest first, at most `count`.
+
+        Sorts all of them: not for every tick.
+        """
+        contest = self._contests.get((rla.level, rla.behaviour))
+        if contest is None:
+            return ()
+        others = (self._rlas[rla_id] for rla_id in contest.nearest_first(rla.condition))
+        return tuple(islice((other for other in others if other.condition != rla.condition), count))
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge as the event says. Raises UnfitEventError, and changes nothing, when it does not fit."""
@@ -161,7 +228,7 @@ class RlaSystem:
                 if problem is not None:
                     raise UnfitEventError(problem)
                 self._take_back(self._book.strike(lesson))
-            case SessionBegun():
+            case SessionBegun() | Appraised():
                 pass
             case SessionEnded(lasted_ticks, _):
                 self.teaching_ticks += lasted_ticks
@@ -178,11 +245,12 @@ class RlaSystem:
             self.apply(event)
 
     def knowledge_hash(self) -> str:
-        """Fingerprint of what the system knows: ids, behaviours, conditions, actions, radii; not who taught or when."""
+        """Fingerprint of what the system knows: ids, levels, behaviours, conditions, actions, radii; not who taught."""
         digest = hashlib.sha256()
-        for rla in self.rlas:
+        for rla in self._all_rlas():
+            at = f"at {rla.level} " if rla.level != BASIC else ""
             of = f"of {rla.behaviour} " if rla.behaviour else ""
-            digest.update(f"{rla.rla_id} {of}{rla.action} {rla.radius!r} ".encode())
+            digest.update(f"{rla.rla_id} {at}{of}{rla.action} {rla.radius!r} ".encode())
             digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
 
@@ -191,18 +259,23 @@ class RlaSystem:
             case RlaCreated(rla):
                 if rla.rla_id <= self._last_id:
                     raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
+                _require_an_action(rla.action)
                 try:
                     self._enter(rla)
                 except ValueError as error:
                     raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
                 self._last_id = rla.rla_id
             case ActionReplaced(rla_id, action, _, origin):
-                old = self._living(rla_id)
-                self._rlas[rla_id] = replace(old, action=action, origin=origin)
-                self._before[origin.command_id] = old
+                _require_an_action(action)
+                self._change(self._living(rla_id), action, origin)
+            case ActionWithdrawn(rla_id, _, origin):
+                rla = self._living(rla_id)
+                if rla.asks:
+                    raise UnfitEventError(f"{rla.title} asks already; its action cannot be withdrawn twice")
+                self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
                 self._before[origin.command_id] = self._leave(self._living(rla_id))
-            case RlaRewarded(rla_id, value, _, _):
+            case RlaRewarded(rla_id, value):
                 self._living(rla_id)
                 if value not in (1, -1):
                     raise UnfitEventError(f"a reward of {value} for RLA {rla_id}: it must be 1 or -1")
@@ -213,12 +286,12 @@ class RlaSystem:
         match lesson:
             case RlaCreated(rla):
                 self._leave(self._living(rla.rla_id))
-            case ActionReplaced(rla_id, _, _, origin):
+            case ActionReplaced(rla_id, origin=origin) | ActionWithdrawn(rla_id, origin=origin):
                 self._living(rla_id)
-                self._rlas[rla_id] = self._before.pop(origin.command_id)
+                self._put(self._before.pop(origin.command_id))
             case RlaDeleted(_, origin):
                 self._enter(self._before.pop(origin.command_id))
-            case RlaRewarded(rla_id, value, _, _):
+            case RlaRewarded(rla_id, value):
                 self._count(rla_id, value, -1)
 
     def _count(self, rla_id: int, value: int, more: int) -> None:
@@ -227,24 +300,41 @@ class RlaSystem:
             Appraisal(rewards + more, punishments) if value > 0 else Appraisal(rewards, punishments + more)
         )
 
-    def _weighted(self, condition: Condition) -> tuple[float, ...]:
-        if len(condition) != self.dimensions:
-            raise ValueError(f"condition has {len(condition)} values, this system matches {self.dimensions}")
-        return tuple((np.array(condition, dtype=np.float64) * self.weights).tolist())
+    def _change(self, old: Rla, action: str, origin: Origin) -> None:
+        self._put(replace(old, action=action, origin=origin))
+        self._before[origin.command_id] = old
+
+    def _put(self, rla: Rla) -> None:
+        """In the place of one that lives, with the same condition."""
+        self._rlas[rla.rla_id] = rla
+        self._groups.put(rla)
 
     def _enter(self, rla: Rla) -> None:
-        condition = self._weighted(rla.condition)
-        contest = self._contests.get(rla.behaviour) or _Contest(self.dimensions)
-        contest.enter(rla.rla_id, condition)
-        self._contests[rla.behaviour] = contest
-        self._rlas[rla.rla_id] = rla
+        space = self._spaces.get(rla.level)
+        if space is not None:
+            contest = self._contests.get((rla.level, rla.behaviour)) or _Contest(space)
+            contest.enter(rla.rla_id, rla.condition)
+            self._contests[rla.level, rla.behaviour] = contest
+        self._put(rla)
+        self._count_at[rla.level] += 1
 
     def _leave(self, rla: Rla) -> Rla:
-        self._contests[rla.behaviour].leave(rla.rla_id)
+        if rla.level in self._spaces:
+            self._contests[rla.level, rla.behaviour].leave(rla.rla_id)
+        self._groups.leave(rla)
+        self._count_at[rla.level] -= 1
         return self._rlas.pop(rla.rla_id)
+
+    def _all_rlas(self) -> tuple[Rla, ...]:
+        return tuple(self._rlas[rla_id] for rla_id in sorted(self._rlas))
 
     def _living(self, rla_id: int) -> Rla:
         rla = self._rlas.get(rla_id)
         if rla is None:
             raise UnfitEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
         return rla
+
+
+def _require_an_action(action: str) -> None:
+    if action == ASK:
+        raise UnfitEventError(f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead")

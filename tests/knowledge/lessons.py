@@ -11,6 +11,7 @@ from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla import (
     ActionReplaced,
+    ActionWithdrawn,
     LessonUndone,
     Origin,
     Phase,
@@ -54,6 +55,10 @@ def rewarded(rla_id: int, value: int = 1, command_id: str | None = None) -> RlaR
     return RlaRewarded(rla_id, value, 390, origin(command_id or f"reward-{rla_id}", 400, Phase.REINFORCEMENT))
 
 
+def withdrawn(rla_id: int, instead_of: str = "forward") -> ActionWithdrawn:
+    return ActionWithdrawn(rla_id, instead_of, origin(f"withdraw-{rla_id}", 450, Phase.REINFORCEMENT))
+
+
 def undone(lesson: str, teacher: str = "Joachim") -> LessonUndone:
     return LessonUndone(lesson, Origin(f"undo-{lesson}", teacher, Phase.CORRECTIONS, 500))
 
@@ -74,9 +79,11 @@ def begun(path: Path, lessons: int = 3) -> Path:
 
 
 def as_written_by(version: int, event: TeachingEvent) -> str:
-    """An event's text as an older kurt2rt wrote it, which knew no taught behaviours."""
+    """An event's text as an older kurt2rt wrote it."""
     content = json.loads(encode_event(event)) | {"version": version}
-    content.pop("behaviour", None)
+    for field, since in {"behaviour": 3, "level": 4, "credits": 4, "said": 4}.items():
+        if version < since:
+            content.pop(field, None)
     return json.dumps(content, separators=(",", ":"))
 
 

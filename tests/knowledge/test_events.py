@@ -10,7 +10,11 @@ from hypothesis import strategies as st
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.rla.rla import (
+    CRITIC,
     ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    Credit,
     LessonUndone,
     Origin,
     Phase,
@@ -22,23 +26,43 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
-from tests.knowledge.lessons import as_written_by, created, deleted, replaced, rewarded, session, undone
+from tests.knowledge.lessons import (
+    as_written_by,
+    created,
+    deleted,
+    origin,
+    replaced,
+    rewarded,
+    session,
+    undone,
+    withdrawn,
+)
 
 texts = st.text(st.characters(codec="utf-8"), max_size=20)
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 ids = st.integers(1, 2**62)
 origins = st.builds(Origin, texts, texts, st.sampled_from(Phase), st.integers(0, 2**62))
+opinions = st.sampled_from((-1, 0, 1))
 conditions = st.lists(numbers, max_size=80).map(tuple)
-rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins, texts)
+rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins, texts, texts)
 events = st.one_of(
     st.builds(RlaCreated, rlas),
     st.builds(ActionReplaced, ids, texts, texts, origins),
     st.builds(RlaDeleted, ids, origins),
-    st.builds(RlaRewarded, ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
+    st.builds(ActionWithdrawn, ids, texts, origins),
+    st.builds(
+        RlaRewarded,
+        *(ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
+        st.lists(st.builds(Credit, ids, numbers), max_size=5).map(tuple),
+        st.none() | opinions,
+    ),
+    st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
     st.builds(LessonUndone, texts, origins),
     st.builds(SessionBegun, texts, origins),
     st.builds(SessionEnded, st.integers(0, 2**62), origins),
 )
+
+APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
 
 
 def bits(numbers: tuple[float, ...]) -> bytes:
@@ -73,7 +97,7 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("version", 4, "its version 4 is of a newer kurt2rt"),
+        ("version", 5, "its version 5 is of a newer kurt2rt"),
         ("version", True, "version must be a whole number"),
         (
             "kind",
@@ -94,6 +118,8 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
         ("radius", "wide", "radius must be made of finite numbers"),
         ("behaviour", None, "behaviour must be a text"),
         ("version", 2, "created has no 'behaviour' in version 2"),
+        ("level", 1, "level must be a text"),
+        ("version", 3, "created has no 'level' in version 3"),
         ("mood", "good", "created has no 'mood'"),
     ],
 )
@@ -111,6 +137,17 @@ def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
         (rewarded(1), "value", 2, "value must be 1 or -1, not 2"),
         (rewarded(1), "value", True, "value must be a whole number"),
         (rewarded(1), "decided_at_tick", -1, "decided_at_tick must be a whole number from 0"),
+        (rewarded(1), "version", 3, "rewarded has no 'credits' in version 3"),
+        (rewarded(1), "said", 2, "said must be -1, 0 or 1, not 2"),
+        (rewarded(1), "credits", None, "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[1, 0.5, 2]], "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[0, 0.5]], "rla_id of a credit must be a whole number from 1"),
+        (rewarded(1), "credits", [[1, "much"]], "credits must be made of finite numbers"),
+        (APPRAISED, "value", 2, "value must be -1, 0 or 1, not 2"),
+        (APPRAISED, "appraisal", 1, "appraisal must be a text"),
+        (APPRAISED, "decided_at_tick", -1, "decided_at_tick must be a whole number from 0"),
+        (withdrawn(1), "instead_of", None, "instead_of must be a text"),
+        (withdrawn(1), "action", "ask", "withdrawn has no 'action'"),
         (undone("create-1"), "lesson", 1, "lesson must be a text"),
         (undone("create-1"), "rla_id", 1, "undone has no 'rla_id'"),
         (session(10)[0], "name", None, "name must be a text"),
@@ -124,24 +161,28 @@ def test_each_field_of_the_other_events_is_checked(event: TeachingEvent, key: st
         decode_event(json.dumps(content), "row 1")
 
 
-@pytest.mark.parametrize("version", [1, 2])
-@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1)])
+@pytest.mark.parametrize("version", [1, 2, 3])
+@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
 def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, version: int) -> None:
     text = as_written_by(version, event)
-    assert "behaviour" not in text
+    assert ("behaviour" in text) == (version == 3 and isinstance(event, RlaCreated))
+    assert not any(field in text for field in ("level", "credits", "said"))
 
     assert decode_event(text, "row 1") == event
 
 
 def test_what_an_rla_belongs_to_is_kept() -> None:
-    event = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
+    event = RlaCreated(replace(created(1).rla, behaviour="turn_left", level=CRITIC))
 
     assert decode_event(encode_event(event), "here") == event
 
 
 @pytest.mark.parametrize(
     "event",
-    [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1), undone("create-1"), *session(10)],
+    [
+        *(created(1), replaced(1, "left", "forward"), withdrawn(1), deleted(1), rewarded(1), APPRAISED),
+        *(undone("create-1"), *session(10)),
+    ],
 )
 def test_a_missing_field_is_named(event: TeachingEvent) -> None:
     whole = json.loads(encode_event(event))
@@ -154,6 +195,9 @@ def test_a_missing_field_is_named(event: TeachingEvent) -> None:
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None])
 def test_what_could_not_be_read_back_is_never_written(value: float) -> None:
     event = RlaCreated(Rla(1, (0.0, value), "forward", None, Origin("c-9", "t", Phase.SUPERVISED, 0)))
+    reward = RlaRewarded(1, 1, 5, Origin("c-10", "t", Phase.REINFORCEMENT, 9), (Credit(1, value),))
 
+    with pytest.raises(KnowledgeError, match=r"command 'c-10': cannot be written: credits .*; teach it again"):
+        encode_event(reward)
     with pytest.raises(KnowledgeError, match=r"command 'c-9': cannot be written: condition .*; teach it again"):
         encode_event(event)
