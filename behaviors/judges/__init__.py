@@ -1,0 +1,1 @@
+"""What scripted teachers think of how the robot drives: -1, 0 or +1."""

@@ -1,0 +1,42 @@
+"""When the critic speaks in its teacher's place (paper, phase 5)."""
+
+from typing import NamedTuple
+
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.critic import Opinion
+from kurt2rt.critic.settings import CriticSettings
+
+
+class Signal(NamedTuple):
+    """What the critic says of a tick, as a teacher's reward would."""
+
+    value: int
+    """-1 or +1."""
+    appraisal: str
+    tick: int
+    """The one that is meant: that in which it was said."""
+    trace_s: float
+    """How far back it reaches."""
+
+
+class Autonomy:
+    """Makes a trusted critic's opinions signals, bad ones and good ones no more often than a person would."""
+
+    def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
+        """`period_s` of a tick."""
+        self._agreement = agreement
+        every_s = settings.signal_every_s
+        self._every_ticks = {-1: round(every_s.bad / period_s), 1: round(every_s.good / period_s)}
+        self._next_tick = {-1: 0, 1: 0}
+
+    def signal(self, tick: int, opinion: Opinion | None, driving: bool) -> Signal | None:
+        """What is to be learnt from in this tick, of what the critic thinks of it; to be asked in phase 5 only.
+
+        `driving`: whether an action drives. None where the critic is not trusted, or has just said the same.
+        """
+        if opinion is None or not driving or not opinion.known or opinion.value == 0:
+            return None
+        if tick < self._next_tick[opinion.value] or not self._agreement.trusted:
+            return None
+        self._next_tick[opinion.value] = tick + self._every_ticks[opinion.value]
+        return Signal(opinion.value, opinion.appraisal, tick, opinion.trace_s)

@@ -1,0 +1,159 @@
+"""Schema of `config/critics/*.yaml`."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, field_validator, model_validator
+
+from behaviors.judges.judge import Circumstances
+from hal.settings import Settings, find_config, load_settings
+
+Seconds = Annotated[float, Field(gt=0, le=100_000)]
+Metres = Annotated[float, Field(gt=0, le=10)]
+Share = Annotated[float, Field(ge=0, le=1)]
+Weight = Annotated[float, Field(ge=0, le=1000)]
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
+Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
+Side = Literal["left", "front", "right", "rear"]
+
+NAMES = Circumstances._fields
+"""Of the features of an appraisal situation, in their order."""
+
+
+class AppraisalSettings(Settings):
+    """One signal that the critic can give: an action of its RLAs."""
+
+    name: Name
+    value: Annotated[int, Field(ge=-1, le=1)]
+    trace_s: Seconds
+    """Time constant of the eligibility trace: how far back it reaches."""
+
+
+class SideSensors(Settings):
+    """Which sensors look to which side; left and right from front to back."""
+
+    left: Annotated[Sensors, Field(min_length=2)]
+    front: Sensors
+    right: Annotated[Sensors, Field(min_length=2)]
+    rear: Sensors
+
+
+class CircumstancesSettings(Settings):
+    """How circumstances are told from senses."""
+
+    sensors: SideSensors
+    smoothing_s: Seconds
+    """Time constant of speed and turn rate."""
+    bump_held_s: Seconds
+    no_progress_s: Annotated[float, Field(gt=0, le=60)]
+    no_progress_m: Metres
+    """Less way than this in that time, from where to where, while it drives, is no progress."""
+    no_wall_s: Seconds
+    no_wall_m: Metres
+    """Nothing nearer than this for that time is no wall."""
+    wall_on: Annotated[tuple[Side, ...], Field(min_length=1)]
+    """Sides where a wall, or anything else, is looked for."""
+
+
+class CriticLearningSettings(Settings):
+    """How the critic's RLA system matches and takes lessons."""
+
+    radius: Annotated[float, Field(gt=0, le=100_000)]
+    insert_beyond_share: Share
+    """Another opinion farther than this share of the radius from the nearest condition inserts, else it replaces."""
+    weights: dict[str, Weight]
+    """What each circumstance counts in a distance, by its name; 0 for those that are left out."""
+
+    @field_validator("weights")
+    @classmethod
+    def _of_circumstances(cls, weights: dict[str, float]) -> dict[str, float]:
+        unknown = sorted(weights.keys() - set(NAMES))
+        if unknown:
+            raise ValueError(f"there is no circumstance {', '.join(unknown)}; there are: {', '.join(NAMES)}")
+        if not any(weights.values()):
+            raise ValueError("every circumstance weighs 0; give one more")
+        return weights
+
+    @property
+    def weight_vector(self) -> NDArray[np.float64]:
+        """Weights (d,) in the order of Circumstances."""
+        return np.array([self.weights.get(name, 0.0) for name in NAMES])
+
+
+class AgreementSettings(Settings):
+    """When the critic is trusted."""
+
+    bound: Share
+    """It may act while its agreement with its teacher is at least this."""
+    window: Annotated[int, Field(ge=1, le=10_000)]
+    """The last signals of each value that count."""
+    least: Annotated[int, Field(ge=1, le=10_000)]
+    """Of these so many must have been heard."""
+
+    @model_validator(mode="after")
+    def _window_holds_the_least(self) -> Self:
+        if self.least > self.window:
+            raise ValueError(f"least is {self.least}, allowed is at most window ({self.window})")
+        return self
+
+
+class SignalEverySettings(Settings):
+    """The shortest time between two signals of one value."""
+
+    bad: Seconds
+    good: Seconds
+
+
+class BestSettings(Settings):
+    """The guard that keeps the best knowledge."""
+
+    window_s: Seconds
+    """Time of driving after which a score is told."""
+    margin: Annotated[float, Field(ge=0, le=2)]
+    """A score that is lower than the best one by more than this rolls back."""
+
+
+class CriticSettings(Settings):
+    """The critic, whole."""
+
+    name: Name
+    appraisals: Annotated[tuple[AppraisalSettings, ...], Field(min_length=1)]
+    perception: CircumstancesSettings
+    learning: CriticLearningSettings
+    agreement: AgreementSettings
+    signal_every_s: SignalEverySettings
+    best: BestSettings
+
+    @field_validator("appraisals")
+    @classmethod
+    def _bad_and_good_are_there(cls, appraisals: tuple[AppraisalSettings, ...]) -> tuple[AppraisalSettings, ...]:
+        names = [each.name for each in appraisals]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} stands twice; leave one out")
+        if not {-1, 1} <= {each.value for each in appraisals}:
+            raise ValueError("there must be one of value -1 and one of value 1")
+        return appraisals
+
+    @property
+    def values(self) -> dict[str, int]:
+        """What each appraisal is worth, by its name."""
+        return {each.name: each.value for each in self.appraisals}
+
+    @property
+    def feature_hash(self) -> str:
+        """Fingerprint of what the circumstances are; appraisals are refused under another.
+
+        Radius, weights and the rest are no part of it: with other ones the same appraisals have other borders.
+        """
+        content = {"names": list(NAMES), "perception": self.perception.model_dump(mode="json")}
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def load_critic(name_or_path: str = "basic") -> CriticSettings:
+    """Settings of a shipped critic by name, or of a file by path. Raises hal.settings.SettingsError."""
+    return load_settings(Path(find_config("critics", name_or_path)), CriticSettings)

@@ -1,0 +1,131 @@
+"""Circumstances of this tick, from the senses of it and of the last few seconds: the critic's appraisal situation."""
+
+import math
+from operator import itemgetter
+
+from behaviors.judges.judge import Circumstances
+from hal.robot import HIGHEST_COUNTS, Senses
+from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.critic.settings import CriticSettings
+
+
+class CircumstancesPerception:
+    """Turns Senses into Circumstances, once per tick, in memory that does not grow."""
+
+    def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
+        """Raises SettingsError for a sensor that the robot does not have."""
+        want, period_s = critic.perception, robot.can.cycle_s
+        sensors, infrared = want.sensors, robot.infrared
+        looked_at = (*sensors.left, *sensors.front, *sensors.right, *sensors.rear)
+        missing = sorted(set(looked_at) - set(infrared.names))
+        if missing:
+            raise SettingsError(
+                f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}; "
+                f"allowed: {', '.join(infrared.names)}"
+            )
+        # Looked up by the highest count of a side, for a nearer thing never has a lower one: this runs in every tick.
+        self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
+        place = {name: index for index, name in enumerate(infrared.names)}
+        # The first twice: of one place alone itemgetter gives no tuple.
+        self._left, self._front, self._right, self._rear = (
+            itemgetter(*(place[name] for name in (side[0], *side)))
+            for side in (sensors.left, sensors.front, sensors.right, sensors.rear)
+        )
+        self._left_ends = place[sensors.left[0]], place[sensors.left[-1]]
+        self._right_ends = place[sensors.right[0]], place[sensors.right[-1]]
+        self._left_baseline_m = _baseline_m(infrared, sensors.left, critic.name)
+        self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
+        sides = [("left", "front", "right", "rear").index(side) for side in want.wall_on]
+        self._wall_on = itemgetter(sides[0], *sides)
+        self._no_wall_m = want.no_wall_m
+        self._no_progress_m2 = want.no_progress_m**2
+        self._metres_per_tick = robot.geometry.metres_per_tick
+        self._track_m = robot.geometry.effective_track_m
+        self._period_s = period_s
+        self._share_of_new = 1.0 - math.exp(-period_s / want.smoothing_s)
+        self._bump_held_ticks = round(want.bump_held_s / period_s)
+        self._no_wall_ticks = round(want.no_wall_s / period_s)
+        self._stale_infrared_s = robot.guard.stale_infrared_s
+        steps = max(1, round(want.no_progress_s / period_s))
+        self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
+        self._here_x_m = self._here_y_m = self._heading_rad = 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was: the robot has just been switched on, or was blind."""
+        self._speed_m_s = self._turn_rad_s = 0.0
+        self._since_bump = self._bump_held_ticks
+        self._without_wall = 0
+        self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
+        self._next = 0
+
+    def perceive(self, senses: Senses, *, driving: bool) -> Circumstances:
+        """Circumstances of this tick; `driving`: whether an action drove the wheels until now.
+
+        While the robot waits, the time without a wall stands still, and a wait is not a lack of progress.
+        """
+        if not senses.infrared_age_s <= self._stale_infrared_s:
+            self.restart()
+        counts, distance_m = senses.infrared_counts, self._distance_m
+        nearest_m = (
+            distance_m[max(self._left(counts))],
+            distance_m[max(self._front(counts))],
+            distance_m[max(self._right(counts))],
+            distance_m[max(self._rear(counts))],
+        )
+        front, back = self._left_ends
+        left_angle_rad = math.atan2(distance_m[counts[front]] - distance_m[counts[back]], self._left_baseline_m)
+        front, back = self._right_ends
+        right_angle_rad = math.atan2(distance_m[counts[front]] - distance_m[counts[back]], self._right_baseline_m)
+        self._move(
+            senses.encoder_left_ticks * self._metres_per_tick, senses.encoder_right_ticks * self._metres_per_tick
+        )
+        self._since_bump = 0 if senses.bumpers else self._since_bump + 1
+        if min(self._wall_on(nearest_m)) < self._no_wall_m:
+            self._without_wall = 0
+        elif driving:
+            self._without_wall += 1
+        return Circumstances(
+            *nearest_m,
+            left_angle_rad,
+            right_angle_rad,
+            self._speed_m_s,
+            self._turn_rad_s,
+            1.0 if self._since_bump < self._bump_held_ticks else 0.0,
+            1.0 if self._gets_nowhere(driving=driving) else 0.0,
+            1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
+        )
+
+    def _move(self, left_m: float, right_m: float) -> None:
+        """Follow the wheels through one tick."""
+        way_m, turn_rad = (left_m + right_m) / 2, (right_m - left_m) / self._track_m
+        self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
+        self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
+        self._heading_rad += turn_rad
+        self._here_x_m += way_m * math.cos(self._heading_rad)
+        self._here_y_m += way_m * math.sin(self._heading_rad)
+
+    def _gets_nowhere(self, *, driving: bool) -> bool:
+        """Whether it has driven for the whole time and is about where it was."""
+        if not driving:
+            self._driven = 0
+            return False
+        place, steps = self._next, len(self._x_m)
+        off_x_m, off_y_m = self._here_x_m - self._x_m[place], self._here_y_m - self._y_m[place]
+        self._x_m[place], self._y_m[place] = self._here_x_m, self._here_y_m
+        self._next = place + 1 if place + 1 < steps else 0
+        self._driven += 1
+        return self._driven > steps and off_x_m * off_x_m + off_y_m * off_y_m < self._no_progress_m2
+
+
+def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
+    """How far ahead of a side's last sensor its first one sits."""
+    x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
+    baseline_m = x_m[side[0]] - x_m[side[-1]]
+    if baseline_m <= 0:
+        raise SettingsError(
+            f"critic {critic}: perception.sensors: {side[0]} does not sit ahead of {side[-1]}; "
+            "give the sensors of a side from front to back"
+        )
+    return baseline_m
