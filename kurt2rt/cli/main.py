@@ -13,8 +13,7 @@ from threadpoolctl import threadpool_limits
 from hal.bus import BusError
 from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
-from kurt2rt.experiments.error import JobKilledError, LessonLostError
-from kurt2rt.experiments.paper.error import PaperError
+from kurt2rt.experiments.error import JobKilledError, LessonLostError, StudyError
 from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
@@ -49,7 +48,7 @@ _ONE_LINERS = (
     PageError,
     RecordingError,
     DidNotDriveError,
-    PaperError,
+    StudyError,
 )
 """Errors whose message tells the user what, where and what to do."""
 

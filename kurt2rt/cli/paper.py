@@ -1,21 +1,18 @@
 """`kurt2rt paper`."""
 
 import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
+from kurt2rt.cli.progress import one_bar
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
-    from kurt2rt.experiments.pool import Standing
 
 _SEEDS, _QUICK_SEEDS = "100-119", "100-101"
 _WIDTH = 120
@@ -70,16 +67,16 @@ def paper(
     20 seeds that follow each other share all of them.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.experiments.kept.results import Results
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
     from kurt2rt.experiments.paper.judging import reasons_not_to_judge
     from kurt2rt.experiments.paper.pictures import draw_pictures
     from kurt2rt.experiments.paper.programme import plan
     from kurt2rt.experiments.paper.report import write_report
-    from kurt2rt.experiments.paper.results import Results
     from kurt2rt.experiments.paper.settings import load_paper
-    from kurt2rt.experiments.paper.sheet import as_rich
     from kurt2rt.experiments.paper.study import conduct, read_study
     from kurt2rt.experiments.paper.tables import sheets
+    from kurt2rt.experiments.shown.sheet import as_rich
     from kurt2rt.simulated import SimulatedStage
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
@@ -101,7 +98,7 @@ def paper(
     command = _command(quick=quick, seeds=typed_seeds, tasks=task or [], plain=plain)
     with results.held():
         missing = results.missing(programme.jobs)
-        with _bar(sum(programme.jobs[place].robot_time_s for place in missing)) as bar:
+        with one_bar(sum(programme.jobs[place].robot_time_s for place in missing)) as bar:
             conduct(programme, missing, jobs, bar.look)
             bar.say("figures and report")
             study = read_study(programme, results)
@@ -116,38 +113,6 @@ def paper(
     for reason in reasons_not_to_judge(programme):
         console.print(f"Not judged: {reason}", markup=False, highlight=False, soft_wrap=True)
     console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
-
-
-class _Bar:
-    """One bar for all jobs, on standard error, so that standard output holds results alone."""
-
-    def __init__(self, progress: Progress, whole_s: float) -> None:
-        self._progress = progress
-        self._id = progress.add_task("", total=whole_s)
-
-    def look(self, standing: "Standing") -> None:
-        """How far the jobs are."""
-        first, *others = standing.running or ("",)
-        # One name and a number, so that the times beside it have room.
-        doing = f"{first} and {len(others)} more" if others else first
-        self._progress.update(self._id, completed=standing.done_s, description=doing)
-
-    def say(self, what: str) -> None:
-        """What is done after them."""
-        self._progress.update(self._id, description=what)
-
-
-@contextmanager
-def _bar(whole_s: float) -> Iterator[_Bar]:
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(bar_width=20),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        yield _Bar(progress, whole_s)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

@@ -4,9 +4,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 from kurt2rt.experiments.curriculum import Report
+from kurt2rt.experiments.pool import Standing
 
 
 @contextmanager
@@ -28,3 +37,36 @@ def job_bars() -> Iterator[Report]:
             progress.update(bars[what], completed=done_s)
 
         yield report
+
+
+class OneBar:
+    """One bar for all jobs, on standard error, so that standard output holds results alone."""
+
+    def __init__(self, progress: Progress, whole_s: float) -> None:
+        self._progress = progress
+        self._id = progress.add_task("", total=whole_s)
+
+    def look(self, standing: Standing) -> None:
+        """How far the jobs are."""
+        first, *others = standing.running or ("",)
+        # One name and a number, so that the times beside it have room.
+        doing = f"{first} and {len(others)} more" if others else first
+        self._progress.update(self._id, completed=standing.done_s, description=doing)
+
+    def say(self, what: str) -> None:
+        """What is done after them."""
+        self._progress.update(self._id, description=what)
+
+
+@contextmanager
+def one_bar(whole_s: float) -> Iterator[OneBar]:
+    """For all jobs together, so many seconds of robot time."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=20),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        yield OneBar(progress, whole_s)

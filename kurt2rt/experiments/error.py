@@ -7,3 +7,7 @@ class JobKilledError(RuntimeError):
 
 class LessonLostError(RuntimeError):
     """Lessons could not be saved, or were refused; the message says why and what to do."""
+
+
+class StudyError(RuntimeError):
+    """Kept results cannot be used, or experiments do not fit together; the message says why and what to do."""

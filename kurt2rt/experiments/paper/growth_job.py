@@ -6,9 +6,10 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.paper.outcome import GrowthOutcome, MadeOf, Reading
-from kurt2rt.experiments.paper.results import Results
-from kurt2rt.experiments.paper.stage import PaperStage
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -17,7 +18,7 @@ from kurt2rt.tasks.settings import TaskSettings
 class GrowthJob:
     """One radius, one reading of the paper, one seed."""
 
-    stage: PaperStage
+    stage: StudyStage
     robot: RobotSettings
     task: TaskSettings
     """With this radius, and no phase but the first."""

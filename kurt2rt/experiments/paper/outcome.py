@@ -3,29 +3,13 @@
 from typing import Literal
 
 from hal.settings import Settings
+from kurt2rt.experiments.kept.made_of import MadeOf
 
 Reading = Literal["shipped", "plain"]
 """Of the paper's scheme: with the settings of this project, or plainly as the paper says it."""
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
-
-
-class MadeOf(Settings):
-    """What decides a result: hashes of settings and source, and the versions of what computes.
-
-    The field names are said to the user: made with other ...
-    """
-
-    task: str
-    robot: str
-    worlds: str
-    source: str
-    versions: str
-
-    def differences(self, other: "MadeOf") -> list[str]:
-        """Names of what is not the same."""
-        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
 
 
 class DriveOutcome(Settings):

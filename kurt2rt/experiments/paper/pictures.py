@@ -1,32 +1,23 @@
 """All figures of a study, as files with fixed names."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
+from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.figures.drives import draw_drives, draw_eight
 from kurt2rt.experiments.paper.figures.growth import draw_growth
 from kurt2rt.experiments.paper.figures.worlds import draw_testing_ground, draw_worlds
 from kurt2rt.experiments.paper.outcome import DriveOutcome
-from kurt2rt.experiments.paper.stage import PaperStage
 from kurt2rt.experiments.paper.study import Study
 from kurt2rt.experiments.paper.summary import Summary
 from kurt2rt.experiments.report import label_of
+from kurt2rt.experiments.shown.picture import Picture
 
 _MOST_UNSEEN = 1
 """Generated worlds in the picture of a task."""
 
 
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A PNG, and what it shows."""
-
-    path: Path
-    title: str
-    caption: str
-
-
-def draw_pictures(study: Study, stage: PaperStage, folder: Path) -> Iterator[Picture]:
+def draw_pictures(study: Study, stage: StudyStage, folder: Path) -> Iterator[Picture]:
     """Draw each figure into the folder: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
 
     Those are left out whose task is not in the study.

@@ -6,20 +6,23 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import find_config
+from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.paper.error import PaperError
+from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
-from kurt2rt.experiments.paper.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.paper.outcome import Reading
-from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
-from kurt2rt.experiments.paper.stage import PaperStage
 from kurt2rt.experiments.paper.taught_job import TaughtJob
+from kurt2rt.experiments.phases.settings import PHASES
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
 ROBOTS = 20
 """Robots that the numbers are asked of. So many that follow each other share all generated worlds."""
+OWN = {f"kurt2rt/experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")}
+"""Modules that say how long and where robots drive here, and what of it is kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +75,11 @@ def plan(
     extent: Extent,
     seeds: Sequence[int],
     readings: Sequence[Reading],
-    stage: PaperStage,
+    stage: StudyStage,
     robot: RobotSettings,
     results: Results,
     *,
-    source_of: Callable[[], str] = source_hash,
+    source_of: Callable[[], str] = lambda: source_hash(OWN),
     tasks: Sequence[str] = (),
 ) -> Programme:
     """Look at every task and world, and make the jobs.
@@ -84,7 +87,7 @@ def plan(
     `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
 
     A task that has no experiment in `paper` is done, too; nothing is asked of it.
-    Raises hal.settings.SettingsError, PaperError.
+    Raises hal.settings.SettingsError, StudyError.
     """
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
@@ -92,7 +95,7 @@ def plan(
     names = [task.name for task in loaded.values()]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise PaperError(f"two tasks have the name {', '.join(twice)}; give one of them another name in its file")
+        raise StudyError(f"two tasks have the name {', '.join(twice)}; give one of them another name in its file")
     for each in chosen:
         _require_exams_in(each.asked, loaded[each.task])
     taught = [
@@ -105,7 +108,7 @@ def plan(
         generated = each.unseen.names if each.unseen else ()
         require_course(stage, task, (task.teaching.world, *task.exam.worlds, *generated))
     source = source_of()
-    fingerprints = Fingerprints(stage, robot, source)
+    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", *PHASES))
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
         jobs = []
@@ -155,6 +158,6 @@ def _file_of(task: str) -> Path:
 def _require_exams_in(asked: AskedSettings, task: TaskSettings) -> None:
     nowhere = sorted(set(asked.success_at_least) - set(task.exam.worlds))
     if nowhere:
-        raise PaperError(
+        raise StudyError(
             f"{task.name}: success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}"
         )

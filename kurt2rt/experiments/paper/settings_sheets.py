@@ -1,7 +1,7 @@
 """Tables of the settings that each task was taught and examined with."""
 
-from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import Study
+from kurt2rt.experiments.shown.sheet import Sheet
 from kurt2rt.tasks.settings import FeatureWeight
 
 SUCCESS = (

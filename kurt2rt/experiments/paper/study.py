@@ -3,13 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from kurt2rt.experiments.error import JobKilledError
-from kurt2rt.experiments.paper.error import PaperError
+from kurt2rt.experiments.kept.doing import do_jobs
+from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading, TaughtOutcome
 from kurt2rt.experiments.paper.programme import Programme
-from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.summary import Summary, summarize
-from kurt2rt.experiments.pool import Standing, run_jobs
+from kurt2rt.experiments.pool import Standing
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,17 +52,14 @@ def conduct(
 ) -> None:
     """Do the jobs at these places, as `Results.missing` tells them; each leaves its result as soon as it is done.
 
-    Raises JobKilledError, PaperError and what a job raises.
+    Raises StudyError and what a job raises.
     """
     jobs = programme.jobs
-    try:
-        run_jobs([jobs[place] for place in missing], processes, on_standing=on_standing)
-    except JobKilledError as error:
-        raise PaperError(f"{error}; run again, it goes on where it was (with fewer --jobs it needs less)") from error
+    do_jobs([jobs[place] for place in missing], processes, on_standing)
 
 
 def read_study(programme: Programme, results: Results) -> Study:
-    """Put together what all jobs have left. Raises PaperError."""
+    """Put together what all jobs have left. Raises StudyError."""
     return Study(
         programme,
         tuple(

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
-from kurt2rt.experiments.paper.intervals import Rate, rate_of
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
 from kurt2rt.experiments.paper.programme import Experiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings
 from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
+from kurt2rt.experiments.shown.intervals import Rate, rate_of
 from kurt2rt.tasks.settings import TaskSettings
 
 _TEN_MIN_S = 600.0

@@ -6,11 +6,11 @@ from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.settings_sheets import SUCCESS
-from kurt2rt.experiments.paper.sheet import Sheet
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
 from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary
 from kurt2rt.experiments.paper.verdict import verdicts
 from kurt2rt.experiments.report import quartiles
+from kurt2rt.experiments.shown.sheet import Sheet
 
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
 _OF_RATES = (

@@ -9,10 +9,11 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Position
 from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.lesson import LessonResult
-from kurt2rt.experiments.paper.outcome import DriveOutcome, MadeOf, Place, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.results import Results
-from kurt2rt.experiments.paper.stage import PaperStage
+from kurt2rt.experiments.paper.outcome import DriveOutcome, Place, Reading, TaughtOutcome
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.tasks.settings import TaskSettings
@@ -25,7 +26,7 @@ _PLACE_STRIDE = 2
 class TaughtJob:
     """One task, one reading of the paper, one seed."""
 
-    stage: PaperStage
+    stage: StudyStage
     robot: RobotSettings
     task: TaskSettings
     reading: Reading

@@ -2,7 +2,8 @@
 
 from collections.abc import Sequence
 
-from kurt2rt.experiments.paper.outcome import DriveOutcome, MadeOf, Reading, TaughtOutcome
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
 from kurt2rt.experiments.paper.programme import Experiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
 from kurt2rt.experiments.paper.summary import Summary, summarize

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.programme import Experiment, Programme, unseen_of
-from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
 from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.tasks.settings import load_task

@@ -9,11 +9,11 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
-from kurt2rt.experiments.paper.error import PaperError
+from kurt2rt.experiments.error import StudyError
+from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.programme import Programme, plan, unseen_of
-from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
 from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT, STAGE
@@ -148,7 +148,7 @@ def test_a_world_that_cannot_give_the_course_is_refused(tmp_path: Path) -> None:
 
 
 def test_two_tasks_of_one_name_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(PaperError, match="two tasks have the name circle"):
+    with pytest.raises(StudyError, match="two tasks have the name circle"):
         planned("circle", changed_task(tmp_path))
 
 
@@ -157,5 +157,5 @@ def test_success_asked_in_a_world_without_exam_is_refused() -> None:
     circle = next(each for each in paper.experiments if each.task == "circle")
     asked = circle.asked.model_copy(update={"success_at_least": {"b": 0.5}})
     wrong = paper.model_copy(update={"experiments": (circle.model_copy(update={"asked": asked}),)})
-    with pytest.raises(PaperError, match="circle: success is asked in b, but its exams are in one_object"):
+    with pytest.raises(StudyError, match="circle: success is asked in b, but its exams are in one_object"):
         planned(paper=wrong)

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
+from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.report import write_report
-from kurt2rt.experiments.paper.results import Results
 from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import conduct
 from kurt2rt.experiments.paper.tables import sheets

@@ -4,7 +4,6 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.experiments.paper.outcome import GrowthOutcome
-from kurt2rt.experiments.paper.sheet import Sheet, as_rich
 from kurt2rt.experiments.paper.study import GrowthStudy
 from kurt2rt.experiments.paper.tables import (
     asked_sheet,
@@ -15,6 +14,7 @@ from kurt2rt.experiments.paper.tables import (
     knowledge_sheet,
     unseen_sheet,
 )
+from kurt2rt.experiments.shown.sheet import Sheet, as_rich
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot, summary_of
 
 

@@ -7,8 +7,8 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from kurt2rt.experiments.paper.figures.style import save
 from kurt2rt.experiments.paper.study import GrowthStudy
+from kurt2rt.experiments.shown.style import save
 from kurt2rt.tasks.settings import PaperResult
 
 _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.paper.made_of import Fingerprints, code_of, sources
+from kurt2rt.experiments.kept.made_of import Fingerprints, code_of, sources
+from kurt2rt.experiments.paper.programme import OWN
 from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -41,11 +42,8 @@ def test_another_world_and_another_robot_show(fingerprints: Fingerprints) -> Non
 
 
 def test_the_source_is_what_teaches_drives_and_keeps_what_came_and_not_what_only_shows_it() -> None:
-    modules = dict(sources())
-    paper = {name for name in modules if "/paper/" in name}
-    assert paper == {
-        f"kurt2rt/experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")
-    }
+    modules = dict(sources(OWN))
+    assert {name for name in modules if "/paper/" in name} == OWN
     assert {"kurt2rt/tick.py", "kurt2rt/experiments/exam.py", "simbridge/free_poses.py", "hal/kurt2.py"} <= set(modules)
     assert "behaviors/policies/streets.py" in modules
     assert not any(name.startswith(("kurt2rt/cli/", "kurt2rt/page/")) for name in modules)

@@ -1,4 +1,4 @@
-"""What the paper's experiments need of a stage besides what each experiment does."""
+"""What experiments whose results are kept need of a stage besides what each experiment does."""
 
 from typing import TYPE_CHECKING, Protocol
 
@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class PaperStage(Stage, Protocol):
+class StudyStage(Stage, Protocol):
     """A stage that tells one version of a world from another."""
 
     def require_worlds(self, *worlds: str) -> None:

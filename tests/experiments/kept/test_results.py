@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.paper.error import PaperError
-from kurt2rt.experiments.paper.outcome import MadeOf, TaughtOutcome
-from kurt2rt.experiments.paper.results import Results
+from kurt2rt.experiments.error import StudyError
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.paper.outcome import TaughtOutcome
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot
 
 
@@ -42,7 +43,7 @@ def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_pa
     results.write(JOBS[0], robot(1, 90))
     results.write(JOBS[1], robot(2, 90))
     other = [Job(job.file, MADE_OF.model_copy(update={what: "changed"})) for job in JOBS]
-    with pytest.raises(PaperError) as caught:
+    with pytest.raises(StudyError) as caught:
         results.missing(other)
     assert str(caught.value) == (
         f"{tmp_path}: results/shipped/one-1.json and 1 more were made with other settings or another program "
@@ -53,7 +54,7 @@ def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_pa
 def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
     (tmp_path / "results" / "shipped").mkdir(parents=True)
     (tmp_path / JOBS[0].file).write_text("{}")
-    with pytest.raises(PaperError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
         Results(tmp_path).missing(JOBS)
 
 
@@ -63,14 +64,14 @@ def test_a_result_that_lacks_something_is_found_before_anything_runs(tmp_path: P
     content = json.loads((tmp_path / JOBS[0].file).read_text())
     del content["drives"][0]["teachers_stuck"]
     (tmp_path / JOBS[0].file).write_text(json.dumps(content))
-    with pytest.raises(PaperError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
         results.missing(JOBS)
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
     with (
         Results(tmp_path).held(),
-        pytest.raises(PaperError, match="another run writes here; wait for its end"),
+        pytest.raises(StudyError, match="another run writes here; wait for its end"),
         Results(tmp_path).held(),
     ):
         pass

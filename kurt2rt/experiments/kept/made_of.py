@@ -4,7 +4,7 @@ import ast
 import hashlib
 import json
 import platform
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,17 +12,34 @@ from pathlib import Path
 import yaml
 
 from hal.robot_settings import RobotSettings
-from hal.settings import find_config
-from kurt2rt.experiments.paper.outcome import MadeOf
-from kurt2rt.experiments.paper.stage import PaperStage
+from hal.settings import Settings, find_config
+from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.tasks.settings import TaskSettings
 
 _PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
-_DO_NOT_DECIDE = {"bench", "channel", "cli", "commission", "doctor", "faults", "page", "paper", "recording"}
+_DO_NOT_DECIDE = {
+    *("bench", "channel", "cli", "commission", "doctor", "faults", "page", "recording"),
+    *("kept", "paper", "phases", "shown"),  # of experiments
+}
 """Parts of kurt2rt that no lesson and no exam in lockstep runs through, or that only read results."""
-_DECIDE_ALL_THE_SAME = {f"experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")}
-"""What of those says how long and where robots drive, and what of it is kept."""
 _COMPUTE = ("numpy", "pymunk", "shapely")
+
+
+class MadeOf(Settings):
+    """What decides a result: hashes of settings and source, and the versions of what computes.
+
+    The field names are said to the user: made with other ...
+    """
+
+    task: str
+    robot: str
+    worlds: str
+    source: str
+    versions: str
+
+    def differences(self, other: "MadeOf") -> list[str]:
+        """Names of what is not the same."""
+        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
 
 
 def versions() -> str:
@@ -30,17 +47,20 @@ def versions() -> str:
     return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
 
 
-def source_hash() -> str:
-    """Of the code that teaches, drives and simulates; comments, docstrings and layout left out."""
+def source_hash(own: Collection[str]) -> str:
+    """Of the code that teaches, drives and simulates; comments, docstrings and layout left out. `own`: as `sources`."""
     digest = hashlib.sha256()
-    for name, path in sources():
+    for name, path in sources(own):
         digest.update(f"{name}\n".encode())
         digest.update(code_of(path).encode())
     return digest.hexdigest()[:16]
 
 
-def sources() -> Iterator[tuple[str, Path]]:
-    """Every module that decides a result, as `kurt2rt/tick.py`, and its file."""
+def sources(own: Collection[str]) -> Iterator[tuple[str, Path]]:
+    """Every module that decides a result, as `kurt2rt/tick.py`, and its file.
+
+    `own`: modules of these experiments that say how long and where robots drive, and what of it is kept.
+    """
     for package in _PACKAGES:
         spec = find_spec(package)
         assert spec is not None
@@ -48,8 +68,9 @@ def sources() -> Iterator[tuple[str, Path]]:
             for path in sorted(folder.rglob("*.py")):
                 place = path.relative_to(folder)
                 decides = package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts)
-                if decides or place.as_posix() in _DECIDE_ALL_THE_SAME:
-                    yield f"{package}/{place.as_posix()}", path
+                name = f"{package}/{place.as_posix()}"
+                if decides or name in own:
+                    yield name, path
 
 
 def settings_hash(*settings: str) -> str:
@@ -60,8 +81,14 @@ def settings_hash(*settings: str) -> str:
 class Fingerprints:
     """Takes them, with what many jobs share looked at once."""
 
-    def __init__(self, stage: PaperStage, robot: RobotSettings, source: str) -> None:
-        """`source`: as `source_hash` tells."""
+    def __init__(
+        self, stage: StudyStage, robot: RobotSettings, source: str, leave_out: Collection[str] = ("paper", "plain")
+    ) -> None:
+        """`source`: as `source_hash` tells. `leave_out`: parts of a task that change nothing in these experiments.
+
+        The task's own numbers of the paper, and the reading that is not taken, never do.
+        """
+        self._leave_out = set(leave_out)
         self._source = source
         self._versions = versions()
         self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
@@ -70,8 +97,7 @@ class Fingerprints:
 
     def of(self, task: TaskSettings, worlds: Iterable[str]) -> MadeOf:
         """Of one job that drives in these worlds. Raises hal.settings.SettingsError for what cannot be used."""
-        # The task's own numbers of the paper, and the reading that is not taken, change nothing.
-        of_task = task.model_dump_json(exclude={"paper", "plain"}, serialize_as_any=True)
+        of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
         return MadeOf(
             task=settings_hash(
                 of_task,

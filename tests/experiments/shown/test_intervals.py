@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.paper.intervals import poisson_interval, rate_of
+from kurt2rt.experiments.shown.intervals import poisson_interval, rate_of
 
 
 def test_where_nothing_happened_the_upper_end_is_poissons() -> None:

@@ -12,8 +12,8 @@ from pydantic import ValidationError
 
 from hal.settings import Settings
 from kurt2rt.durable import write_durably
-from kurt2rt.experiments.paper.error import PaperError
-from kurt2rt.experiments.paper.outcome import MadeOf
+from kurt2rt.experiments.error import StudyError
+from kurt2rt.experiments.kept.made_of import MadeOf
 
 _UNFINISHED = "unfinished-"
 _NEW_FOLDER = "give a new folder with --out, or delete the results in this one"
@@ -54,14 +54,14 @@ class Results:
     def held(self) -> Iterator[None]:
         """Make the folder, keep other runs out of it, and clear away what an interrupted one had begun.
 
-        Raises PaperError while another run writes there, OSError where nothing can be written.
+        Raises StudyError while another run writes there, OSError where nothing can be written.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / ".lock").open("ab") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError as error:
-                raise PaperError(
+                raise StudyError(
                     f"{self.folder}: another run writes here; wait for its end, or give another folder with --out"
                 ) from error
             for left_over in self.folder.glob(f"{_UNFINISHED}*"):
@@ -77,7 +77,7 @@ class Results:
     def missing(self, jobs: Sequence[Kept]) -> list[int]:
         """Places of the jobs that have no result yet.
 
-        Raises PaperError when there are results of other settings, source or versions, or files that are no results:
+        Raises StudyError when there are results of other settings, source or versions, or files that are no results:
         never are they mixed.
         """
         foreign: list[str] = []
@@ -97,7 +97,7 @@ class Results:
         if foreign:
             what = ", ".join(name for name in MadeOf.model_fields if name in differences)
             more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""
-            raise PaperError(
+            raise StudyError(
                 f"{self.folder}: {foreign[0]}{more} were made with other settings or another program (what differs: "
                 f"{what}); {_NEW_FOLDER}"
             )
@@ -108,7 +108,7 @@ class Results:
         write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
 
     def read(self, job: Kept, schema: type[OutcomeT]) -> OutcomeT:
-        """A result. Raises PaperError."""
+        """A result. Raises StudyError."""
         return self._read(self.folder / job.file, schema)
 
     def keep(self, file: Path, name: str) -> None:
@@ -122,4 +122,4 @@ class Results:
         try:
             return schema.model_validate_json(path.read_bytes())
         except (ValidationError, OSError) as error:
-            raise PaperError(f"{path}: is no result of this program; {_NEW_FOLDER}") from error
+            raise StudyError(f"{path}: is no result of this program; {_NEW_FOLDER}") from error

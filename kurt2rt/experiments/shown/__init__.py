@@ -1,0 +1,1 @@
+"""How experiments are shown: tables, intervals, figures, one page that holds everything."""
