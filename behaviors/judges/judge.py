@@ -14,8 +14,11 @@ class Circumstances(NamedTuple):
     front_m: float
     right_m: float
     rear_m: float
+    ahead_left_m: float
+    """What the sensors see that look ahead to the left."""
+    ahead_right_m: float
     left_angle_rad: float
-    """How far the robot's nose is turned away from the wall on the left; negative: towards it."""
+    """How far the nose is turned away from the wall on the left; negative: towards it. 0.0 where there is none."""
     right_angle_rad: float
     """The same for the wall on the right."""
     speed_m_s: float

@@ -3,7 +3,7 @@
 import hashlib
 import json
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,6 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
-Side = Literal["left", "front", "right", "rear"]
 
 NAMES = Circumstances._fields
 """Of the features of an appraisal situation, in their order."""
@@ -37,26 +36,34 @@ class SideSensors(Settings):
     """Which sensors look to which side; left and right from front to back."""
 
     left: Annotated[Sensors, Field(min_length=2)]
-    front: Sensors
     right: Annotated[Sensors, Field(min_length=2)]
+    front: Sensors
     rear: Sensors
+    ahead_left: Sensors
+    ahead_right: Sensors
+    wall: Sensors
+    """Those that look for the wall that is gone after a while without."""
+
+    @property
+    def used(self) -> frozenset[str]:
+        """All of them."""
+        return frozenset(name for names in self.model_dump().values() for name in names)
 
 
 class CircumstancesSettings(Settings):
     """How circumstances are told from senses."""
 
     sensors: SideSensors
+    wall_m: Metres
+    """Farther than this is no wall: it has no angle."""
+    no_wall_s: Seconds
+    """The wall is gone when its sensors have seen none for so long."""
     smoothing_s: Seconds
     """Time constant of speed and turn rate."""
     bump_held_s: Seconds
     no_progress_s: Annotated[float, Field(gt=0, le=60)]
     no_progress_m: Metres
     """Less way than this in that time, from where to where, while it drives, is no progress."""
-    no_wall_s: Seconds
-    no_wall_m: Metres
-    """Nothing nearer than this for that time is no wall."""
-    wall_on: Annotated[tuple[Side, ...], Field(min_length=1)]
-    """Sides where a wall, or anything else, is looked for."""
 
 
 class CriticLearningSettings(Settings):

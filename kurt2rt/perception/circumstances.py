@@ -1,6 +1,7 @@
 """Circumstances of this tick, from the senses of it and of the last few seconds: the critic's appraisal situation."""
 
 import math
+from collections.abc import Callable
 from operator import itemgetter
 
 from behaviors.judges.judge import Circumstances
@@ -17,8 +18,7 @@ class CircumstancesPerception:
         """Raises SettingsError for a sensor that the robot does not have."""
         want, period_s = critic.perception, robot.can.cycle_s
         sensors, infrared = want.sensors, robot.infrared
-        looked_at = (*sensors.left, *sensors.front, *sensors.right, *sensors.rear)
-        missing = sorted(set(looked_at) - set(infrared.names))
+        missing = sorted(sensors.used - set(infrared.names))
         if missing:
             raise SettingsError(
                 f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}; "
@@ -26,19 +26,17 @@ class CircumstancesPerception:
             )
         # Looked up by the highest count of a side, for a nearer thing never has a lower one: this runs in every tick.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
-        place = {name: index for index, name in enumerate(infrared.names)}
-        # The first twice: of one place alone itemgetter gives no tuple.
-        self._left, self._front, self._right, self._rear = (
-            itemgetter(*(place[name] for name in (side[0], *side)))
-            for side in (sensors.left, sensors.front, sensors.right, sensors.rear)
+        sides = (sensors.left, sensors.front, sensors.right, sensors.rear, sensors.ahead_left, sensors.ahead_right)
+        self._left, self._front, self._right, self._rear, self._ahead_left, self._ahead_right = (
+            _look(infrared, side) for side in sides
         )
-        self._left_ends = place[sensors.left[0]], place[sensors.left[-1]]
-        self._right_ends = place[sensors.right[0]], place[sensors.right[-1]]
+        self._wall = _look(infrared, sensors.wall)
+        self._left_ends, self._right_ends = (
+            _look(infrared, (side[0], side[-1])) for side in (sensors.left, sensors.right)
+        )
         self._left_baseline_m = _baseline_m(infrared, sensors.left, critic.name)
         self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
-        sides = [("left", "front", "right", "rear").index(side) for side in want.wall_on]
-        self._wall_on = itemgetter(sides[0], *sides)
-        self._no_wall_m = want.no_wall_m
+        self._wall_m = want.wall_m
         self._no_progress_m2 = want.no_progress_m**2
         self._metres_per_tick = robot.geometry.metres_per_tick
         self._track_m = robot.geometry.effective_track_m
@@ -68,34 +66,36 @@ class CircumstancesPerception:
         if not senses.infrared_age_s <= self._stale_infrared_s:
             self.restart()
         counts, distance_m = senses.infrared_counts, self._distance_m
-        nearest_m = (
-            distance_m[max(self._left(counts))],
-            distance_m[max(self._front(counts))],
-            distance_m[max(self._right(counts))],
-            distance_m[max(self._rear(counts))],
-        )
-        front, back = self._left_ends
-        left_angle_rad = math.atan2(distance_m[counts[front]] - distance_m[counts[back]], self._left_baseline_m)
-        front, back = self._right_ends
-        right_angle_rad = math.atan2(distance_m[counts[front]] - distance_m[counts[back]], self._right_baseline_m)
         self._move(
             senses.encoder_left_ticks * self._metres_per_tick, senses.encoder_right_ticks * self._metres_per_tick
         )
         self._since_bump = 0 if senses.bumpers else self._since_bump + 1
-        if min(self._wall_on(nearest_m)) < self._no_wall_m:
+        if distance_m[max(self._wall(counts))] < self._wall_m:
             self._without_wall = 0
         elif driving:
             self._without_wall += 1
         return Circumstances(
-            *nearest_m,
-            left_angle_rad,
-            right_angle_rad,
+            distance_m[max(self._left(counts))],
+            distance_m[max(self._front(counts))],
+            distance_m[max(self._right(counts))],
+            distance_m[max(self._rear(counts))],
+            distance_m[max(self._ahead_left(counts))],
+            distance_m[max(self._ahead_right(counts))],
+            self._angle_rad(self._left_ends(counts), self._left_baseline_m),
+            self._angle_rad(self._right_ends(counts), self._right_baseline_m),
             self._speed_m_s,
             self._turn_rad_s,
             1.0 if self._since_bump < self._bump_held_ticks else 0.0,
             1.0 if self._gets_nowhere(driving=driving) else 0.0,
             1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
         )
+
+    def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
+        """Angle to a wall of which a side's foremost and hindmost sensors see so many counts."""
+        front_m, back_m = self._distance_m[counts[0]], self._distance_m[counts[1]]
+        if front_m >= self._wall_m and back_m >= self._wall_m:
+            return 0.0
+        return math.atan2(front_m - back_m, baseline_m)
 
     def _move(self, left_m: float, right_m: float) -> None:
         """Follow the wheels through one tick."""
@@ -117,6 +117,14 @@ class CircumstancesPerception:
         self._next = place + 1 if place + 1 < steps else 0
         self._driven += 1
         return self._driven > steps and off_x_m * off_x_m + off_y_m * off_y_m < self._no_progress_m2
+
+
+def _look(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
+    """The counts of some sensors."""
+    places = [infrared.names.index(name) for name in names]
+    if len(places) == 1:  # of one place alone itemgetter gives no tuple
+        places *= 2
+    return itemgetter(*places)
 
 
 def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
