@@ -1,9 +1,20 @@
 """What knowledge is bound to: the features it was taught with, and the task."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from kurt2rt.knowledge.error import KnowledgeError
+
+
+@dataclass(frozen=True, slots=True)
+class LevelFeatures:
+    """What the conditions of one level are made of."""
+
+    feature_hash: str
+    """Fingerprint of all that makes these features what they are."""
+    feature_names: tuple[str, ...]
+    """One per dimension of a condition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,13 +29,21 @@ class KnowledgeBinding:
     """Name of the task that the RLA system was taught for."""
     robot: str
     """Robot that it was first taught on; told, not compared: the features decide whether another one can use it."""
+    levels: Mapping[str, LevelFeatures] = field(default_factory=dict)
+    """Features of further levels than the basic one, by the level's name."""
 
 
 def require_same(taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path) -> None:
-    """Refuse knowledge of other features or of another task: raises KnowledgeError that names the difference."""
-    if taught.feature_hash != wanted.feature_hash or taught.feature_names != wanted.feature_names:
+    """Refuse knowledge of other features or of another task: raises KnowledgeError that names the difference.
+
+    A level that only one of the two has is no difference: it is added, or left alone.
+    """
+    here = LevelFeatures(wanted.feature_hash, wanted.feature_names)
+    there = LevelFeatures(taught.feature_hash, taught.feature_names)
+    if there != here:
+        difference = _difference(there, here, "scales, history or the robot's sensor order differ")
         raise KnowledgeError(
-            f"{path}: taught with other features: {_difference(taught, wanted)}; "
+            f"{path}: taught with other features: {difference}; "
             "use the situation definition and robot it was taught with, or give another knowledge file"
         )
     if taught.system != wanted.system:
@@ -32,11 +51,20 @@ def require_same(taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path)
             f"{path}: taught for the task {taught.system!r}, not for {wanted.system!r}; "
             "start that task, or give another knowledge file"
         )
+    for level, features in wanted.levels.items():
+        of_file = taught.levels.get(level, features)
+        if of_file != features:
+            difference = _difference(of_file, features, "what they are made from differs")
+            raise KnowledgeError(
+                f"{path}: its level {level} was taught with other features: {difference}; "
+                f"use the {level} settings it was taught with, or give another knowledge file"
+            )
 
 
-def _difference(taught: KnowledgeBinding, wanted: KnowledgeBinding) -> str:
+def _difference(taught: LevelFeatures, wanted: LevelFeatures, unseen: str) -> str:
+    """How two that are not the same differ; `unseen`: what it is where the names do not show it."""
     if taught.feature_names == wanted.feature_names:
-        return "the names are the same, but scales, history or the robot's sensor order differ"
+        return f"the names are the same, but {unseen}"
     only_taught = [name for name in taught.feature_names if name not in wanted.feature_names]
     only_wanted = [name for name in wanted.feature_names if name not in taught.feature_names]
     if not only_taught and not only_wanted:

@@ -1,11 +1,12 @@
 """From the journal to the RLA system that it is the history of."""
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla import BASIC, Rla, RlaCreated
+from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
 
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:
@@ -14,10 +15,14 @@ def fold_journal(journal: Journal, radius: float) -> RlaSystem:
 
 
 def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:
-    """The RLA system that entries read from the journal make. Raises as `fold_journal`."""
-    system = RlaSystem(len(journal.binding.feature_names), radius)
+    """The RLA system that entries read from the journal make, all its levels with that radius. Raises as above."""
+    binding = journal.binding
+    others = {level: Space(len(features.feature_names), radius) for level, features in binding.levels.items()}
+    system = RlaSystem(len(binding.feature_names), radius, others=others)
     for entry in entries:
         try:
+            if isinstance(entry.event, RlaCreated):
+                _require_level(entry.event.rla, others)
             system.apply(entry.event)
         except UnfitEventError as error:
             raise KnowledgeError(
@@ -37,3 +42,10 @@ def check_knowledge(journal: Journal) -> list[str]:
     except KnowledgeError as error:
         return [str(error)]
     return []
+
+
+def _require_level(rla: Rla, levels: Container[str]) -> None:
+    if rla.level != BASIC and rla.level not in levels:
+        raise UnfitEventError(
+            f"{rla.title} is of the level {rla.level!r}, of which the file does not name the features"
+        )

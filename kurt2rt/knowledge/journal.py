@@ -14,6 +14,7 @@ from kurt2rt.knowledge.entry import JournalEntry, Receipt, StoredEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError, explained
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics_tables import Change, changes, read_statistics
 from kurt2rt.rla.rla import TeachingEvent
 
 _ROWS = "SELECT sequence, command_id, stamped_at, event, checksum FROM lesson ORDER BY sequence"
@@ -43,6 +44,7 @@ class Journal:
             try:
                 require_same(journal_file.read_binding(connection, path), binding, path)
                 journal_file.make_durable(connection, path)
+                journal_file.complete(connection, path, binding.levels)
                 return cls(path, connection, lock)
             except BaseException:
                 connection.close()
@@ -78,10 +80,15 @@ class Journal:
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         """Write lessons, all or none, durable on return; a known command id is not written twice. One receipt each."""
-        receipts = []
         with self._transaction():
-            for entry in entries:
-                receipts.append(self._append(entry))
+            return [self._append(entry) for entry in entries]
+
+    def append_and_checkpoint(self, entries: Sequence[JournalEntry], statistics: Statistics) -> list[Receipt]:
+        """Write lessons, and what the statistics become by them, in one transaction."""
+        differences = changes(self.statistics(), statistics)
+        with self._transaction():
+            receipts = [self._append(entry) for entry in entries]
+            self._carry_out(differences)
         return receipts
 
     def _append(self, entry: JournalEntry) -> Receipt:
@@ -100,6 +107,10 @@ class Journal:
         if cursor.lastrowid is None:
             raise KnowledgeError(f"{self.path}: SQLite gave no row for command {command_id!r}; teach it again")
         return Receipt(command_id, cursor.lastrowid, entry.stamped_at, new=True, agrees=True)
+
+    def _carry_out(self, differences: list[Change]) -> None:
+        for statement, rows in differences:
+            self._connection.executemany(statement, rows)
 
     def entries(self) -> list[StoredEntry]:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
@@ -125,27 +136,16 @@ class Journal:
             return journal_file.without_log(copy.serialize())
 
     def checkpoint(self, statistics: Statistics) -> None:
-        """Replace the statistics, in one transaction. Only rows that changed are written, to spare the flash disk."""
-        before = self.statistics()
-        used = [item for item in statistics.uses.items() if before.uses.get(item[0]) != item[1]]
-        unused = [(rla_id,) for rla_id in before.uses.keys() - statistics.uses.keys()]
-        counted = statistics.transitions.items()
-        gone = before.transitions.keys() - statistics.transitions.keys()
-        moved = [(*edge, count) for edge, count in counted if before.transitions.get(edge) != count]
-        if not (used or unused or moved or gone):
-            return
-        with self._transaction():
-            self._connection.executemany("DELETE FROM uses WHERE rla_id = ?", unused)
-            self._connection.executemany("INSERT OR REPLACE INTO uses VALUES (?, ?)", used)
-            self._connection.executemany("DELETE FROM transition WHERE from_rla = ? AND to_rla = ?", gone)
-            self._connection.executemany("INSERT OR REPLACE INTO transition VALUES (?, ?, ?)", moved)
+        """Replace the statistics, in one transaction, in which nothing is written that did not change."""
+        differences = changes(self.statistics(), statistics)
+        if differences:
+            with self._transaction():
+                self._carry_out(differences)
 
     def statistics(self) -> Statistics:
         """The statistics of the last checkpoint."""
         with self._reading():
-            uses = dict(self._connection.execute("SELECT rla_id, count FROM uses ORDER BY rla_id"))
-            edges = self._connection.execute("SELECT from_rla, to_rla, count FROM transition ORDER BY 1, 2")
-            return Statistics(uses, {(before, after): count for before, after, count in edges})
+            return read_statistics(self._connection)
 
     def check(self) -> list[str]:
         """Everything that is wrong with the file, one line each; empty when it is sound."""

@@ -5,13 +5,15 @@ import json
 import os
 import sqlite3
 import stat
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 from typing import BinaryIO
 
 from kurt2rt.durable import sync_folder
-from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.error import KnowledgeError, explained
+from kurt2rt.knowledge.statistics_tables import LATER_TABLES, has_table
 
 APPLICATION_ID = 0x4B525432
 """'KRT2' in SQLite's header: tells a knowledge file from every other SQLite file."""
@@ -44,6 +46,10 @@ CREATE TABLE transition (
     from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
 ) STRICT, WITHOUT ROWID;
 """
+
+_LEVEL = "level "
+_LEVEL_KEYS = ("feature_hash", "feature_names")
+"""A further level's features stand in table binding under keys such as `level critic feature_hash`."""
 
 
 def lock_for_writing(path: Path) -> BinaryIO:
@@ -82,11 +88,14 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
         )
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
         connection.executescript(_SCHEMA)
+        for statement in LATER_TABLES.values():
+            connection.execute(statement)
         meaning = {
             "feature_hash": binding.feature_hash,
             "feature_names": json.dumps(binding.feature_names),
             "system": binding.system,
             "robot": binding.robot,
+            **_level_rows(binding.levels),
         }
         connection.executemany("INSERT INTO binding VALUES (?, ?)", meaning.items())
         image = connection.serialize()
@@ -206,15 +215,58 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
         raise KnowledgeError(f"{path}: its disk cannot hold an SQLite log (mode {mode}); give a path on a local disk")
 
 
+def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, LevelFeatures]) -> None:
+    """Add what a file lacks that was begun by an earlier kurt2rt, or without these levels. Raises KnowledgeError."""
+    known = read_binding(connection, path).levels
+    missing = {level: features for level, features in levels.items() if level not in known}
+    tables = [statement for name, statement in LATER_TABLES.items() if not has_table(connection, name)]
+    if not missing and not tables:
+        return
+    try:
+        connection.execute("BEGIN IMMEDIATE")
+        try:
+            for statement in tables:
+                connection.execute(statement)
+            connection.executemany("INSERT INTO binding VALUES (?, ?)", _level_rows(missing).items())
+            connection.execute("COMMIT")
+        except BaseException:
+            if connection.in_transaction:
+                connection.execute("ROLLBACK")
+            raise
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+
+
 def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:
     """What the file is bound to. Raises KnowledgeError."""
     try:
         meaning: dict[str, str] = dict(connection.execute("SELECT key, value FROM binding"))
         names = json.loads(meaning["feature_names"])
-        return KnowledgeBinding(meaning["feature_hash"], tuple(names), meaning["system"], meaning["robot"])
+        return KnowledgeBinding(
+            meaning["feature_hash"], tuple(names), meaning["system"], meaning["robot"], _levels(meaning)
+        )
     except sqlite3.Error as error:
         raise explained(error, path) from error
     except (KeyError, TypeError, ValueError) as error:
         raise KnowledgeError(
             f"{path}: table binding is damaged ({error!r}); keep the file, and go on with a backup copy"
         ) from error
+
+
+def _level_rows(levels: Mapping[str, LevelFeatures]) -> dict[str, str]:
+    rows = {}
+    for level, features in levels.items():
+        of_hash, of_names = (f"{_LEVEL}{level} {key}" for key in _LEVEL_KEYS)
+        rows[of_hash], rows[of_names] = features.feature_hash, json.dumps(features.feature_names)
+    return rows
+
+
+def _levels(meaning: Mapping[str, str]) -> dict[str, LevelFeatures]:
+    of_hash, of_names = (f" {key}" for key in _LEVEL_KEYS)
+    levels = {}
+    for key in sorted(meaning):
+        if key.startswith(_LEVEL) and key.endswith(of_hash):
+            level = key.removeprefix(_LEVEL).removesuffix(of_hash)
+            names = json.loads(meaning[f"{_LEVEL}{level}{of_names}"])
+            levels[level] = LevelFeatures(meaning[key], tuple(names))
+    return levels

@@ -10,6 +10,7 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
@@ -25,6 +26,8 @@ class OpenedKnowledge:
     """In the order of writing."""
     counter: StatisticsCounter
     """Goes on from the counts of the last checkpoint."""
+    saved: Statistics
+    """All of the last checkpoint."""
 
     @property
     def events(self) -> list[TeachingEvent]:
@@ -59,7 +62,8 @@ def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> O
     except BaseException:
         journal.close()
         raise
-    return OpenedKnowledge(journal, entries, StatisticsCounter(dict(saved.uses), dict(saved.transitions)))
+    counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
+    return OpenedKnowledge(journal, entries, counter, saved)
 
 
 def read_lessons(path: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:

@@ -6,12 +6,16 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """Counts since the knowledge was begun. Must not be changed once it is handed over to be written."""
+    """Counts and worths since the knowledge was begun. Must not be changed once it is handed over to be written."""
 
     uses: Mapping[int, int] = field(default_factory=dict)
     """RLA id -> how often it won."""
     transitions: Mapping[tuple[int, int], int] = field(default_factory=dict)
     """(RLA id, follow-up RLA id) -> how often the one followed the other; edges of the RLA network (paper, III)."""
+    values: Mapping[int, float] = field(default_factory=dict)
+    """RLA id -> what rewards made its value."""
+    edge_weights: Mapping[tuple[int, int], float] = field(default_factory=dict)
+    """(RLA id, follow-up RLA id) -> weight of the edge, where rewards changed it; the smaller the better."""
 
 
 def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:

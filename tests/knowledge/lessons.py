@@ -3,13 +3,15 @@
 import json
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
-from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla import (
+    CRITIC,
     ActionReplaced,
     ActionWithdrawn,
     LessonUndone,
@@ -31,6 +33,9 @@ BINDING = KnowledgeBinding(
     robot="kurt2",
 )
 
+CIRCUMSTANCES = LevelFeatures(feature_hash="fedcba", feature_names=("left_m", "speed_m_s", "bumped"))
+WITH_CRITIC = replace(BINDING, levels={CRITIC: CIRCUMSTANCES})
+
 STAMP = "2004-04-26T10:00:00.000+00:00"
 
 
@@ -41,6 +46,12 @@ def origin(command_id: str, tick: int = 100, phase: Phase = Phase.SUPERVISED) ->
 def created(rla_id: int, command_id: str | None = None, action: str = "forward") -> RlaCreated:
     condition = (rla_id / 3, 0.1 * rla_id, 80.0 + rla_id, -5.0)
     return RlaCreated(Rla(rla_id, condition, action, None, origin(command_id or f"create-{rla_id}", tick=rla_id)))
+
+
+def appraisal(rla_id: int, condition: tuple[float, ...] = (0.4, 0.2, 0.0), action: str = "good") -> RlaCreated:
+    """An RLA of the critic."""
+    taught = origin(f"appraise-{rla_id}", rla_id, Phase.CRITIC)
+    return RlaCreated(Rla(rla_id, condition, action, None, taught, level=CRITIC))
 
 
 def replaced(rla_id: int, action: str, instead_of: str) -> ActionReplaced:

@@ -13,7 +13,18 @@ from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, as_written_by, begun, created, deleted, entry, replaced, tamper
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    as_written_by,
+    begun,
+    created,
+    deleted,
+    entry,
+    replaced,
+    tamper,
+)
 
 
 def test_what_was_taught_is_there_after_closing(path: Path) -> None:
@@ -125,16 +136,54 @@ def test_lessons_are_neither_changed_nor_deleted(path: Path) -> None:
 
 
 def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
-    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3})
-    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1})
+    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3}, {1: 0.5, 2: -1 / 3}, {(1, 2): 90.0, (2, 1): 0.1 + 0.2})
+    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1}, {1: 0.5, 3: 5e-324}, {(1, 2): 81.0, (1, 3): 1e300})
     with Journal.open(path, BINDING) as journal:
         assert journal.statistics() == Statistics()
         journal.checkpoint(first)
-        assert journal.statistics() == first
+        assert journal.statistics() == first  # to the last bit
         journal.checkpoint(second)
         journal.checkpoint(second)
     with Journal.read_only(path) as journal:
         assert journal.statistics() == second
+
+
+def test_lessons_and_what_the_statistics_become_by_them_are_written_together(path: Path) -> None:
+    unwritable = replace(created(2).rla, condition=(float("nan"),))
+    with Journal.open(path, BINDING) as journal:
+        with pytest.raises(KnowledgeError, match="finite"):
+            journal.append_and_checkpoint(
+                [JournalEntry(replace(created(2), rla=unwritable), STAMP)], Statistics({1: 1})
+            )
+        assert journal.statistics() == Statistics()
+        journal.append_and_checkpoint([entry(1)], Statistics(values={1: 0.25}))
+        assert journal.statistics() == Statistics(values={1: 0.25})
+
+
+def before_phase_3(path: Path) -> Path:
+    """A knowledge file as a kurt2rt wrote it that learnt nothing from rewards and had no critic."""
+    tamper(begun(path), "DROP TABLE value", "DROP TABLE edge_weight", "INSERT INTO uses VALUES (1, 5)")
+    return path
+
+
+def test_a_file_from_before_values_is_read_as_having_none_and_gets_them_when_it_is_taught_on_with(path: Path) -> None:
+    with Journal.read_only(before_phase_3(path)) as look:
+        assert look.statistics() == Statistics({1: 5})
+        assert check_knowledge(look) == []
+        assert look.binding == BINDING
+    learnt = Statistics({1: 5}, {}, {1: 0.75}, {(1, 2): 95.0})
+    with Journal.open(path, WITH_CRITIC) as journal:
+        assert journal.binding == WITH_CRITIC
+        journal.checkpoint(learnt)
+        assert journal.statistics() == learnt
+    with Journal.read_only(path) as look:
+        assert (look.statistics(), look.binding) == (learnt, WITH_CRITIC)
+
+
+def test_a_missing_table_that_every_file_had_is_damage(path: Path) -> None:
+    tamper(begun(path), "DROP TABLE uses")
+    with Journal.read_only(path) as look, pytest.raises(KnowledgeError, match="no such table: uses"):
+        look.statistics()
 
 
 def test_a_look_at_the_file_while_the_robot_writes_it(path: Path) -> None:

@@ -7,16 +7,29 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.binding import KnowledgeBinding
+from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.fold import check_knowledge
+from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import Rla, RlaCreated
+from kurt2rt.rla.rla import CRITIC, Rla, RlaCreated
 from tests.experiments.helpers import ROBOT, short_task
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, entry, origin, rewarded, tamper, undone
+from tests.knowledge.lessons import (
+    BINDING,
+    CIRCUMSTANCES,
+    STAMP,
+    WITH_CRITIC,
+    appraisal,
+    begun,
+    created,
+    entry,
+    origin,
+    rewarded,
+    tamper,
+    undone,
+)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -104,6 +117,47 @@ def test_knowledge_of_other_features_is_refused_and_the_difference_named(
 
     assert "taught with other features: " in message
     assert difference in message
+
+
+def test_a_level_that_a_file_lacks_is_added_and_one_that_the_robot_lacks_is_left_alone(path: Path) -> None:
+    with Journal.open(begun(path), WITH_CRITIC) as journal:
+        assert journal.binding == WITH_CRITIC
+        journal.append([JournalEntry(appraisal(4), STAMP)])
+    with Journal.open(path, BINDING) as journal:  # a robot without a critic
+        assert journal.binding == WITH_CRITIC
+        assert fold_journal(journal, radius=1.0).rlas_at(CRITIC) == (appraisal(4).rla,)
+        assert check_knowledge(journal) == []
+
+
+@pytest.mark.parametrize(
+    ("features", "difference"),
+    [
+        (LevelFeatures("0", ("left_m", "speed_m_s", "bump")), "only the file has 'bumped', only the robot has 'bump'"),
+        (
+            LevelFeatures("0", CIRCUMSTANCES.feature_names),
+            "the names are the same, but what they are made from differs",
+        ),
+        (LevelFeatures("fedcba", CIRCUMSTANCES.feature_names[::-1]), "the same names in another order"),
+    ],
+)
+def test_a_level_of_other_features_is_refused_and_the_difference_named(
+    path: Path, features: LevelFeatures, difference: str
+) -> None:
+    Journal.open(path, WITH_CRITIC).close()
+
+    message = refusal(path, replace(BINDING, levels={CRITIC: features}))
+
+    assert "its level critic was taught with other features: " in message
+    assert difference in message
+    assert message.endswith("use the critic settings it was taught with, or give another knowledge file")
+
+
+def test_an_rla_of_a_level_that_the_file_does_not_know_is_found(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(appraisal(1), STAMP)])
+        (problem,) = check_knowledge(journal)
+
+    assert "row 1: does not fit the lessons before it: appraisal RLA 1 is of the level 'critic', of which" in problem
 
 
 def test_knowledge_of_another_task_is_refused_but_not_that_of_another_robot(path: Path) -> None:
@@ -226,7 +280,8 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
             for number in (1, 2)
         ]
         journal.append([JournalEntry(lesson, f"stamp {lesson.rla.rla_id}") for lesson in lessons])
-        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}))
+        saved = Statistics({1: 5}, {(1, 2): 3}, {1: 0.25}, {(1, 2): 90.0})
+        journal.checkpoint(saved)
 
     opened = go_on_teaching(path, ROBOT, task)
     with opened.journal as journal:
@@ -234,6 +289,7 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
         assert opened.stamps == {"c1": "stamp 1", "c2": "stamp 2"}
         assert [stored.sequence for stored in opened.entries] == [1, 2]
         assert (opened.counter.uses, opened.counter.transitions) == ({1: 5}, {(1, 2): 3})
+        assert opened.saved == saved
 
 
 def test_lessons_that_do_not_fit_together_are_not_taught_on_with_and_the_file_is_free_again(path: Path) -> None:
@@ -249,3 +305,9 @@ def test_a_damaged_binding_is_refused(path: Path) -> None:
     with closing(sqlite3.connect(begun(path))) as connection, connection:
         connection.execute("DELETE FROM binding WHERE key = 'system'")
     assert "table binding is damaged (KeyError('system'))" in refusal(path)
+
+
+def test_a_damaged_binding_of_a_level_is_refused(path: Path) -> None:
+    Journal.open(path, WITH_CRITIC).close()
+    tamper(path, "DELETE FROM binding WHERE key = 'level critic feature_names'")
+    assert "table binding is damaged (KeyError('level critic feature_names'))" in refusal(path, WITH_CRITIC)
