@@ -3,7 +3,9 @@
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
+from behaviors.judges.judge import Circumstances
 from hal.robot import Grant, Robot, Senses
+from kurt2rt.critic.critic import Opinion
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Perception, Situation
@@ -43,6 +45,10 @@ class TickRecord(NamedTuple):
     """What became of the teacher's commands that this tick took."""
     behaviour: str = ""
     """The taught behaviour that was wanted."""
+    circumstances: Circumstances | None = None
+    """What the critic looks at; None where the robot sees nothing, or has no critic."""
+    opinion: Opinion | None = None
+    """What the critic thinks of it; None where it was taught nothing, or there is none."""
 
 
 class Tick:

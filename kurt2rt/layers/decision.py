@@ -39,6 +39,8 @@ class Decision(NamedTuple):
     """The RLA whose action drives; None while the robot stands or a teacher drives."""
     match: Match | None
     """Nearest RLA at this situation, its distance, R and the runner-up; None before the first lesson."""
+    answers: bool = False
+    """Whether the situation lies inside the radius of the RLA that drives; outside it nobody may blame it."""
 
     @property
     def driving(self) -> bool:

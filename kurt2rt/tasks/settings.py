@@ -5,10 +5,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, ValidationInfo, field_validator
 
+from behaviors.judges.finding import AnyJudgeSettings
 from behaviors.policies.finding import AnyPolicySettings
 from behaviors.policies.policy import PolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -142,6 +144,11 @@ class TaskSettings(Settings):
     learning: LearningSettings
     plain: PlainSettings
     """What to take instead of `learning` for the plain reading of the paper."""
+    reinforcement: ReinforcementSettings = ReinforcementSettings()
+    critic: Name = "basic"
+    """The internal critic of `config/critics`, which is taught in phase 4."""
+    judge: AnyJudgeSettings | None = None
+    """What the scripted teacher praises and blames; None: nothing."""
     policy: AnyPolicySettings
     course: AnyCourseSettings
     teaching: TeachingSettings

@@ -107,6 +107,18 @@ class Reward:
     """The decision of which tick; None: the present one."""
 
 
+@dataclass(frozen=True, slots=True)
+class Appraise:
+    """Teach the critic what a situation is worth, whoever drove in it and whatever was done (phase 4)."""
+
+    command_id: str
+    teacher: str
+    appraisal: str
+    """A name in the critic's repertoire: bad, neutral, good."""
+    decision_tick: int | None = None
+    """The situation of which tick; None: the present one."""
+
+
 # Organising commands.
 
 
@@ -208,6 +220,7 @@ Command = (
     | ReplaceAction
     | DeleteRla
     | Reward
+    | Appraise
     | Undo
     | Pursue
     | SetPhase

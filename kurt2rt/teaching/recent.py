@@ -3,12 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from behaviors.judges.judge import Circumstances
+from kurt2rt.critic.critic import Opinion
 from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
 
 
 class RecentDecisions:
-    """Situation, deciding RLA and wanted behaviour of the last `capacity` ticks, in memory that does not grow."""
+    """What was seen, decided and thought in the last `capacity` ticks, in memory that does not grow."""
 
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:
         self._capacity = capacity
@@ -18,15 +20,26 @@ class RecentDecisions:
         self._seeing = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
+        self._answering = np.zeros(capacity, dtype=np.int64)
+        self._circumstances: list[Circumstances | None] = [None] * capacity
+        self._opinions: list[Opinion | None] = [None] * capacity
         self.newest = -1
         """Tick of the newest decision; -1 before the first."""
 
     def remember(
-        self, tick: int, situation: Situation, decision: Decision, behaviour: str = "", *, blind: bool
+        self,
+        tick: int,
+        situation: Situation,
+        decision: Decision,
+        behaviour: str = "",
+        *,
+        blind: bool,
+        circumstances: Circumstances | None = None,
+        opinion: Opinion | None = None,
     ) -> None:
-        """Keep what was decided in a tick, and for which taught behaviour; the oldest is forgotten.
+        """Keep what was decided in a tick, for which taught behaviour, and what the critic thought of it.
 
-        A `blind` robot was in no situation.
+        The oldest is forgotten. A `blind` robot was in no situation.
         """
         row = tick % self._capacity
         self.newest = tick
@@ -35,6 +48,9 @@ class RecentDecisions:
         self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
         self._behaviours[row] = behaviour
+        self._answering[row] = (decision.rla_id or 0) if decision.answers else 0
+        self._circumstances[row] = circumstances
+        self._opinions[row] = opinion
 
     def knows(self, tick: int) -> bool:
         """Whether that tick is kept: it ran, and not too long ago."""
@@ -56,3 +72,15 @@ class RecentDecisions:
     def behaviour(self, tick: int) -> str:
         """The taught behaviour that was wanted in a tick that is known."""
         return self._behaviours[tick % self._capacity]
+
+    def answering(self, tick: int) -> int | None:
+        """The RLA that drove in a tick that is known while the situation lay inside its radius: who may be blamed."""
+        return int(self._answering[tick % self._capacity]) or None
+
+    def circumstances(self, tick: int) -> Circumstances | None:
+        """The appraisal situation of a tick that is known; None where the robot saw nothing, or has no critic."""
+        return self._circumstances[tick % self._capacity]
+
+    def opinion(self, tick: int) -> Opinion | None:
+        """What the critic thought in a tick that is known; None where it had been taught nothing, or there is none."""
+        return self._opinions[tick % self._capacity]

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.critic import Critic
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import (
@@ -23,6 +25,7 @@ from kurt2rt.rla.rla import (
 from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
+    Appraise,
     BeginSession,
     Command,
     CommandResult,
@@ -62,10 +65,14 @@ class School:
         *,
         insert_beyond_share: float,
         taken_command_ids: Iterable[str],
+        critic: Critic | None = None,
+        agreement: Agreement | None = None,
     ) -> None:
         self._level = level
         self.wanted = level.wanted
         self.authority = authority
+        self.critic = critic
+        self.agreement = agreement
         self.recent = RecentDecisions(level.system.dimensions)
         self._insert_beyond_share = insert_beyond_share
         self._taken = set(taken_command_ids)
@@ -198,6 +205,8 @@ class School:
                 return f"{title} deleted", RlaDeleted(command.rla_id, self._origin(command, tick))
             case Reward():
                 return self._reward(command, tick)
+            case Appraise():
+                raise _RefusedError("this robot has no critic")
             case Undo():
                 return self._undo(command, tick)
             case Watch() | Drive():

@@ -6,7 +6,7 @@ import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
-from kurt2rt.layers.decision import Cause
+from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rla.rla import RlaCreated
 from kurt2rt.rla.rla_system import RlaSystem
@@ -21,7 +21,7 @@ def test_untaught_it_stands_and_asks() -> None:
     decision = SmallLevel().at(0.0)
     assert decision.asking
     assert not decision.driving
-    assert decision == (STANDSTILL, Cause.UNKNOWN, None, None, None)
+    assert decision == Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
 
 def test_the_winner_drives_and_is_named_with_distance_and_runner_up() -> None:

@@ -23,7 +23,7 @@ def driven(level: PolicyLevel, senses: Senses, stand_because: Cause | None = Non
 
 def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
     level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, Wanted())
-    assert driven(level, FAR)[1:] == (Cause.TEACHER, "a", None, None)
+    assert driven(level, FAR)[1:5] == (Cause.TEACHER, "a", None, None)
     assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
 
 
@@ -31,7 +31,7 @@ def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     actions = {"a": Counted(), "b": Counted()}
     level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, Wanted())
     driven(level, FAR)
-    assert driven(level, FAR, Cause.STOPPED) == (STANDSTILL, Cause.STOPPED, None, None, None)
+    assert driven(level, FAR, Cause.STOPPED) == Decision(STANDSTILL, Cause.STOPPED, None, None, None)
     assert driven(level, NEAR).action == "b"
     driven(level, FAR, Cause.STOPPED)
     driven(level, NEAR)
