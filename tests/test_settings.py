@@ -16,6 +16,7 @@ from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from hal.settings_by_kind import find_kind
+from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.faults.table import FaultTable
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -30,6 +31,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "worlds": WorldSettings,
     "wires": WireSettings,
     "faults": FaultTable,
+    "critics": CriticSettings,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
 TASK = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()

@@ -66,29 +66,42 @@ class CircumstancesSettings(Settings):
     """Less way than this in that time, from where to where, while it drives, is no progress."""
 
 
+class CircumstanceWeights(Settings):
+    """What each circumstance counts in a distance; nothing where it is left out. One for each of Circumstances."""
+
+    left_m: Weight = 0.0
+    front_m: Weight = 0.0
+    right_m: Weight = 0.0
+    rear_m: Weight = 0.0
+    ahead_left_m: Weight = 0.0
+    ahead_right_m: Weight = 0.0
+    left_angle_rad: Weight = 0.0
+    right_angle_rad: Weight = 0.0
+    speed_m_s: Weight = 0.0
+    turn_rad_s: Weight = 0.0
+    bumped: Weight = 0.0
+    no_progress: Weight = 0.0
+    no_wall: Weight = 0.0
+
+    @model_validator(mode="after")
+    def _something_counts(self) -> Self:
+        if not any(getattr(self, name) for name in NAMES):
+            raise ValueError("every circumstance weighs 0; give one more")
+        return self
+
+
 class CriticLearningSettings(Settings):
     """How the critic's RLA system matches and takes lessons."""
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     insert_beyond_share: Share
     """Another opinion farther than this share of the radius from the nearest condition inserts, else it replaces."""
-    weights: dict[str, Weight]
-    """What each circumstance counts in a distance, by its name; 0 for those that are left out."""
-
-    @field_validator("weights")
-    @classmethod
-    def _of_circumstances(cls, weights: dict[str, float]) -> dict[str, float]:
-        unknown = sorted(weights.keys() - set(NAMES))
-        if unknown:
-            raise ValueError(f"there is no circumstance {', '.join(unknown)}; there are: {', '.join(NAMES)}")
-        if not any(weights.values()):
-            raise ValueError("every circumstance weighs 0; give one more")
-        return weights
+    weights: CircumstanceWeights
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:
         """Weights (d,) in the order of Circumstances."""
-        return np.array([self.weights.get(name, 0.0) for name in NAMES])
+        return np.array([getattr(self.weights, name) for name in NAMES], dtype=np.float64)
 
 
 class AgreementSettings(Settings):

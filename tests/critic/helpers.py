@@ -1,0 +1,23 @@
+"""Teaching events about appraisals, and circumstances that nothing is wrong with."""
+
+from itertools import count
+
+from behaviors.judges.judge import Circumstances
+from kurt2rt.critic.settings import load_critic
+from kurt2rt.rla.rla import CRITIC, Origin, Phase, Rla, RlaCreated
+
+SETTINGS = load_critic()
+FREE = Circumstances(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+
+_numbers = count(1)
+
+
+def origin(command_id: str | None = None, teacher: str = "ada", phase: Phase = Phase.CRITIC, tick: int = 0) -> Origin:
+    """Of a new command, unless named."""
+    return Origin(command_id or f"command-{next(_numbers)}", teacher, phase, tick)
+
+
+def appraisal(
+    rla_id: int, action: str, circumstances: Circumstances = FREE, said_by: Origin | None = None
+) -> RlaCreated:
+    return RlaCreated(Rla(rla_id, tuple(circumstances), action, None, said_by or origin(), level=CRITIC))

@@ -1,0 +1,54 @@
+"""When the critic speaks."""
+
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.autonomy import Autonomy, Signal
+from kurt2rt.critic.critic import Opinion
+from kurt2rt.critic.settings import AgreementSettings, SignalEverySettings
+from kurt2rt.rla.rla import Appraised, RlaRewarded
+from tests.critic.helpers import SETTINGS, appraisal, origin
+
+BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
+GOOD = Opinion(1, "good", 0.5, None, 0.1, 1.0, True)
+NEUTRAL = Opinion(0, "neutral", 0.7, None, 0.1, 1.0, True)
+UNKNOWN = Opinion(0, "", 0.0, None, 2.0, 1.0, False)
+RATES = SETTINGS.model_copy(update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0)})
+
+
+def agreement(*, trusted: bool = True) -> Agreement:
+    heard = Agreement(AgreementSettings(bound=0.8, window=2, least=1), SETTINGS.values)
+    heard.hear(Appraised("bad", -1, 0, origin()))
+    if trusted:
+        heard.hear(Appraised("good", 1, 0, origin()))
+    assert heard.trusted is trusted
+    return heard
+
+
+def test_what_a_trusted_critic_thinks_is_a_signal_about_this_tick() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert speaking.signal(40, BAD, True) == Signal(-1, "bad", 40, 0.7)
+    assert speaking.signal(41, GOOD, True) == Signal(1, "good", 41, 0.5)
+
+
+def test_it_says_the_same_no_more_often_than_a_person() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert [tick for tick in range(450) if speaking.signal(tick, BAD, True)] == [0, 100, 200, 300, 400]
+    assert [tick for tick in range(450) if speaking.signal(tick, GOOD, True)] == [0, 200, 400]
+
+
+def test_neutral_and_unknown_are_no_signals_and_a_robot_that_stands_gets_none() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert speaking.signal(1, NEUTRAL, True) is None
+    assert speaking.signal(2, UNKNOWN, True) is None
+    assert speaking.signal(3, None, True) is None
+    assert speaking.signal(4, BAD, False) is None
+    assert speaking.signal(5, BAD, True) is not None
+
+
+def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
+    heard = agreement(trusted=False)
+    speaking = Autonomy(RATES, heard, 0.01)
+    assert speaking.signal(1, BAD, True) is None
+    heard.hear(Appraised("good", 1, 0, origin()))
+    assert speaking.signal(2, BAD, True) is not None
+    heard.hear_all([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
+    assert speaking.signal(300, BAD, True) is None

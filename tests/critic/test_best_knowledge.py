@@ -1,0 +1,161 @@
+"""The guard that keeps the best knowledge, told window by window."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from kurt2rt.critic.best_knowledge import BestKnowledge
+from kurt2rt.critic.settings import BestSettings
+from kurt2rt.rla.rla import (
+    CRITIC,
+    ActionReplaced,
+    LessonUndone,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    SessionBegun,
+    TeachingEvent,
+)
+from kurt2rt.rla.rla_system import RlaSystem
+from tests.critic.helpers import origin
+
+
+def best(margin: float = 0.2) -> BestKnowledge:
+    """With windows of ten ticks."""
+    return BestKnowledge(BestSettings(window_s=0.1, margin=margin), 0.01)
+
+
+def window(kept: BestKnowledge, good: int, tick: int = 0) -> tuple[LessonUndone, ...]:
+    """Ten ticks of driving, so many of them good and the others neutral."""
+    undone: tuple[LessonUndone, ...] = ()
+    for place in range(10):
+        assert not undone
+        undone = kept.look(tick + place, 1 if place < good else None, True)
+    return undone
+
+
+def created(rla_id: int, command_id: str, teacher: str = CRITIC) -> RlaCreated:
+    by = origin(command_id, teacher, Phase.AUTONOMOUS)
+    return RlaCreated(Rla(rla_id, (float(rla_id),), "forward", None, by))
+
+
+def replaced(rla_id: int, command_id: str, teacher: str = CRITIC) -> ActionReplaced:
+    return ActionReplaced(rla_id, "back", "forward", origin(command_id, teacher, Phase.AUTONOMOUS))
+
+
+def test_what_made_it_worse_is_undone_newest_first() -> None:
+    kept = best()
+    assert window(kept, good=8) == ()
+    for event in (created(1, "first"), replaced(1, "second"), created(2, "third")):
+        kept.changed(event)
+    undone = window(kept, good=5, tick=990)
+    assert [each.lesson for each in undone] == ["third", "second", "first"]
+    assert {each.origin.teacher for each in undone} == {CRITIC}
+    assert {each.origin.phase for each in undone} == {Phase.AUTONOMOUS}
+    assert {each.origin.tick for each in undone} == {999}
+    assert len({each.origin.command_id for each in undone}) == 3
+
+
+def test_a_little_worse_is_chance_and_better_is_kept() -> None:
+    kept = best()
+    window(kept, good=5)
+    kept.changed(created(1, "first"))
+    assert window(kept, good=4) == ()
+    assert window(kept, good=7) == ()
+    assert (kept.best, kept.score) == (0.7, 0.7)
+    kept.changed(created(2, "second"))
+    assert [each.lesson for each in window(kept, good=2)] == ["second"]
+
+
+def test_nothing_is_undone_where_nothing_was_changed() -> None:
+    kept = best()
+    window(kept, good=9)
+    assert window(kept, good=0) == ()
+    assert kept.best == 0.9
+
+
+def test_time_in_which_it_stands_does_not_count() -> None:
+    kept = best()
+    for tick in range(1000):
+        assert kept.look(tick, -1, False) == ()
+    assert kept.score is None
+    window(kept, good=3)
+    assert kept.score == 0.3
+
+
+def test_what_was_undone_by_hand_is_not_undone_again() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.changed(created(1, "first"))
+    kept.changed(created(2, "second"))
+    kept.changed(LessonUndone("second", origin()))
+    kept.changed(SessionBegun("monday", origin()))
+    assert [each.lesson for each in window(kept, good=0)] == ["first"]
+
+
+def test_what_a_teacher_went_on_from_stays() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.changed(created(1, "first"))
+    kept.changed(created(2, "second"))
+    kept.changed(replaced(1, "by ada", teacher="ada"))
+    assert [each.lesson for each in window(kept, good=0)] == ["second"]
+
+
+def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
+    kept = best()
+    window(kept, good=10)  # by chance
+    kept.changed(created(1, "first"))
+    for undone in window(kept, good=5):
+        kept.changed(undone)
+    assert window(kept, good=5) == ()
+    assert kept.best == 0.5
+    kept.changed(created(2, "second"))
+    assert window(kept, good=6) == ()
+    assert window(kept, good=5) == ()
+    assert kept.best == 0.6
+
+
+Act = tuple[str, int]
+
+
+@given(
+    windows=st.lists(
+        st.tuples(
+            st.lists(
+                st.tuples(st.sampled_from(("create", "replace", "delete", "teach", "undo")), st.integers(0, 5)),
+                max_size=6,
+            ),
+            st.integers(0, 10),
+        ),
+        max_size=12,
+    )
+)
+@settings(max_examples=150, deadline=None)
+def test_whatever_is_changed_by_whom_a_roll_back_fits_the_knowledge(windows: list[tuple[list[Act], int]]) -> None:
+    kept, knowledge = best(margin=0.1), RlaSystem(1, 1.0)
+    commands = 0
+
+    def happens(event: TeachingEvent) -> None:
+        knowledge.apply(event)
+        kept.changed(event)
+
+    for acts, good in windows:
+        for act, which in acts:
+            commands += 1
+            name, living = f"command-{commands}", knowledge.rlas
+            by = origin(name, "ada" if act == "teach" else CRITIC, Phase.AUTONOMOUS)
+            if act == "create" or not living:
+                happens(RlaCreated(Rla(knowledge.next_id, (float(commands),), "forward", None, by)))
+                continue
+            rla = living[which % len(living)]
+            if act == "delete":
+                happens(RlaDeleted(rla.rla_id, by))
+            elif act == "undo":
+                last = knowledge.last_standing_lesson
+                if last is not None:
+                    happens(LessonUndone(last, by))
+            else:
+                happens(ActionReplaced(rla.rla_id, name, rla.action, by))
+        for undone in window(kept, good):
+            happens(undone)  # raises where it does not fit
