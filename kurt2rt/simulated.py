@@ -108,9 +108,9 @@ class SimulatedArena:
 
         self.simulation.place(min(self._starts, key=squared_distance))
 
-    def reposition(self, chance: random.Random, *, in_sight: bool) -> None:
+    def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Set the robot down elsewhere."""
-        self.simulation.place(self._free.draw(chance) if in_sight else chance.choice(self._starts))
+        self.simulation.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
 
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:

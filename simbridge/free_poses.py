@@ -11,6 +11,8 @@ from simbridge.world import World
 
 _CLEARANCE_M = 0.1
 """Nearer to a wall a robot that turns on the spot would begin with a collision."""
+_CLOSE_M = 0.015
+"""Nearer it may begin with one that nothing has caused."""
 _IN_SIGHT_M = 0.45
 """What is farther from a sensor is hardly told from nothing."""
 _ON_A_POST_M = 0.001
@@ -28,13 +30,17 @@ class FreePoses:
         reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + _IN_SIGHT_M
         self._sight = Sight(world, reach_m)
 
-    def draw(self, chance: random.Random) -> Pose:
-        """One of them. Raises hal.settings.SettingsError in a world where none is found."""
+    def draw(self, chance: random.Random, *, close: bool = False) -> Pose:
+        """One of them; `close`: also so close to something that it cannot turn on the spot.
+
+        Raises hal.settings.SettingsError in a world where none is found.
+        """
+        clearance_m = _CLOSE_M if close else _CLEARANCE_M
         world = self._world.settings
         width_m, height_m = world.size_m
         for _ in range(_TRIES):
             pose = Pose(chance.uniform(0.0, width_m), chance.uniform(0.0, height_m), chance.uniform(-math.pi, math.pi))
-            if self._sees(pose) and world.clearance_m(pose, self._geometry) >= _CLEARANCE_M:
+            if self._sees(pose) and world.clearance_m(pose, self._geometry) >= clearance_m:
                 return pose
         what = "a round obstacle" if world.round_obstacles else "something"
         raise SettingsError(

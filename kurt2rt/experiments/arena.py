@@ -104,10 +104,11 @@ class Arena(Protocol):
         """Lift the robot and set it down, standing, at the nearest start pose."""
         ...
 
-    def reposition(self, chance: random.Random, *, in_sight: bool) -> None:
+    def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Lift the robot and set it down, standing, elsewhere: at some start pose, or anywhere free `in_sight`.
 
-        In sight is where a sensor sees something: a post, where the world has posts, else anything.
+        In sight is where a sensor sees something: a post, where the world has posts, else anything. `close`: also so
+        close to it that the robot cannot turn on the spot.
         """
         ...
 

@@ -9,8 +9,8 @@ from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult, teach
+from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
-from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
@@ -45,13 +45,15 @@ async def run_lesson(
     seed: int,
     report: Report,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
+    plan: LessonPlan | None = None,
 ) -> tuple[LessonResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
 
-    Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable.
-    Raises KnowledgeError, SettingsError, LessonLostError.
+    Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable. `plan`: None: the
+    task's own lesson, phases 1 and 2. Raises KnowledgeError, SettingsError, LessonLostError.
     """
-    world, whole_s = task.teaching.world, task.teaching.duration_s
+    plan = plan or plan_of(task)
+    world, whole_s = task.teaching.world, plan.duration_s
     opened = go_on_teaching(knowledge, settings, task)
     with JournalWriter(opened.journal, utc_now) as writer:
 
@@ -62,7 +64,7 @@ async def run_lesson(
                 on_saved(acknowledgement)
             report(f"teaching in world {world}", done_s, whole_s)
 
-        arena = stage.open(world, seed, "lesson")
+        arena = stage.open(world, seed, plan.purpose)
         try:
             lesson = await teach(
                 arena,
@@ -73,10 +75,12 @@ async def run_lesson(
                 seed=seed,
                 on_progress=on_progress,
                 statistics=opened.counter,
+                saved=opened.saved,
+                plan=plan,
             )
         finally:
             arena.close()
-        writer.submit_statistics(Statistics(lesson.statistics.uses, lesson.statistics.transitions))
+        writer.submit_statistics(lesson.saved)
         if not writer.flush(timeout_s=30.0):
             raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
         on_progress(whole_s)

@@ -48,9 +48,9 @@ class Drive:
         self._arena.rescue()
         self._put()
 
-    def reposition(self, *, in_sight: bool = False) -> None:
-        """Set it down elsewhere: at some start pose, or anywhere in sight of something."""
-        self._arena.reposition(self._chance, in_sight=in_sight)
+    def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
+        """Set it down elsewhere: at some start pose, or anywhere in sight of something, also `close` to it."""
+        self._arena.reposition(self._chance, in_sight=in_sight, close=close)
         self.repositions += 1
         self._put()
 

@@ -11,6 +11,7 @@ from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.lesson import TRAIL_STRIDE
 from kurt2rt.experiments.refusals import require_carried_out
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
@@ -56,6 +57,8 @@ class ExamResult:
     findings: Findings = field(default_factory=dict)
     """What the course measured besides."""
     collision_positions: tuple[Position, ...] = ()
+    rescues: int = 0
+    """How often it was stuck and set down elsewhere, where that does not end the exam."""
 
     def succeeded(self, teachers_progress: float, success: SuccessSettings) -> bool:
         """No more collisions than allowed, no alarm, not stuck, and enough of what the teacher's own policy reaches."""
@@ -91,9 +94,13 @@ async def examine(
     seed: int,
     on_progress: Callable[[float], None],
     by_teacher: bool = False,
+    saved: Statistics | None = None,  # noqa: ARG001 - until rewards change values
+    stuck_ends: bool = True,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
 
+    `saved`: what rewards had made of that. `stuck_ends`: else a robot that is stuck is set down at the nearest start
+    pose and goes on, so that collisions are those of the whole time; it has got stuck all the same.
     Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
     names an action which the repertoire lacks.
     """
@@ -119,8 +126,8 @@ async def examine(
     trail: list[Position] = []
     unknown_positions: list[Position] = []
     collision_positions: list[Position] = []
-    unknown = changes = ticks = 0
-    stuck = asking = False
+    unknown = changes = ticks = stuck = 0
+    asking = False
     action: str | None = None
     alarm = ""
     said = 0
@@ -151,8 +158,11 @@ async def examine(
             alarm = record.grant.reasons[0]
             runtime.scheduler.end()
         elif drive.makes_no_way(waits=False):
-            stuck = True
-            runtime.scheduler.end()
+            stuck += 1
+            if stuck_ends:
+                runtime.scheduler.end()
+            else:
+                drive.rescue()
         if record.tick % TRAIL_STRIDE == 0:
             trail.append(arena.position)
         if record.tick % 100 == 0:
@@ -161,7 +171,7 @@ async def examine(
     say_what_is_wanted(wanted.behaviour)
     await runtime.scheduler.run(round(task.exam.duration_s / period_s), after_tick)
     on_progress(task.exam.duration_s)
-    if stuck or alarm:
+    if alarm or (stuck and stuck_ends):
         drive.course.end_early()
     return ExamResult(
         world=world,
@@ -171,7 +181,8 @@ async def examine(
         unit=drive.course.unit,
         way_m=drive.way_m,
         collisions=arena.collisions,
-        stuck=stuck,
+        stuck=stuck > 0,
+        rescues=0 if stuck_ends else stuck,
         share_unknown=unknown / ticks,
         action_changes_per_s=changes / (ticks * period_s),
         trail=tuple(trail),

@@ -1,26 +1,34 @@
-"""A lesson: a scripted teacher teaches the robot, phases 1 and 2, in lockstep."""
+"""A lesson: a scripted teacher teaches the robot in lockstep."""
 
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 
 from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
+from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
+from kurt2rt.experiments.load import Load, Minute
 from kurt2rt.experiments.refusals import require_carried_out
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import DeleteRla
-from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
+from kurt2rt.teaching.commands import Command, DeleteRla, Reward
+from kurt2rt.teaching.scripted_appraiser import Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
+from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from kurt2rt.timing.ledger import Ledger
 
 TRAIL_STRIDE = 10
 """Ticks between two points of a trail."""
+_AGREEMENT_EVERY_S = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +61,23 @@ class LessonResult:
     """What progress is counted in."""
     findings: Findings = field(default_factory=dict)
     """What the course measured besides."""
+    load: tuple[Minute, ...] = ()
+    """What the teacher said, minute by minute."""
+    praise: int = 0
+    blame: int = 0
+    refused_signals: int = 0
+    """Praise and blame that came too late, when nothing was there any more that it could be about."""
+    collisions: int = 0
+    unknown_rescues: int = 0
+    """Of the rescues, those of a robot that stood in a situation it did not know, and nobody was there to be asked."""
+    share_unknown: float = 0.0
+    """Share of ticks in which the robot did not know the situation."""
+    agreement: tuple[float | None, ...] = ()
+    """How far the critic agrees with its teacher, after each ten seconds; None while too little was heard."""
+    share_trusted: float = 0.0
+    """Share of ticks in which the critic was trusted."""
+    saved: Statistics = field(default_factory=Statistics, compare=False, repr=False)
+    """All that was counted and valued, as it is saved."""
 
 
 async def teach(
@@ -65,39 +90,54 @@ async def teach(
     seed: int,
     on_progress: Callable[[float], None],
     statistics: StatisticsCounter | None = None,
+    saved: Statistics | None = None,  # noqa: ARG001 - until rewards change values
+    plan: LessonPlan | None = None,
 ) -> LessonResult:
     """Teach the task for its whole duration; what was taught goes to `keeper`.
 
-    `events`: what an earlier lesson taught, to go on from there; `statistics`: what was counted then, to count on.
+    `events`: what an earlier lesson taught, to go on from there; `statistics`: what was counted then, to count on;
+    `saved`: what rewards had made of it. `plan`: None: the task's own, phases 1 and 2.
     `on_progress` gets simulated seconds. Raises LessonLostError for a lesson that the robot refused.
     """
+    plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
     runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics)
-    session = f"lesson-{seed}-after-{len(events)}"
-    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+    session = f"{plan.purpose}-{seed}-after-{len(events)}"
+    teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     chance = random.Random(f"course of {session}")
     drive = Drive(arena, task, no_way_s=task.teaching.rescue_after_s, period_s=period_s, chance=chance)
     in_sight = task.teaching.reposition_to == "in_sight"
     reposition_every = round(task.teaching.reposition_every_s / period_s)
-    ticks = round(task.teaching.duration_s / period_s)
-    corrections_from = round(task.teaching.supervised_s / period_s)
+    set_down_every = round(plan.set_down_every_s / period_s)
+    shown = round(plan.shown_s / period_s)
+    ticks = round(plan.duration_s / period_s)
+    begins = _begins(plan, period_s)
     ticks_per_second = round(1 / period_s)
+    load = Load(ticks, period_s)
     growth: list[int] = []
     trail: list[Position] = []
     ask_positions: list[Position] = []
+    agreement: list[float | None] = []
     asking = False
-    rescues = alarms = latched_ticks = deletions = 0
+    rescues = unknown_rescues = alarms = latched_ticks = deletions = refused = unknown = trusted = praise = blame = 0
+
+    def say(command: Command, tick: int) -> None:
+        nonlocal deletions, praise, blame
+        runtime.inbox.put(command)
+        load.note(tick, command)
+        deletions += isinstance(command, DeleteRla)
+        if isinstance(command, Reward):
+            praise += command.value > 0
+            blame += command.value < 0
 
     def after_tick(record: TickRecord) -> None:
-        nonlocal asking, rescues, alarms, latched_ticks, deletions
-        require_carried_out(record, task)
-        if record.tick == corrections_from:
-            runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
-        command = teacher.watch(picture_of(record))
-        if command is not None:
-            runtime.inbox.put(command)
-            deletions += isinstance(command, DeleteRla)
+        nonlocal asking, rescues, unknown_rescues, alarms, latched_ticks, refused, unknown, trusted
+        refused += require_carried_out(record, task, may_be_late=teacher.is_signal)
+        if record.tick in begins:
+            runtime.inbox.put(teacher.enter(begins[record.tick]))
+        for command in teacher.watch(record):
+            say(command, record.tick)
         latched_ticks = latched_ticks + 1 if record.grant.latched else 0
         if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
             runtime.inbox.put(teacher.go())
@@ -106,12 +146,19 @@ async def teach(
         if record.decision.asking and not asking:
             ask_positions.append(arena.position)
         asking = record.decision.asking
+        unknown += asking
+        trusted += _trusted(runtime)
         drive.follow()
-        if drive.makes_no_way(waits=asking):
+        if drive.makes_no_way(waits=asking and teacher.answers):
             drive.rescue()
             rescues += 1
+            unknown_rescues += asking
         if drive.course.stranded or (reposition_every and record.tick % reposition_every == 0):
             drive.reposition(in_sight=in_sight)
+        if set_down_every and teacher.phase is Phase.CRITIC and record.tick % set_down_every == 0:
+            drive.reposition(in_sight=True, close=True)
+            for command in teacher.show(record.tick, shown):
+                runtime.inbox.put(command)
         if drive.course.behaviour != record.behaviour:
             runtime.inbox.put(teacher.pursue(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:
@@ -119,9 +166,13 @@ async def teach(
         if record.tick % ticks_per_second == 0:
             growth.append(len(runtime.level.system))
             on_progress(record.now_s)
+        if record.tick % (_AGREEMENT_EVERY_S * ticks_per_second) == 0:
+            agreement.append(_agreement(runtime))
 
     if drive.course.behaviour != runtime.wanted.behaviour:
         runtime.inbox.put(teacher.pursue(drive.course.behaviour))
+    if plan.phases[0][0] is not teacher.phase:
+        runtime.inbox.put(teacher.enter(plan.phases[0][0]))
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
     return LessonResult(
@@ -144,4 +195,63 @@ async def teach(
         progress=drive.course.progress,
         unit=drive.course.unit,
         findings=drive.course.findings,
+        load=load.minutes,
+        praise=praise,
+        blame=blame,
+        refused_signals=refused,
+        collisions=arena.collisions,
+        unknown_rescues=unknown_rescues,
+        share_unknown=unknown / max(ticks, 1),
+        agreement=tuple(agreement),
+        share_trusted=trusted / max(ticks, 1),
+        saved=_saved(runtime),
     )
+
+
+def _begins(plan: LessonPlan, period_s: float) -> dict[int, Phase]:
+    """The tick in which each phase but the first is told to begin."""
+    ends = accumulate(lasts_s for _, lasts_s in plan.phases)
+    return {round(end_s / period_s): phase for end_s, (phase, _) in zip(ends, plan.phases[1:], strict=False)}
+
+
+def _teacher_of(
+    plan: LessonPlan,
+    task: TaskSettings,
+    settings: RobotSettings,
+    actions: tuple[str, ...],
+    *,
+    seed: int,
+    session: str,
+) -> ScriptedAppraiser:
+    period_s, times = settings.can.cycle_s, plan.times
+    signs: Signs | None = None
+    if plan.signs == "unknown":
+        signs = UnknownIsBad()
+    elif plan.signs == "judge":
+        if task.judge is None:
+            raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")
+        signs = Judged(task.judge.build())
+    every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
+    habits = Habits(
+        reaction=round(task.teaching.teacher.reaction_s / period_s),
+        every={value: round(each_s / period_s) for value, each_s in every_s.items()},
+        most_blame=times.most_blame,
+    )
+    # Where several opinions are worth the same, the first one says it.
+    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if signs else {}
+    answering = teacher_of(task, settings, actions, seed=seed, session=session)
+    return ScriptedAppraiser(answering, habits, signs, named, session=session, seed=seed, shown=actions)
+
+
+def _trusted(runtime: Runtime) -> bool:
+    agreement = getattr(runtime.school, "agreement", None)
+    return agreement is not None and agreement.trusted
+
+
+def _agreement(runtime: Runtime) -> float | None:
+    agreement = getattr(runtime.school, "agreement", None)
+    return None if agreement is None else agreement.share
+
+
+def _saved(runtime: Runtime) -> Statistics:
+    return Statistics(dict(runtime.statistics.uses), dict(runtime.statistics.transitions))

@@ -1,0 +1,49 @@
+"""What a lesson consists of."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import TaskSettings
+
+Signs = Literal["none", "judge", "unknown"]
+"""What the teacher goes by when he praises and blames: nothing, the task's judge, or that the robot knew no answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class SignalTimes:
+    """How often the teacher praises and blames."""
+
+    bad_every_s: float = 1.0
+    good_every_s: float = 2.0
+    neutral_every_s: float = 2.0
+    """Only the critic is taught what is neutral."""
+    most_blame: int = 0
+    """He blames no more often than this; 0: as often as he likes."""
+
+
+@dataclass(frozen=True, slots=True)
+class LessonPlan:
+    """Phases one after the other, and what the teacher does in them besides."""
+
+    phases: tuple[tuple[Phase, float], ...]
+    """Each with its time in s."""
+    purpose: str = "lesson"
+    """Another one begins at another place, with other noise."""
+    signs: Signs = "none"
+    times: SignalTimes = SignalTimes()
+    set_down_every_s: float = 0.0
+    """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
+    shown_s: float = 0.0
+    """Then some action of the repertoire, whatever it leads to, drives it for so long."""
+
+    @property
+    def duration_s(self) -> float:
+        """Robot time of all of it."""
+        return sum(lasts_s for _, lasts_s in self.phases)
+
+
+def plan_of(task: TaskSettings) -> LessonPlan:
+    """The lesson that the task describes: phases 1 and 2."""
+    teaching = task.teaching
+    return LessonPlan(((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s)))

@@ -1,0 +1,182 @@
+"""A scripted teacher of all phases: answers and corrects as ever, praises and blames, and teaches the critic."""
+
+import random
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+from behaviors.judges.judge import Judge
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
+from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
+from kurt2rt.tick import TickRecord
+
+_NAME = "scripted teacher"
+
+
+@dataclass(frozen=True, slots=True)
+class Habits:
+    """How the teacher gives signals, in ticks."""
+
+    reaction: int
+    """From the picture that he means to the signal."""
+    every: Mapping[int, int]
+    """The shortest time from one signal to the next of the same value, by value; neutral ones teach the critic only."""
+    most_blame: int = 0
+    """He blames no more often than this; 0: as often as he likes."""
+
+
+class Signs(Protocol):
+    """What a teacher has to say of what he sees."""
+
+    def look(self, record: TickRecord) -> tuple[int, int] | None:
+        """Value of a signal and the tick that it is about; None: nothing. To be asked in every tick."""
+        ...
+
+
+class Judged:
+    """Says of every picture what a judge thinks of it, while something drives the robot."""
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+
+    def look(self, record: TickRecord) -> tuple[int, int] | None:
+        """Of this tick."""
+        if record.circumstances is None or not record.decision.driving:
+            return None
+        return self._judge.judge(record.circumstances), record.tick
+
+
+class UnknownIsBad:
+    """Knows only that to be in an unknown situation is bad: blames what led there."""
+
+    def __init__(self) -> None:
+        self._drove = False
+
+    def look(self, record: TickRecord) -> tuple[int, int] | None:
+        """Of the tick before the robot began to ask."""
+        drove, self._drove = self._drove, record.decision.driving
+        return (-1, record.tick - 1) if record.decision.asking and drove else None
+
+
+class _Said(NamedTuple):
+    due_tick: int
+    command: Command
+
+
+class ScriptedAppraiser:
+    """In phases 1 and 2 a ScriptedTeacher; in 3 and 4 that one only answers, and signals are given besides; 5: silent.
+
+    Signals are rewards in phase 3, of what an RLA drove; in phase 4 they teach the critic, neutral ones among them.
+    """
+
+    def __init__(
+        self,
+        answering: ScriptedTeacher,
+        habits: Habits,
+        signs: Signs | None,
+        appraisals: Mapping[int, str],
+        *,
+        session: str,
+        seed: int = 0,
+        shown: Sequence[str] = (),
+    ) -> None:
+        """`signs`: None where he has none to give. `appraisals`: name of the critic's opinion of each value.
+
+        `session`: as in ScriptedTeacher. `shown`: actions of which one, by chance, drives where the robot was set down
+        in phase 4, so that the critic sees what the robot does not do by itself.
+        """
+        self._answering = answering
+        self._habits = habits
+        self._signs = signs
+        self._appraisals = appraisals
+        self._session = session
+        self._chance = random.Random(f"what is shown to the critic in {session}, seed {seed}")
+        self._shown = tuple(shown)
+        self._said = self._blamed = 0
+        self._next_tick: dict[int, int] = {}
+        self._waiting: deque[_Said] = deque()
+        self._resume_at: int | None = None
+        self.phase = answering.phase
+
+    def enter(self, phase: Phase) -> Command:
+        """Begin a phase: what to tell the robot."""
+        self.phase = phase
+        command = self._answering.enter(phase)
+        if phase is not Phase.CORRECTIONS:  # what was wrong is said by signals, or by nobody
+            self._answering.phase = Phase.SUPERVISED
+        return command
+
+    def pursue(self, behaviour: str) -> Command:
+        """Another taught behaviour is wanted: what to tell the robot."""
+        return self._answering.pursue(behaviour)
+
+    def go(self) -> Command:
+        """The robot shall drive again after an alarm: what to tell it."""
+        return self._answering.go()
+
+    def is_signal(self, command_id: str) -> bool:
+        """Whether it is a signal's id: one that comes too late, when its RLA is gone, may be refused."""
+        return command_id.startswith(f"{self._session}-signal-")
+
+    @property
+    def answers(self) -> bool:
+        """Whether he is there to be asked."""
+        return self.phase is not Phase.AUTONOMOUS
+
+    def show(self, tick: int, ticks: int) -> list[Command]:
+        """The robot was just set down: some action drives it for so long; nothing where none is to be shown."""
+        if not self._shown or not ticks:
+            return []
+        self._resume_at = tick + ticks + 1
+        return [RunBehaviour(self._next_id(), _NAME, self._chance.choice(self._shown), ticks)]
+
+    def watch(self, record: TickRecord) -> list[Command]:
+        """See one tick; all that he says to it."""
+        if self.phase is Phase.AUTONOMOUS:
+            return []
+        said: list[Command] = []
+        if self._resume_at is not None and record.tick >= self._resume_at:
+            self._resume_at = None
+            said.append(Resume(self._next_id(), _NAME))
+        answer = self._answering.watch(picture_of(record))
+        if answer is not None:
+            said.append(answer)
+        if self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) and self._signs is not None:
+            self._look(record, self._signs)
+        while self._waiting and self._waiting[0].due_tick <= record.tick:
+            said.append(self._waiting.popleft().command)
+        return said
+
+    def _look(self, record: TickRecord, signs: Signs) -> None:
+        seen = signs.look(record)
+        if seen is None:
+            return
+        value, tick = seen
+        if record.tick < self._next_tick.get(value, 0):
+            return
+        command = (
+            self._reward(value, tick, record) if self.phase is Phase.REINFORCEMENT else self._appraise(value, tick)
+        )
+        if command is not None:
+            self._next_tick[value] = record.tick + self._habits.every[value]
+            self._waiting.append(_Said(record.tick + self._habits.reaction, command))
+
+    def _reward(self, value: int, tick: int, record: TickRecord) -> Command | None:
+        by_rla = record.decision.rla_id is not None or tick < record.tick
+        if value == 0 or not by_rla:
+            return None
+        if value < 0:
+            if self._habits.most_blame and self._blamed >= self._habits.most_blame:
+                return None
+            self._blamed += 1
+        return Reward(self._next_id(), _NAME, value, tick)
+
+    def _appraise(self, value: int, tick: int) -> Command | None:
+        name = self._appraisals.get(value)
+        return None if name is None else Appraise(self._next_id(), _NAME, name, tick)
+
+    def _next_id(self) -> str:
+        self._said += 1
+        return f"{self._session}-signal-{self._said}"
