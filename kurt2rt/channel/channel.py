@@ -145,6 +145,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
 def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:
     """What robot this is, for a page that has never seen one."""
     robot, sensors = runtime.robot, runtime.robot.infrared.sensors
+    critic = None if runtime.school.critic is None else runtime.school.critic.settings
     actions: Sequence[str] = list(runtime.level.repertoire)
     return {
         "v": VERSION,
@@ -155,6 +156,8 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "period_s": robot.can.cycle_s,
         "actions": actions,
         "behaviours": list(runtime.wanted.behaviours),
+        "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],
+        "trusted_from": 1.0 if critic is None else critic.agreement.bound,
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,

@@ -2,6 +2,7 @@
 
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    AppraiseRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -17,6 +18,7 @@ from kurt2rt.channel.requests import (
     UndoRequest,
 )
 from kurt2rt.teaching.commands import (
+    Appraise,
     BeginSession,
     Command,
     Correct,
@@ -46,6 +48,8 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Correct(command_id, device, action, tick)
         case RewardRequest(value=value, decision_tick=tick):
             return Reward(command_id, device, value, tick)
+        case AppraiseRequest(appraisal=appraisal, decision_tick=tick):
+            return Appraise(command_id, device, appraisal, tick)
         case ReplaceRequest(rla_id=rla_id, action=action):
             return ReplaceAction(command_id, device, rla_id, action)
         case DeleteRequest(rla_id=rla_id):

@@ -110,7 +110,7 @@ class AnswerRequest(CommandRequest):
     path: ClassVar[str] = "/answer"
     action: _Name
     decision_tick: _TickOrNone
-    """The situation of which tick; None: the present one. So it is with the next two."""
+    """The situation of which tick; None: the present one. So it is with the next three."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +128,16 @@ class RewardRequest(CommandRequest):
 
     path: ClassVar[str] = "/reward"
     value: Annotated[int, OneOf((1, -1))]
+    decision_tick: _TickOrNone
+
+
+@dataclass(frozen=True, slots=True)
+class AppraiseRequest(CommandRequest):
+    """Teach the critic what a situation was worth (phase 4)."""
+
+    path: ClassVar[str] = "/appraise"
+    appraisal: _Name
+    """A name of the critic's repertoire."""
     decision_tick: _TickOrNone
 
 
@@ -263,6 +273,7 @@ REQUESTS: tuple[type[Request], ...] = (
     AnswerRequest,
     CorrectRequest,
     RewardRequest,
+    AppraiseRequest,
     ReplaceRequest,
     DeleteRequest,
     UndoRequest,

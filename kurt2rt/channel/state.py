@@ -78,3 +78,15 @@ class State:
     place: SimulatedPlace | None
     behaviour: str = ""
     """The taught behaviour that is wanted; empty where the task has only one."""
+    value: float | None = None
+    """V of the RLA that drives: what follows it, as rewards have taught; None while none drives or nothing learns."""
+    opinion: int | None = None
+    """What the critic thinks of this situation: -1, 0 or +1; None where it has no opinion."""
+    opinion_of: int | None = None
+    """The appraisal RLA that thinks so."""
+    agreement: float | None = None
+    """Share of the teacher's latest signals that the critic had thought, too; None while too few were heard."""
+    trusted: bool = False
+    """Whether the critic agrees well enough to act in phase 5."""
+    signals_missing: tuple[int, int] = (0, 0)
+    """How many bad and how many good signals the teacher still has to give before agreement is known."""

@@ -53,6 +53,8 @@ class Telling:
         if decision.asking and match is not None:
             question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
         nearest = None if match is None else match.rla
+        opinion, agreement = record.opinion, school.agreement
+        of = None if opinion is None or not opinion.known else opinion.rla
         return State(
             boot=self._boot,
             tick=record.tick,
@@ -86,7 +88,19 @@ class Telling:
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
             behaviour=record.behaviour,
+            opinion=None if opinion is None else opinion.said,
+            opinion_of=None if of is None else of.rla_id,
+            agreement=None if agreement is None else agreement.share,
+            trusted=agreement is not None and agreement.trusted,
+            signals_missing=self._signals_missing(),
         )
+
+    def _signals_missing(self) -> tuple[int, int]:
+        critic, agreement = self._runtime.school.critic, self._runtime.school.agreement
+        if critic is None or agreement is None:
+            return 0, 0
+        least = critic.settings.agreement.least
+        return max(0, least - agreement.heard_of(-1)), max(0, least - agreement.heard_of(1))
 
 
 def _latched(record: TickRecord) -> str:

@@ -10,6 +10,7 @@ from kurt2rt.channel.schema import (
     Flag,
     ManyOf,
     Octets,
+    OneOf,
     OrNone,
     Real,
     Row,
@@ -119,6 +120,12 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("lp", "late_p99_ms", _ANY_REAL),
     ("ms", "missed_ticks", _NUMBER),
     ("w", "behaviour", _NAME),
+    ("v", "value", OrNone(_FINITE)),
+    ("op", "opinion", OrNone(OneOf((-1, 0, 1)))),
+    ("on", "opinion_of", OrNone(_NUMBER)),
+    ("ag", "agreement", OrNone(Real(1.0))),
+    ("tru", "trusted", Flag()),
+    ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
 )
 """Key on the wire, field of State, check."""
 

@@ -7,74 +7,49 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
             await robot.answer("forward", of=state.tick)
 """
 
-import secrets
 import time
 from collections.abc import AsyncIterator, Callable
-from contextlib import AsyncExitStack, asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Self
 
 import anyio
-import anyio.abc
-import anyio.lowlevel
-import anyio.to_thread
 
-from kurt2rt.channel.credentials import PORT, Device, read_device
 from kurt2rt.channel.requests import (
-    COMMAND_ID_BYTES,
-    AnswerRequest,
     BehaviourRequest,
-    CorrectRequest,
-    DeleteRequest,
     ExportRequest,
     HelloRequest,
-    LessonsRequest,
     MoveWallRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
     ReleaseRequest,
-    ReplaceRequest,
     ResumeRequest,
-    RewardRequest,
     SaveRequest,
     SessionRequest,
-    StopRequest,
     TakeRequest,
-    UndoRequest,
     WorldRequest,
 )
 from kurt2rt.channel.state import State
 from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.asking import Asking, facts_of
-from kurt2rt.teaching.hand import BEAT_S, Hand
+from kurt2rt.teaching.connection import Connection, open_connection
+from kurt2rt.teaching.hand import Hand
 from kurt2rt.teaching.hello import Hello, hello_of
-from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
+from kurt2rt.teaching.lessons import Lessons
 from kurt2rt.teaching.link import Link
-from kurt2rt.teaching.observing import observe
-from kurt2rt.teaching.oscore_requests import OscoreRequests, open_requests
 from kurt2rt.teaching.pictures import Pictures
 from kurt2rt.teaching.stopping import Stopping
 from kurt2rt.teaching.wheel import Wheel
 from kurt2rt.teaching.world import World, world_of
 
 ANSWER_WITHIN_S = 3.5
-_STOP_WITHIN_S = 0.5
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 
 
-class _Parts(NamedTuple):
-    """What an open client consists of."""
-
-    requests: OscoreRequests
-    asking: Asking
-    stopping: Stopping
-    hand: Hand
-
-
-class TeacherClient:
+class TeacherClient(Lessons):
     """An async context manager: inside it pictures come, and while this device is in charge the robot is told that its
     teacher is there.
 
@@ -105,13 +80,16 @@ class TeacherClient:
         self._patience_s = patience_s
         self._now = now
         self._pictures = Pictures(now)
-        self._parts: _Parts | None = None
+        self._connection: Connection | None = None
         self._stack = AsyncExitStack()
         self._period_s: float | None = None
 
     async def __aenter__(self) -> Self:
         """Open the pairing and begin to observe. The robot need not be there yet. Raises CredentialsError."""
-        await self._stack.enter_async_context(self._opened())
+        connection = await self._stack.enter_async_context(
+            open_connection(self._folder, self._host, self._port, self._pictures, self._patience_s, self._now)
+        )
+        self._connection, self.name = connection, connection.name
         return self
 
     async def __aexit__(
@@ -158,41 +136,11 @@ class TeacherClient:
         self._pictures.hear(hello.boot, hello.tick)
         return hello
 
-    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
-        """The newest lessons, up to 20, newest first."""
-        return await self._asking.told(LessonsRequest(count), lambda response: lesson_lines_of(facts_of(response)))
-
     async def world(self) -> World | None:
         """The simulated world; None where the robot is a real one."""
         return await self._asking.told(
             WorldRequest(), lambda response: None if response.code.startswith("4.04") else world_of(facts_of(response))
         )
-
-    # Teaching. `of` is the tick of the picture that is meant; None: the present decision.
-
-    async def answer(self, action: str, *, of: int | None = None) -> Answer:
-        """Answer a situation: a new RLA (phase 1)."""
-        return await self._asking.command(AnswerRequest, action=action, decision_tick=of)
-
-    async def correct(self, action: str, *, of: int | None = None) -> Answer:
-        """Another action is right (phase 2)."""
-        return await self._asking.command(CorrectRequest, action=action, decision_tick=of)
-
-    async def reward(self, value: int, *, of: int | None = None) -> Answer:
-        """Praise (+1) or blame (-1)."""
-        return await self._asking.command(RewardRequest, value=value, decision_tick=of)
-
-    async def replace(self, rla: int, action: str) -> Answer:
-        """Give one RLA another action."""
-        return await self._asking.command(ReplaceRequest, rla_id=rla, action=action)
-
-    async def delete(self, rla: int) -> Answer:
-        """Delete one RLA."""
-        return await self._asking.command(DeleteRequest, rla_id=rla)
-
-    async def undo(self, lesson: str | None = None) -> Answer:
-        """Take a lesson back by its command id; None: the last one that still stands."""
-        return await self._asking.command(UndoRequest, lesson=lesson)
 
     # Organising
 
@@ -307,7 +255,7 @@ class TeacherClient:
 
         The press is over before this waits for anything, and when nobody answers: the robot lets go by itself.
         """
-        return await self._release(self._hand.hold)
+        return await self._open.release(self._hand.hold)
 
     @asynccontextmanager
     async def driving(self) -> AsyncIterator[Wheel]:
@@ -317,9 +265,9 @@ class TeacherClient:
             yield wheel
         except BaseException:
             with anyio.CancelScope(shield=True):
-                await self._release_anyhow(wheel.hold)
+                await self._open.release_anyhow(wheel.hold)
             raise
-        await self._release(wheel.hold)
+        await self._open.release(wheel.hold)
 
     # The simulated world
 
@@ -334,73 +282,19 @@ class TeacherClient:
     # How it works
 
     @property
-    def _requests(self) -> OscoreRequests:
-        return self._opened_parts().requests
-
-    @property
     def _asking(self) -> Asking:
-        return self._opened_parts().asking
+        return self._open.asking
 
     @property
     def _stopping(self) -> Stopping:
-        return self._opened_parts().stopping
+        return self._open.stopping
 
     @property
     def _hand(self) -> Hand:
-        return self._opened_parts().hand
+        return self._open.hand
 
-    def _opened_parts(self) -> _Parts:
-        if self._parts is None:
+    @property
+    def _open(self) -> Connection:
+        if self._connection is None:
             raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
-        return self._parts
-
-    @asynccontextmanager
-    async def _opened(self) -> AsyncIterator[None]:
-        device = await anyio.to_thread.run_sync(_read_device, self._folder)
-        self.name = device.name
-        requests = await open_requests(self._folder, self._host or device.host, self._port or device.port)
-        asking = Asking(requests, self._pictures, self._patience_s)
-        try:
-            async with anyio.create_task_group() as tasks:
-                stopping = Stopping(asking, tasks)
-                hand = Hand(self.name, self._pictures, requests, now=self._now, on_begin=stopping.wish_anew)
-                self._parts = _Parts(requests, asking, stopping, hand)
-                tasks.start_soon(observe, requests, self._pictures, self._now)
-                tasks.start_soon(_beat, hand)
-                try:
-                    yield
-                finally:
-                    with anyio.CancelScope(shield=True):
-                        await self._release_anyhow(hand.hold)
-                    tasks.cancel_scope.cancel()
-                    hand.forget()
-        finally:
-            self._pictures.close()
-            with anyio.CancelScope(shield=True):
-                await requests.close()
-
-    async def _release(self, hold: int | None) -> Answer | None:
-        if hold is None or hold != self._hand.hold:
-            return None
-        self._hand.end()
-        return await self._asking.ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), hold))
-
-    async def _release_anyhow(self, hold: int | None) -> None:
-        # The robot lets go by itself when it hears nothing, so a stop that nobody answers is no error here.
-        with anyio.move_on_after(_STOP_WITHIN_S), suppress(NoAnswerError):
-            await self._release(hold)
-
-
-async def _beat(hand: Hand) -> None:
-    due_s = anyio.current_time()
-    while True:
-        hand.beat()
-        # No burst after a pause: what was missed is missed.
-        due_s = max(due_s + BEAT_S, anyio.current_time())
-        await anyio.sleep_until(due_s)
-
-
-def _read_device(folder: Path) -> Device:
-    if not (folder / "device.json").exists():
-        return Device(folder, folder.name, "127.0.0.1", PORT, "")
-    return read_device(folder)
+        return self._connection

@@ -13,7 +13,16 @@ _VERSION = Whole(1, 1)
 _NUMBER = Whole(0, LARGEST_NUMBER)
 _BOOT = Octets(BOOT_BYTES)
 _SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))), most=64)
+_APPRAISALS = ManyOf(Row((_NAME, Whole(-1, 1))), most=16)
 _OUTLINE = Row((_METRES, _METRES))
+
+
+class AppraisalName(NamedTuple):
+    """What a teacher can call a situation when he teaches the critic, and the signal that it stands for."""
+
+    name: str
+    value: int
+    """-1, 0 or +1."""
 
 
 class SensorPlace(NamedTuple):
@@ -51,6 +60,10 @@ class Hello:
     """Names of the training phases; the first one's number is 1."""
     behaviours: tuple[str, ...] = ("",)
     """What the task teaches, each with RLAs of its own; a single one may have no name."""
+    appraisals: tuple[AppraisalName, ...] = ()
+    """The critic's repertoire; empty where the robot has no critic."""
+    trusted_from: float = 1.0
+    """Agreement from which on the critic is trusted."""
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
@@ -74,6 +87,8 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             simulated=Flag()("simulated", body["simulated"]),
             phases=ManyOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
             behaviours=ManyOf(_NAME, most=64)("behaviours", body["behaviours"]),
+            appraisals=tuple(AppraisalName(*each) for each in _APPRAISALS("appraisals", body["appraisals"])),
+            trusted_from=Real(1.0)("trusted_from", body["trusted_from"]),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error

@@ -129,6 +129,7 @@ class Mischief:
             "left_m_s": 0.2,
             "right_m_s": 0.2,
             "action": "forward",
+            "appraisal": "bad",
             "behaviour": "turn_left",
             "ticks": 50,
             "decision_tick": None,

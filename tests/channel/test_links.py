@@ -70,7 +70,7 @@ class NotingTeacher(TeacherClient):
         self._at_work = at_work
 
     def note_what_is_sent(self) -> None:
-        requests, asking = self._requests, self._asking
+        requests, asking = self._open.requests, self._asking
         post, ask = requests.post, asking.ask
 
         async def noted_ask(request: Request, patience_s: float | None = None) -> Answer:
@@ -101,7 +101,7 @@ class NotingTeacher(TeacherClient):
 
     def die(self) -> None:
         """As if its program was killed: nothing leaves it any more, no goodbye either."""
-        self._requests._robot = None
+        self._open.requests._robot = None
 
 
 @dataclass

@@ -8,6 +8,7 @@ from kurt2rt.channel.reception import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    AppraiseRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -49,6 +50,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     AnswerRequest: ("forward", None),
     CorrectRequest: ("forward", None),
     RewardRequest: (1, None),
+    AppraiseRequest: ("bad", None),
     ReplaceRequest: (1, "forward"),
     DeleteRequest: (1,),
     UndoRequest: (None,),

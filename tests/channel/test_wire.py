@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    AppraiseRequest,
     DriveRequest,
     LessonsRequest,
     MoveWallRequest,
@@ -100,6 +101,13 @@ STATES = st.builds(
     late_p99_ms=REALS,
     missed_ticks=NUMBERS,
     place=st.none() | st.builds(SimulatedPlace, FINITE, FINITE, FINITE, FINITE, NUMBERS, NUMBERS),
+    behaviour=NAMES,
+    value=st.none() | FINITE,
+    opinion=st.sampled_from((None, -1, 0, 1)),
+    opinion_of=st.none() | NUMBERS,
+    agreement=st.none() | st.floats(0.0, 1.0),
+    trusted=st.booleans(),
+    signals_missing=st.tuples(NUMBERS, NUMBERS),
 )
 
 ANYTHING = st.recursive(
@@ -200,6 +208,8 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
         ("/world/move", [BOOT, ID, 0, "north", 0.0, -math.inf], "dy_m has to be a number from -100 to 100 m"),
         ("/reward", [BOOT, ID, 0, 0, None], "value has to be one of 1, -1"),
         ("/reward", [BOOT, ID, 0, True, None], "value has to be one of 1, -1"),
+        ("/appraise", [BOOT, ID, 0, "", None], "appraisal has to be text of 1 to 64 printable characters"),
+        ("/appraise", [BOOT, ID, 0, -1, None], "appraisal has to be text of 1 to 64 printable characters"),
         ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
         ("/answer", [BOOT, ID, 0, "", None], "action has to be text of 1 to 64 printable characters"),
         ("/answer", [BOOT, ID, 0, "a\nb", None], "action has to be text of 1 to 64 printable characters"),
@@ -220,6 +230,7 @@ def test_nothing_is_sent_that_the_robot_cannot_take() -> None:
 def test_the_bodies_are_the_lists_of_the_contract() -> None:
     assert cbor2.loads(encode_request(DriveRequest(BOOT, 90, 2, 0.25, -0.25))) == [BOOT, 90, 2, 0.25, -0.25]
     assert cbor2.loads(encode_request(AnswerRequest(BOOT, ID, 90, "forward", 88))) == [BOOT, ID, 90, "forward", 88]
+    assert cbor2.loads(encode_request(AppraiseRequest(BOOT, ID, 90, "bad", 88))) == [BOOT, ID, 90, "bad", 88]
     assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
     assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]
     assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]

@@ -20,6 +20,7 @@ from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    AppraiseRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -63,6 +64,8 @@ HELLO = {
     "period_s": 0.01,
     "actions": ["forward", "spin_left"],
     "behaviours": ["straight_on", "turn_left"],
+    "appraisals": [["bad", -1], ["neutral", 0], ["good", 1]],
+    "trusted_from": 0.8,
     "sensors": [["front", "F", 0.2, 0.0, 0.0]],
     "outline": [0.434, 0.33],
     "max_m_s": 0.6,
@@ -205,6 +208,8 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
     assert (hello.robot, hello.actions, hello.outline) == ("kurt2-indoor", ("forward", "spin_left"), (0.434, 0.33))
     assert hello.sensors[0].label == "F"
     assert hello.phases == ("supervised", "corrections")
+    assert hello.appraisals == (("bad", -1), ("neutral", 0), ("good", 1))
+    assert hello.trusted_from == 0.8
     assert robot.orders() == [HelloRequest()]
 
 
@@ -255,6 +260,8 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.answer("forward", of=88)
     await client.correct("spin_right")
     await client.reward(-1, of=80)
+    await client.appraise("bad", of=81)
+    await client.appraise("neutral")
     await client.replace(7, "forward")
     await client.delete(7)
     await client.undo()
@@ -276,6 +283,8 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (AnswerRequest, {"action": "forward", "decision_tick": 88}),
         (CorrectRequest, {"action": "spin_right", "decision_tick": None}),
         (RewardRequest, {"value": -1, "decision_tick": 80}),
+        (AppraiseRequest, {"appraisal": "bad", "decision_tick": 81}),
+        (AppraiseRequest, {"appraisal": "neutral", "decision_tick": None}),
         (ReplaceRequest, {"rla_id": 7, "action": "forward"}),
         (DeleteRequest, {"rla_id": 7}),
         (UndoRequest, {"lesson": None}),
@@ -393,7 +402,7 @@ async def test_without_an_answer_it_is_not_known_whether_it_counted_and_nothing_
         await link.until(lambda: link.up.lost - lost_before >= 100)
         clock.ahead_s += 2.0
         # What is left is the observation, or the one that is being registered in its place.
-        await eventually(lambda: client._requests.open_exchanges <= 1)
+        await eventually(lambda: client._open.requests.open_exchanges <= 1)
         await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
         link.mend()
         assert (await client.reward(1)).accepted
@@ -624,7 +633,7 @@ async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
         lost = link.up.lost
         await link.until(lambda: link.up.lost > lost + 200)
         assert client.stop_pending
-        assert client._requests.open_exchanges <= 35 + 2  # and two of the observation
+        assert client._open.requests.open_exchanges <= 35 + 2  # and two of the observation
 
 
 @pytest.mark.parametrize("wish", ["resume", "run", "press"])
@@ -931,7 +940,7 @@ async def test_a_forged_answer_is_none_and_hurts_nobody(tmp_path: Path, option: 
     ):
         with pytest.raises(NoAnswerError):
             await client.stop()
-        assert client._requests.damaged >= 1
+        assert client._open.requests.damaged >= 1
 
 
 async def test_forged_resets_and_errors_only_cost_time(pairing: Pairing) -> None:

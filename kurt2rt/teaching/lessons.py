@@ -1,0 +1,58 @@
+"""What a teacher's device tells the robot of what is right: answers, corrections, signals, and lessons taken back.
+
+`of` is the tick of the picture that is meant; None: the present decision.
+"""
+
+from kurt2rt.channel.requests import (
+    AnswerRequest,
+    AppraiseRequest,
+    CorrectRequest,
+    DeleteRequest,
+    LessonsRequest,
+    ReplaceRequest,
+    RewardRequest,
+    UndoRequest,
+)
+from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.asking import Asking, facts_of
+from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
+
+
+class Lessons:
+    """The lessons of a `TeacherClient`. Each raises NoAnswerError when nobody answers."""
+
+    @property
+    def _asking(self) -> Asking:
+        raise NotImplementedError  # whoever gives lessons has a robot to ask
+
+    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        """The newest lessons, up to 20, newest first."""
+        return await self._asking.told(LessonsRequest(count), lambda response: lesson_lines_of(facts_of(response)))
+
+    async def answer(self, action: str, *, of: int | None = None) -> Answer:
+        """Answer a situation: a new RLA (phase 1)."""
+        return await self._asking.command(AnswerRequest, action=action, decision_tick=of)
+
+    async def correct(self, action: str, *, of: int | None = None) -> Answer:
+        """Another action is right (phase 2)."""
+        return await self._asking.command(CorrectRequest, action=action, decision_tick=of)
+
+    async def reward(self, value: int, *, of: int | None = None) -> Answer:
+        """Praise (+1) or blame (-1) what the robot did (phase 3)."""
+        return await self._asking.command(RewardRequest, value=value, decision_tick=of)
+
+    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        """Teach the critic what a situation was worth: a name of `Hello.appraisals` (phase 4)."""
+        return await self._asking.command(AppraiseRequest, appraisal=appraisal, decision_tick=of)
+
+    async def replace(self, rla: int, action: str) -> Answer:
+        """Give one RLA another action."""
+        return await self._asking.command(ReplaceRequest, rla_id=rla, action=action)
+
+    async def delete(self, rla: int) -> Answer:
+        """Delete one RLA."""
+        return await self._asking.command(DeleteRequest, rla_id=rla)
+
+    async def undo(self, lesson: str | None = None) -> Answer:
+        """Take a lesson back by its command id; None: the last one that still stands."""
+        return await self._asking.command(UndoRequest, lesson=lesson)
