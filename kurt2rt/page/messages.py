@@ -75,6 +75,7 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "answer": {"action": _NAME},
     "correct": {"action": _NAME},
     "reward": {"value": OneOf((1, -1))},
+    "appraise": {"appraisal": _NAME},
     # By name: "the last one" would mean another lesson by the time it arrives.
     "undo": {"lesson": Text(128, least=1)},
     "phase": {"phase": OneOf(tuple(each.value for each in Phase), Phase)},

@@ -29,6 +29,8 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.correct(given["action"], of=of)
         case "reward":
             return await robot.reward(given["value"], of=of)
+        case "appraise":
+            return await robot.appraise(given["appraisal"], of=of)
         case "undo":
             return await robot.undo(given["lesson"])
         case "phase":

@@ -88,6 +88,10 @@ class RobotLink(Protocol):
         """Praise (+1) or blame (-1)."""
         ...
 
+    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        """Teach the critic what the situation of a picture was worth."""
+        ...
+
     async def undo(self, lesson: str | None = None) -> Answer:
         """Take a lesson back; None: the last one that still stands."""
         ...

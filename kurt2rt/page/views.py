@@ -48,6 +48,12 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "late_p99_ms": _finite(state.late_p99_ms),
         "missed_ticks": state.missed_ticks,
         "behaviour": state.behaviour,
+        "value": state.value,
+        "opinion": state.opinion,
+        "opinion_of": state.opinion_of,
+        "agreement": state.agreement,
+        "trusted": state.trusted,
+        "signals_missing": state.signals_missing,
         "place": None if place is None else asdict(place),
         "link": {
             "age_ms": round(age_s * 1000),

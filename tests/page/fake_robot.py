@@ -89,6 +89,7 @@ class FakeRobot:
     state_age_s: float = math.inf
     state: State | None = None
     greeting: Hello = A_HELLO
+    newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
     _heard: anyio.Event = field(default_factory=anyio.Event)
@@ -131,7 +132,7 @@ class FakeRobot:
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         await self._answer("lessons", count)
-        return (A_LESSON,)
+        return self.newest_lessons
 
     async def world(self) -> World | None:
         await self._answer("world")
@@ -145,6 +146,9 @@ class FakeRobot:
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         return await self._answer("reward", value, of)
+
+    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        return await self._answer("appraise", appraisal, of)
 
     async def undo(self, lesson: str | None = None) -> Answer:
         return await self._answer("undo", lesson)

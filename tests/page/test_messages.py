@@ -38,6 +38,10 @@ from kurt2rt.rla.rla import Phase
             Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
         ),
         (
+            {"kind": "order", "number": 1, "name": "appraise", "arguments": {"appraisal": "bad"}, "picture": 4},
+            Order(1, "appraise", {"appraisal": "bad"}, 4),
+        ),
+        (
             {"kind": "order", "number": 1, "name": "pursue", "arguments": {"behaviour": "turn_left"}, "picture": 4},
             Order(1, "pursue", {"behaviour": "turn_left"}, 4),
         ),
@@ -86,6 +90,8 @@ def order(name: str, **arguments: object) -> str:
         order("answer", action="for\nward"),
         order("answer", action="forward", of=1),
         order("undo", lesson=None),
+        order("appraise", appraisal=""),
+        order("appraise", value=1),
         order("reward", value=0),
         order("reward", value=2),
         order("phase", phase=6),

@@ -1,12 +1,13 @@
 // The teacher's page: what comes from the robot is shown, what the teacher touches is sent.
 
 import { ActionPad, words } from "./actions.js";
+import { Critic, CRITIC } from "./critic.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
 import { drawRobot } from "./robot_view.js";
 import { Drive, stick } from "./stick.js";
-import { setText, Why } from "./why.js";
+import { setText, Why, WITHDRAWN } from "./why.js";
 import { WorldView } from "./world_view.js";
 
 const $ = (id) => document.getElementById(id);
@@ -25,6 +26,7 @@ const drive = new Drive(link);
 const why = new Why();
 const pad = new ActionPad($("actions"), teach);
 const lessons = new Lessons((lesson) => tell("undo", { lesson }));
+const critic = new Critic(appraise);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
 let hello = null;
@@ -33,7 +35,7 @@ let phaseNames = PHASES;
 
 // ---- Orders
 
-const TEACHES = ["answer", "correct", "reward", "undo"];
+const TEACHES = ["answer", "correct", "reward", "appraise", "undo"];
 let teaching = 0; // orders of these that are not answered yet
 let taught = 0; // number of the newest that was
 
@@ -66,9 +68,9 @@ function say(outcome, text) {
 
 async function teach(action) {
   if (!link.state) return;
-  // Beyond R there is no RLA to correct, whether it asks just now or stands for another reason.
-  const { nearest, distance, radius } = link.state;
-  const asks = nearest === null || distance === null || distance > radius;
+  // Beyond R there is no RLA to correct, nor where its action was withdrawn, whether the robot asks just now or not.
+  const { nearest, nearest_action: its, distance, radius } = link.state;
+  const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
   if (asking) {
     // The question on the screen is answered already: a second answer would be a second RLA beside the first.
     say("busy", `${words(action)} was not sent: wait for the picture after the last answer`);
@@ -130,7 +132,20 @@ async function undoLast() {
   else say("refused", "no lesson that stands is in the list; nothing was sent");
 }
 
-const reward = (value) => tell("reward", { value }, value > 0 ? "right" : "wrong");
+// In phase 4 the signals are the critic's lessons.
+function signal(value) {
+  if (link.state && critic.teaches(link.state)) {
+    const name = critic.nameOf(value);
+    if (name !== undefined) appraise(name);
+  } else if (value) {
+    tell("reward", { value }, value > 0 ? "right" : "wrong");
+  }
+}
+
+function appraise(appraisal) {
+  tell("appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
+}
+
 const go = () => tell("resume", {}, "go");
 
 async function stop() {
@@ -150,6 +165,7 @@ link.addEventListener("hello", ({ detail }) => {
   hello = detail;
   phaseNames = namesOf(hello.phases);
   pad.build(hello.actions);
+  critic.build(hello);
   world.greet(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
   setText($("keys-actions"), hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
@@ -207,6 +223,7 @@ function show() {
   showLink(state);
   why.show(state);
   pad.show(state);
+  critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
   setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);
   if (state.refused && drive.held) say("refused", state.refused);
@@ -391,8 +408,8 @@ $("stop").addEventListener("click", (event) => {
   if (event.detail === 0) stop(); // from a keyboard or a screen reader: no touch came before it
 });
 $("go").addEventListener("click", go);
-$("praise").addEventListener("click", () => reward(1));
-$("blame").addEventListener("click", () => reward(-1));
+$("praise").addEventListener("click", () => signal(1));
+$("blame").addEventListener("click", () => signal(-1));
 twice($("undo-last"), "sure?", undoLast, askUndo);
 
 stick($("stick"), $("knob"), drive);
@@ -454,7 +471,7 @@ keyboard({
   stop,
   go: () => !$("go").disabled && go(),
   act: (i) => inCharge() && pad.names[i] && teach(pad.names[i]),
-  reward: (value) => inCharge() && reward(value),
+  signal: (value) => inCharge() && signal(value),
   undo: () => inCharge() && $("undo-last").checkVisibility() && $("undo-last").click(),
   help,
   mayDrive: () => inCharge() && link.fresh,

@@ -7,7 +7,7 @@ const DIRECTIONS = {
 
 const hasFocus = () => document.activeElement !== null && document.activeElement !== document.body;
 
-export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive }) {
+export function keyboard({ drive, stop, go, act, signal, undo, help, mayDrive }) {
   const down = new Set();
 
   const steer = () => {
@@ -43,8 +43,9 @@ export function keyboard({ drive, stop, go, act, reward, undo, help, mayDrive })
     const does =
       event.code === "Space" ? stop
       : enter ? go
-      : event.key === "+" ? () => reward(1)
-      : event.key === "-" || event.key === "−" ? () => reward(-1)
+      : event.key === "+" ? () => signal(1)
+      : event.key === "-" || event.key === "−" ? () => signal(-1)
+      : event.key === "0" ? () => signal(0)
       : event.key === "?" ? help
       : event.key.toLowerCase() === "u" ? undo
       : digit ? () => act(Number(digit[1] ?? digit[2]) - 1)

@@ -43,6 +43,11 @@ export class Lessons {
     return this.#lessons?.find((lesson) => !lesson.undone);
   }
 
+  // The newest one of a teacher among those that are listed; undefined without one.
+  newestOf(teacher) {
+    return this.#lessons?.find((lesson) => lesson.teacher === teacher);
+  }
+
   show(lessons, after) {
     this.after = after;
     if (JSON.stringify(lessons) === JSON.stringify(this.#lessons)) return; // a first tap on Undo is not forgotten

@@ -4,6 +4,8 @@ import { words } from "./actions.js";
 import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
+export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
+const VALUES_FROM_PHASE = 3;
 const GAUGE_SHARE = 0.7; // where R stands on the gauge
 
 export function when(stamp) {
@@ -34,6 +36,9 @@ export function sentence(state) {
         ? `${state.teacher ?? "A teacher"} lets it run ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "unknown":
+      if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
+        return `RLA ${state.nearest}${of(state)} went wrong too often, teach me anew`;
+      }
       return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
     case "stopped":
       return `Stands: ${state.stopped_because || "stopped"}. GO lets it drive on`;
@@ -68,8 +73,10 @@ export class Why {
     this.#gauge.classList.toggle("beyond", share > 1);
     this.#gauge.classList.toggle("none", !known);
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
-    setText(this.#nearest, known ? `nearest: RLA ${state.nearest}, ${words(state.nearest_action ?? "–")}` : "touch the action that is right here");
-    setText(this.#text, known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}` : "no RLA yet");
+    const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
+    setText(this.#nearest, known ? `nearest: RLA ${state.nearest}, ${its}` : "touch the action that is right here");
+    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · V ${state.value.toFixed(2)}`;
+    setText(this.#text, known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet");
     this.#trace.see(state.tick, known ? share : null);
     if (asks) this.#show(state.question);
     else this.#trace.draw();

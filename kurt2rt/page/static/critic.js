@@ -1,0 +1,101 @@
+// The inner critic: buttons that teach it, what it thinks now, how well it agrees with the teacher, what it changed.
+
+import { words } from "./actions.js";
+import { setText, when } from "./why.js";
+
+export const CRITIC = "critic"; // its name as a teacher
+const TAUGHT_IN = 4;
+const SIGNS = { [-1]: "−", 0: "0", 1: "+" };
+const CALM_MS = 400; // what it thinks may change with every picture; nobody can read that
+
+const $ = (id) => document.getElementById(id);
+
+function missing([bad, good]) {
+  const parts = [bad && `${bad} bad`, good && `${good} good`].filter(Boolean);
+  return parts.join(" and ");
+}
+
+// How far it may be believed, in words.
+export function agreement(state, trustedFrom) {
+  if (state.agreement === null) {
+    return `agreement: after ${missing(state.signals_missing) || "a few"} more signals of yours`;
+  }
+  const share = state.agreement.toFixed(2);
+  return `agrees with you ${share}${state.trusted ? "" : `, trusted from ${trustedFrom.toFixed(2)}`}`;
+}
+
+export function lastChange(lesson) {
+  if (!lesson) return "has changed nothing lately";
+  return `${lesson.undone ? "undone" : "changed last"}: ${[lesson.text, when(lesson.stamp)].filter(Boolean).join(", ")}`;
+}
+
+export class Critic {
+  #choose;
+  #names = []; // [{ name, value }], the worst first
+  #trustedFrom = 1;
+  #buttons = new Map();
+  #thought = { text: "", sinceMs: -Infinity };
+
+  constructor(choose) {
+    this.#choose = choose;
+  }
+
+  build({ appraisals, trusted_from: trustedFrom }) {
+    this.#trustedFrom = trustedFrom;
+    this.#names = appraisals.map(([name, value]) => ({ name, value })).sort((one, other) => one.value - other.value);
+    this.#buttons.clear();
+    $("appraisals").replaceChildren(...this.#names.map((each) => this.#button(each)));
+    $("agreement-mark").style.left = `${trustedFrom * 100}%`;
+    $("key-neutral").hidden = $("key-neutral").previousElementSibling.hidden = !this.#names.length;
+  }
+
+  #button({ name, value }) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.dataset.appraisal = name;
+    button.setAttribute("aria-label", `Teach the critic: this was ${words(name)}`);
+    const sign = document.createElement("b");
+    sign.textContent = SIGNS[value];
+    const label = document.createElement("small");
+    label.textContent = words(name);
+    button.append(sign, label);
+    button.addEventListener("click", () => this.#choose(name));
+    this.#buttons.set(name, button);
+    return button;
+  }
+
+  // Whether the buttons are for the critic.
+  teaches(state) {
+    return this.#names.length > 0 && state.phase === TAUGHT_IN;
+  }
+
+  nameOf(value) {
+    return this.#names.find((each) => each.value === value)?.name;
+  }
+
+  show(state, lesson) {
+    const seen = this.#names.length > 0 && state.phase >= TAUGHT_IN;
+    $("critic").hidden = !seen;
+    $("rewards").classList.toggle("appraises", this.teaches(state));
+    if (!seen) return;
+    this.#think(state);
+    const known = state.agreement !== null;
+    $("trust").className = !known ? "unknown" : state.trusted ? "trusted" : "low";
+    setText($("trusted"), state.trusted ? "trusted" : state.phase > TAUGHT_IN ? "not trusted: only listens" : "not trusted yet");
+    $("agreement-fill").style.width = `${(state.agreement ?? 0) * 100}%`;
+    setText($("agreement-text"), agreement(state, this.#trustedFrom));
+    $("changed").hidden = state.phase === TAUGHT_IN;
+    setText($("changed"), lastChange(lesson));
+  }
+
+  #think({ opinion, opinion_of: rla }) {
+    const name = this.nameOf(opinion);
+    const text = `critic: ${name === undefined ? "does not know this" : `thinks ${words(name)}`}`;
+    const nowMs = performance.now();
+    if (text === this.#thought.text || nowMs - this.#thought.sinceMs < CALM_MS) return;
+    this.#thought = { text, sinceMs: nowMs };
+    setText($("opinion"), text);
+    $("opinion").title = rla === null ? "" : `appraisal RLA ${rla}`;
+    for (const [each, button] of this.#buttons) button.classList.toggle("current", each === name);
+  }
+}

@@ -1,0 +1,129 @@
+"""The inner critic on the page: a teacher teaches it in phase 4, and watches it in phase 5."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+import pytest
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+
+from kurt2rt.teaching.hello import AppraisalName
+from kurt2rt.teaching.lesson_line import LessonLine
+from tests.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.test_browser import assert_handy, show_on
+from tests.page.test_served_page import TOKEN, served
+
+ACTIONS = (
+    *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
+    *("quarter_turn_left", "quarter_turn_right", "along_left_wall", "along_right_wall"),
+)
+APPRAISALS = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
+A_CHANGE = LessonLine(
+    "c-1", "RLA 17 corrected: spin_left instead of back", "critic", 5, 9, "2026-11-21T12:04:00Z", False
+)
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+
+
+class Lesson:
+    """A robot with a critic, and the page that its teacher has open."""
+
+    def __init__(self, phone: Phone, portal: BlockingPortal, robot: FakeRobot) -> None:
+        self.phone = phone
+        self.robot = robot
+        self._portal = portal
+
+    def show(self, **changes: object) -> None:
+        """From the next picture on."""
+        self._portal.call(partial(self.robot.show, **changes))
+
+    def reads(self, selector: str, text: str) -> None:
+        """Wait until it stands there."""
+        self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
+
+    def told(self, name: str) -> list[object]:
+        """What the robot was told of one kind."""
+        return [each[1] for each in self.robot.told if each[0] == name]
+
+    def look(self, name: str) -> None:
+        """It can be read and touched on each screen."""
+        for size in SIZES:
+            self.phone.turn(size, touch=size != LAPTOP)
+            self.phone.show(f"11-{name}-{size[0]}x{size[1]}")
+            assert_handy(self.phone, size, "teach")
+        self.phone.turn(PORTRAIT)
+
+
+@pytest.fixture
+def lesson(a_phone: Phone) -> Iterator[Lesson]:
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        page.robot.greeting = replace(A_HELLO, actions=ACTIONS, appraisals=APPRAISALS, trusted_from=0.8)
+        page.robot.newest_lessons = (A_LESSON,)
+        lesson = Lesson(a_phone, portal, page.robot)
+        lesson.show(teacher="local", place=A_PLACE, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
+        pictures = portal.start_task_soon(show_on, page.robot)
+        try:
+            a_phone.turn(PORTRAIT)
+            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
+            lesson.reads("#sentence", "RLA 1 does forward")
+            yield lesson
+        finally:
+            pictures.cancel()
+
+
+def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it_agrees(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.reads("#opinion", "critic: thinks good")
+    assert phone.text("#trusted") == "not trusted yet"
+    assert phone.text("#agreement-text") == "agreement: after 6 bad and 2 good more signals of yours"
+    shown = [each.text for each in phone.driver.find_elements("css selector", "#rewards button") if each.is_displayed()]
+    assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
+    phone.touch("[data-appraisal=bad]")
+    lesson.reads("#said", "appraise done")
+    phone.key("keyDown", "0")
+    phone.wait(lambda: lesson.told("appraise") == ["bad", "neutral"], "a key teaches it, too")
+    assert lesson.told("reward") == []
+
+    lesson.show(opinion=None, opinion_of=None, agreement=0.61, signals_missing=(0, 0))
+    lesson.reads("#opinion", "critic: does not know this")
+    lesson.reads("#agreement-text", "agrees with you 0.61, trusted from 0.80")
+    lesson.show(opinion=-1, opinion_of=41, agreement=0.87, trusted=True)
+    lesson.reads("#agreement-text", "agrees with you 0.87")
+    assert phone.text("#agreement-text") == "agrees with you 0.87"
+    assert phone.text("#trusted") == "trusted"
+    lesson.reads("#opinion", "critic: thinks bad")
+    assert not phone.find("#changed").is_displayed()
+    lesson.look("phase-4")
+
+    lesson.show(phase=3, value=0.52)
+    phone.wait(lambda: not phone.find("#critic").is_displayed(), "before phase 4 nobody sees it")
+    lesson.reads("#gauge-text", "V 0.52")
+    phone.touch("#blame")
+    phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
+
+
+def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.show(phase=5, agreement=0.87, trusted=True, signals_missing=(0, 0), value=0.52)
+    lesson.reads("#changed", "has changed nothing lately")
+    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE)
+    lesson.show(lessons=2)
+    lesson.reads("#changed", "changed last: RLA 17 corrected: spin_left instead of back, 21 Nov")
+    assert phone.text("#trusted") == "trusted"
+    phone.touch("#praise")
+    phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
+    lesson.look("phase-5")
+    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
+    lesson.show(agreement=0.7, trusted=False, lessons=1)
+    lesson.reads("#trusted", "not trusted: only listens")
+    lesson.reads("#changed", "undone: RLA 17")
+
+
+def test_an_action_that_was_withdrawn_is_answered_and_not_corrected(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.show(cause="unknown", action=None, rla=None, nearest=17, nearest_action="ask", left_m_s=0.0, right_m_s=0.0)
+    lesson.reads("#sentence", "RLA 17 went wrong too often, teach me anew")
+    assert phone.text("#nearest") == "nearest: RLA 17, its action was withdrawn"
+    phone.touch("[data-action=forward]")
+    phone.wait(lambda: lesson.told("answer") == ["forward"], "an answer")
+    assert lesson.told("correct") == []
