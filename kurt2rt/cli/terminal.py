@@ -3,7 +3,7 @@
 import asyncio
 import math
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from typing import NamedTuple, TextIO
 
 import anyio
@@ -12,15 +12,25 @@ from anyio.streams.memory import MemoryObjectSendStream
 
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError
+from kurt2rt.cli.terminal_words import (
+    asks_in,
+    change_in,
+    help_lines,
+    name_lines,
+    opinion_in,
+    question_in,
+    sentence_of,
+    trust_in,
+)
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import Phase, rla_title
+from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.hello import Hello
-from kurt2rt.teaching.question import FeatureDifference, Question
 
 _STEP_S = 0.5
 _LESSONS_SHOWN = 10
+_LESSONS_LOOKED_AT = 20
 _SAYS_AT_MOST_EVERY_S = 1.0
 _ASK_AGAIN_S = 0.5
 _LOOK_EVERY_S = 0.5
@@ -28,23 +38,6 @@ _SILENT_AFTER_S = 1.5
 _MOST_DIGITS = 15
 
 Say = Callable[[str], None]
-
-_HELP = """\
-an action                answers the robot's question, or corrects what it does
-(just Enter), stop       the robot stands until you type go; at once, whatever waits for its answer
-go                       the robot drives where it knows the way
-step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
-+, -                     reward or punish what the robot does
-undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
-replace N ACTION, delete N     change or end RLA N
-phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
-begin [NAME], end        a session of teaching, with its clock
-save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
-take, release            be the teacher, or let another one be it
-help, quit"""
-
-
-_PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
 
 
 class _Line(NamedTuple):
@@ -68,8 +61,7 @@ class TerminalTeacher:
         self._lines = lines
         self._say = say
         self._where = where
-        self._actions: tuple[str, ...] = ()
-        self._behaviours: tuple[str, ...] = ()
+        self._hello: Hello | None = None
         self._tried = anyio.Event()
         self._met = False
         self._last_stop = anyio.Event()
@@ -119,10 +111,9 @@ class TerminalTeacher:
 
     async def _accompany(self, tasks: TaskGroup) -> None:
         """Meet the robot when it comes, and again whenever it was started anew."""
-        hello = await self._meet()
-        self._actions, self._behaviours = hello.actions, hello.behaviours
+        hello = self._hello = await self._meet()
         self._say(f"{hello.robot}, task {hello.task}; help shows what can be typed; Enter alone stops the robot")
-        self._say_names()
+        self._say_all(name_lines(hello))
         await self._anyhow(self._tell(self._robot.take()))
         self._met = True
         self._tried.set()
@@ -149,8 +140,7 @@ class TerminalTeacher:
                 await anyio.sleep(_ASK_AGAIN_S)
 
     async def _meet_again(self) -> None:
-        hello = await self._robot.hello()
-        self._actions, self._behaviours = hello.actions, hello.behaviours
+        self._hello = await self._robot.hello()
         state = self._robot.state
         teacher = None if state is None else state.teacher
         if teacher is None:
@@ -188,7 +178,11 @@ class TerminalTeacher:
         told = ""
         quiet_until = 0.0
         asking = False
+        trusted: bool | None = None
         async for state in self._robot.states():
+            if state.phase >= Phase.CRITIC and state.trusted != trusted:
+                trusted = state.trusted
+                self._say(f"critic: {trust_in(state)}")
             if state.cause == Cause.UNKNOWN:
                 if not asking:
                     self._say(str(question_in(state)))
@@ -203,7 +197,8 @@ class TerminalTeacher:
                 quiet_until = anyio.current_time() + _SAYS_AT_MOST_EVERY_S
 
     async def _obey(self, line: _Line) -> None:
-        robot = self._robot
+        robot, hello = self._robot, self._hello
+        assert hello is not None, "no line is taken before the robot was met"
         judged = None if line.state is None else line.state.tick
         match line.text.split():
             case ["go"] | ["resume"]:
@@ -241,24 +236,26 @@ class TerminalTeacher:
                 await self._tell(robot.take())
             case ["release"]:
                 await self._tell(robot.hand_over())
-            case [action] if action in self._actions:
+            case [action] if action in hello.actions:
                 await self._teach(action, line.state)
+            case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
+                await self._tell(robot.appraise(appraisal, of=judged))
+            case ["critic"] if hello.appraisals and line.state is not None:
+                self._say(opinion_in(line.state, hello.appraisals))
+                latest = await robot.lessons(_LESSONS_LOOKED_AT)
+                self._say(change_in(next((each for each in latest if each.teacher == CRITIC), None)))
             case _:
-                self._say(_HELP)
-                if len(self._behaviours) > 1:
-                    self._say(_PURSUE_HELP)
-                self._say_names()
+                self._say_all(help_lines(hello))
 
-    def _say_names(self) -> None:
-        self._say(f"actions: {', '.join(self._actions)}")
-        if len(self._behaviours) > 1:
-            self._say(f"taught behaviours: {', '.join(self._behaviours)}")
+    def _say_all(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            self._say(line)
 
     async def _teach(self, action: str, state: State | None) -> None:
         # The same word answers a question and corrects a robot that knows, or thinks that it knows.
         if state is None:
             await self._tell(self._robot.answer(action))
-        elif state.nearest is None or state.distance > state.radius:
+        elif asks_in(state):
             await self._tell(self._robot.answer(action, of=state.tick))
         else:
             await self._tell(self._robot.correct(action, of=state.tick))
@@ -275,21 +272,6 @@ class TerminalTeacher:
             self._say(str(error))
             return False
         return True
-
-
-def question_in(state: State) -> Question:
-    """The question that a picture shows."""
-    differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
-    return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour)
-
-
-def sentence_of(state: State) -> str:
-    """What the robot does and why, without what changes all the time."""
-    if state.action is not None:
-        if state.rla is None:
-            return f"{state.action}, by {state.teacher}"
-        return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
-    return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
 
 
 def _moves(text: str) -> bool:

@@ -25,7 +25,8 @@ from kurt2rt.channel.requests import (
     StopRequest,
     TakeRequest,
 )
-from kurt2rt.cli.terminal import TerminalTeacher, question_in, sentence_of
+from kurt2rt.cli.terminal import TerminalTeacher
+from kurt2rt.cli.terminal_words import question_in, sentence_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
 from tests.channel.states import state

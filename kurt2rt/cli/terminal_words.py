@@ -1,0 +1,87 @@
+"""What the terminal tells its teacher, in words."""
+
+from collections.abc import Sequence
+
+from kurt2rt.channel.state import State
+from kurt2rt.rla.rla import ASK, rla_title
+from kurt2rt.teaching.hello import AppraisalName, Hello
+from kurt2rt.teaching.lesson_line import LessonLine
+from kurt2rt.teaching.question import FeatureDifference, Question
+
+_HELP = """\
+an action                answers the robot's question, or corrects what it does
+(just Enter), stop       the robot stands until you type go; at once, whatever waits for its answer
+go                       the robot drives where it knows the way
+step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
++, -                     reward or punish what the robot does
+undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
+replace N ACTION, delete N     change or end RLA N
+phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
+begin [NAME], end        a session of teaching, with its clock
+save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
+take, release            be the teacher, or let another one be it
+help, quit"""
+_PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
+_CRITIC_HELP = """\
+an appraisal             teaches the critic what this situation is worth (phase 4)
+critic                   what the critic thinks, how well it agrees with you, what it changed last"""
+
+
+def help_lines(hello: Hello) -> tuple[str, ...]:
+    """What can be typed."""
+    more = [_CRITIC_HELP] if hello.appraisals else []
+    more += [_PURSUE_HELP] if len(hello.behaviours) > 1 else []
+    return (_HELP, *more, *name_lines(hello))
+
+
+def name_lines(hello: Hello) -> tuple[str, ...]:
+    """Names that this robot knows."""
+    lines = [f"actions: {', '.join(hello.actions)}"]
+    if hello.appraisals:
+        lines.append(f"appraisals: {', '.join(each.name for each in hello.appraisals)}")
+    if len(hello.behaviours) > 1:
+        lines.append(f"taught behaviours: {', '.join(hello.behaviours)}")
+    return tuple(lines)
+
+
+def question_in(state: State) -> Question:
+    """The question that a picture shows."""
+    differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
+    return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour)
+
+
+def asks_in(state: State) -> bool:
+    """Whether an action that is typed at this picture is an answer: there is nothing near that it could correct."""
+    return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
+
+
+def sentence_of(state: State) -> str:
+    """What the robot does and why, without what changes all the time."""
+    if state.action is not None:
+        if state.rla is None:
+            return f"{state.action}, by {state.teacher}"
+        return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
+    return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
+
+
+def opinion_in(state: State, appraisals: Sequence[AppraisalName]) -> str:
+    """What the critic thinks of a picture, and whether it may be believed."""
+    name = next((each.name for each in appraisals if each.value == state.opinion), None)
+    thinks = "does not know this situation" if name is None else f"thinks {name}"
+    return f"critic: {thinks} · {trust_in(state)}"
+
+
+def trust_in(state: State) -> str:
+    """How well the critic agrees with its teacher."""
+    if state.agreement is None:
+        bad, good = state.signals_missing
+        missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
+        return f"agreement is known after {missing or 'a few'} more signals of yours (not trusted)"
+    return f"agrees with you {state.agreement:.2f} ({'trusted' if state.trusted else 'not trusted'})"
+
+
+def change_in(lesson: LessonLine | None) -> str:
+    """What the critic changed last."""
+    if lesson is None:
+        return "critic: changed nothing lately"
+    return f"critic: changed last: {lesson.text}{', undone' if lesson.undone else ''}"
