@@ -11,8 +11,9 @@ from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
-from kurt2rt.knowledge.undo import undo_lesson
+from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.rla.lesson_book import LessonRecord
 
 knowledge = typer.Typer(
     help="Look after what the robot was taught. Only undo changes the file, and only while no robot runs on it; "
@@ -45,10 +46,11 @@ def show(
 def lessons(
     file: KnowledgeFile,
     limit: Annotated[int, typer.Option(min=1, help="Show only the newest so many lessons.")] = 20,
+    of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
 ) -> None:
     """List the lessons, newest first, with their ids and who undid them."""
     with Journal.read_only(file) as journal:
-        _console().print(render_lessons(journal, limit))
+        _console().print(render_lessons(journal, limit, of))
 
 
 @knowledge.command()
@@ -70,12 +72,25 @@ def undo(
         str | None,
         typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the last one that stands."),
     ] = None,
+    of: Annotated[
+        str | None,
+        typer.Option(help="All lessons of this teacher that stand, newest first; the critic's are of: critic."),
+    ] = None,
 ) -> None:
-    """Take a lesson back: what it made, changed, ended or rewarded is as it was before."""
-    undone = undo_lesson(file, lesson, teacher=_TEACHER, stamp=utc_now())
-    origin = undone.event.origin
-    by = f"lesson {origin.command_id} by {origin.teacher}"
-    Console(highlight=False).print(f"{file}: undone: {undone.text} ({by})", markup=False, soft_wrap=True)
+    """Take a lesson back, or all of one teacher: what it made, changed, ended or rewarded is as it was before."""
+    if of is None:
+        undone: tuple[LessonRecord, ...] = (undo_lesson(file, lesson, teacher=_TEACHER, stamp=utc_now()),)
+    elif lesson is None:
+        undone = undo_lessons_of(file, of, teacher=_TEACHER, stamp=utc_now())
+    else:
+        raise typer.BadParameter("give --lesson or --of, not both")
+    console = Console(highlight=False)
+    for record in undone:
+        origin = record.event.origin
+        by = f"lesson {origin.command_id} by {origin.teacher}"
+        console.print(f"{file}: undone: {record.text} ({by})", markup=False, soft_wrap=True)
+    if of is not None:
+        console.print(f"{file}: {len(undone)} lessons of {of} undone", markup=False, soft_wrap=True)
 
 
 @knowledge.command()

@@ -3,21 +3,27 @@
 import csv
 import io
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.saved_copy import SavedCopy, plain_part, save_whole, stamp_part
+from kurt2rt.rla.rla import BASIC, Rla
 
-_COLUMNS = ("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "uses", "rewards", "punishments")
+_COLUMNS = (
+    *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
+    *("uses", "rewards", "punishments", "value", "level"),
+)
 
 
 def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
     """Save `<task>-<stamp>-rlas.csv`: a row per RLA, oldest first, with a column per feature of its condition.
 
-    An empty radius is that of the system; taught behaviours have a column where one has a name. Numbers are exact.
-    UTF-8. Waits and raises as `save_copy`.
+    The basic level comes first; features of a further one that has RLAs follow in columns of their own, named as in
+    `critic: speed_m_s`. An empty radius is that of the system; an empty value that no reward made one; taught
+    behaviours have a column where one has a name. Numbers are exact. UTF-8. Waits and raises as `save_copy`.
     """
     with Journal.beside_its_writer(journal_path) as journal:
         task = journal.binding.system
@@ -29,14 +35,17 @@ def _table(journal: Journal) -> str:
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = list(politely(journal.each_entry()))
     system = fold_entries(journal, politely(entries), radius=math.inf)
-    uses = journal.statistics().uses
+    statistics = journal.statistics()
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     text = io.StringIO(newline="")
     table = csv.writer(text)
-    rlas = system.rlas
+    levels = {BASIC: journal.binding.feature_names} | {
+        level: features.feature_names for level, features in journal.binding.levels.items() if system.rlas_at(level)
+    }
+    rlas = [rla for level in levels for rla in system.rlas_at(level)]
     named = any(rla.behaviour for rla in rlas)
     behaviour_column = ("behaviour",) if named else ()
-    table.writerow((*_COLUMNS, *behaviour_column, *journal.binding.feature_names))
+    table.writerow((*_COLUMNS, *behaviour_column, *_feature_columns(levels)))
     for rla in politely(rlas):
         origin = rla.origin
         table.writerow(
@@ -48,10 +57,23 @@ def _table(journal: Journal) -> str:
                 origin.phase.value,
                 origin.tick,
                 stamps[origin.command_id],
-                uses.get(rla.rla_id, 0),
+                statistics.uses.get(rla.rla_id, 0),
                 *system.appraisal(rla.rla_id),
+                statistics.values.get(rla.rla_id),
+                rla.level,
                 *((rla.behaviour,) if named else ()),
-                *rla.condition,
+                *_under_its_columns(rla, levels),
             )
         )
     return text.getvalue()
+
+
+def _feature_columns(levels: Mapping[str, tuple[str, ...]]) -> list[str]:
+    return [name if level == BASIC else f"{level}: {name}" for level, names in levels.items() for name in names]
+
+
+def _under_its_columns(rla: Rla, levels: Mapping[str, tuple[str, ...]]) -> list[float | None]:
+    cells: list[float | None] = []
+    for level, names in levels.items():
+        cells.extend(rla.condition if level == rla.level else [None] * len(names))
+    return cells

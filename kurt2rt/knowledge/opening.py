@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.critic.features import features
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
@@ -12,7 +14,7 @@ from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.perception.definition import load_situation
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import CRITIC, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -78,4 +80,5 @@ def read_lessons(path: Path, settings: RobotSettings, task: TaskSettings) -> lis
 def _binding(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    return KnowledgeBinding(definition.hash(sensors), definition.names, task.name, settings.name)
+    levels = {CRITIC: features(load_critic(task.critic))}
+    return KnowledgeBinding(definition.hash(sensors), definition.names, task.name, settings.name, levels)

@@ -11,10 +11,22 @@ from rich.text import Text
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.show_level import level_table
+from kurt2rt.knowledge.shown import answer, appraised, instead_of, plain, valued, when_and_who
 from kurt2rt.knowledge.statistics import follow_ups
 from kurt2rt.perception.definition import AVERAGED
-from kurt2rt.rla.rla import ActionReplaced, LessonUndone, Rla, RlaDeleted, RlaRewarded, SessionBegun
-from kurt2rt.rla.rla_system import Appraisal, RlaSystem
+from kurt2rt.rla.rla import (
+    CRITIC,
+    ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    LessonUndone,
+    Rla,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+)
+from kurt2rt.rla.rla_system import RlaSystem
 
 TICK_S = 0.01
 """The KURT2's cycle: a knowledge file counts in ticks and does not say how long they last."""
@@ -33,38 +45,50 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
     system = fold_entries(journal, entries, radius=math.inf)
     rlas = system.rlas
     statistics = journal.statistics()
+    any_value = any(rla.rla_id in statistics.values for rla in rlas)
     taught = {entry.event.origin.command_id: entry for entry in entries}
     shares = follow_ups(statistics)
     named = any(rla.behaviour for rla in rlas)
-    table = _empty_table(named=named, wide=wide)
+    table = _empty_table(named=named, any_value=any_value, wide=wide)
     for rla in rlas[:limit]:
         entry = taught[rla.origin.command_id]
         cells: list[str | Text] = [
             str(rla.rla_id),
-            *((_plain(rla.behaviour),) if named else ()),
-            _plain(rla.action),
-            _plain(entry.event.instead_of if isinstance(entry.event, ActionReplaced) else ""),
-            _plain(_when_and_who(entry.stamped_at, rla.origin.teacher)),
+            *((plain(rla.behaviour),) if named else ()),
+            answer(rla),
+            instead_of(entry),
+            when_and_who(entry.stamped_at, rla.origin.teacher),
             f"{rla.origin.phase.value}",
-            str(rla.origin.tick),
+            *((str(rla.origin.tick),) if wide or not any_value else ()),
             str(statistics.uses.get(rla.rla_id, 0)),
-            _appraised(system.appraisal(rla.rla_id)),
+            appraised(system.appraisal(rla.rla_id)),
+            *((valued(statistics.values.get(rla.rla_id)),) if any_value else ()),
         ]
         if wide:
-            cells.append(_plain(_telling(rla, journal.binding.feature_names)))
+            cells.append(plain(_telling(rla, journal.binding.feature_names)))
             cells.append(_followed_by(shares.get(rla.rla_id, {})))
         table.add_row(*cells)
     hidden = len(rlas) - table.row_count
-    parts: list[RenderableType] = [_plain(_bound_to(journal)), _plain(_summary(entries, system)), table]
+    parts: list[RenderableType] = [plain(_bound_to(journal)), plain(_summary(entries, system)), table]
     if hidden:
         parts.append(Text(f"and {hidden} more RLAs"))
+    for level, features in journal.binding.levels.items():
+        of_level = system.rlas_at(level)
+        if of_level:
+            parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
+            more = len(of_level) - len(of_level[:limit])
+            parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
     return Group(*parts)
 
 
-def render_lessons(journal: Journal, limit: int | None = None) -> RenderableType:
-    """All lessons, newest first, at most `limit` of them, with the ids that an undo takes. Raises KnowledgeError."""
+def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> RenderableType:
+    """All lessons, newest first, at most `limit` of them, with the ids that an undo takes. Raises KnowledgeError.
+
+    `taught_by`: only those of that teacher.
+    """
     entries = journal.entries()
-    records = fold_entries(journal, entries, radius=math.inf).lessons
+    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
+    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)]
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     undone_by = {
         entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
@@ -75,20 +99,23 @@ def render_lessons(journal: Journal, limit: int | None = None) -> RenderableType
     for record in records[::-1][:limit]:
         origin = record.event.origin
         table.add_row(
-            _plain(record.text),
-            _plain(origin.command_id),
-            _plain(_when_and_who(stamps[origin.command_id], origin.teacher)),
-            _plain(undone_by.get(origin.command_id, "")),
+            plain(record.text),
+            plain(origin.command_id),
+            when_and_who(stamps[origin.command_id], origin.teacher),
+            plain(undone_by.get(origin.command_id, "")),
         )
     hidden = len(records) - table.row_count
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
 
 
-def _empty_table(*, named: bool, wide: bool) -> Table:
+def _empty_table(*, named: bool, any_value: bool, wide: bool) -> Table:
     table = Table(box=SIMPLE_HEAD)
     behaviour = ("behaviour",) if named else ()
-    for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", "phase", "tick", "uses", "rewards"):
-        right = heading in ("RLA", "phase", "tick", "uses", "rewards")
+    value = ("value",) if any_value else ()
+    tick = ("tick",) if wide or not any_value else ()  # where there is no room for both
+    numbers = ("phase", *tick, "uses", "rewards", *value)
+    for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", *numbers):
+        right = heading in ("RLA", *numbers)
         table.add_column(heading, justify="right" if right else "left", overflow="fold", no_wrap=right)
     if wide:
         table.add_column("largest features")
@@ -112,16 +139,17 @@ def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
         f"{sum(isinstance(event, ActionReplaced) for event in events)} corrections",
         f"{sum(isinstance(event, RlaDeleted) for event in events)} deletions",
     ]
-    rewards = sum(isinstance(event, RlaRewarded) for event in events)
-    if rewards:
-        parts.append(f"{rewards} rewards")
+    for kind, name in ((ActionWithdrawn, "withdrawals"), (RlaRewarded, "rewards"), (Appraised, "agreements")):
+        count = sum(isinstance(event, kind) for event in events)
+        if count:
+            parts.append(f"{count} {name}")
     undos = [event for event in events if isinstance(event, LessonUndone)]
     if undos:
         parts.append(f"{len(undos)} undone by {_names(event.origin.teacher for event in undos)}")
     teachers = _names(record.event.origin.teacher for record in system.lessons)
     by = f" by {teachers}" if teachers else ""
     summary = (
-        f"{len(system)} RLAs from {len(system.lessons)} lessons ({', '.join(parts)}){by}, "
+        f"{_how_many(system)} from {len(system.lessons)} lessons ({', '.join(parts)}){by}, "
         f"{entries[0].stamped_at} to {entries[-1].stamped_at}"
     )
     sessions = sum(isinstance(event, SessionBegun) for event in events)
@@ -135,14 +163,13 @@ def _names(teachers: Iterable[str]) -> str:
     return ", ".join(sorted(set(teachers)))
 
 
-def _when_and_who(stamped_at: str, teacher: str) -> str:
-    return f"{stamped_at[:19].replace('T', ' ')}, {teacher}"
-
-
-def _appraised(appraisal: Appraisal) -> str:
-    """Such as +3 -1; nothing where nobody said anything."""
-    return " ".join(
-        f"{sign}{count}" for sign, count in (("+", appraisal.rewards), ("-", appraisal.punishments)) if count
+def _how_many(system: RlaSystem) -> str:
+    asking = sum(rla.asks for rla in system.rlas)
+    appraisals = len(system.rlas_at(CRITIC))
+    return (
+        f"{len(system)} RLAs"
+        + (f", {asking} of which ask again," if asking else "")
+        + (f" and {appraisals} appraisal RLAs" if appraisals else "")
     )
 
 
@@ -157,8 +184,3 @@ def _telling(rla: Rla, feature_names: tuple[str, ...]) -> str:
 
 def _followed_by(shares: Mapping[int, float]) -> str:
     return ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in list(shares.items())[:_FOLLOW_UPS])
-
-
-def _plain(text: str) -> Text:
-    """Names are shown as they are: neither rich's markup nor a terminal's escape sequences act."""
-    return Text("".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text))

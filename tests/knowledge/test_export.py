@@ -10,7 +10,19 @@ from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, created, deleted, entry, replaced, rewarded, undone
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    appraisal,
+    created,
+    deleted,
+    entry,
+    replaced,
+    rewarded,
+    undone,
+    withdrawn,
+)
 
 LATER = "2004-04-27T08:00:00.000+00:00"
 
@@ -36,16 +48,23 @@ def test_a_row_for_each_rla_that_stands(path: Path, tmp_path: Path) -> None:
         ]
         journal.append([JournalEntry(event, STAMP) for event in events])
         journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
-        journal.checkpoint(Statistics({1: 41, 3: 7}))
+        journal.checkpoint(Statistics({1: 41, 3: 7}, values={1: -0.1 - 0.2, 3: 0.5}))
         heading, *rows = exported(path, tmp_path / "out")  # while it is written
 
     assert heading == [
-        *("id", "action", "radius", "teacher", "phase", "tick", "taught_at", "uses", "rewards", "punishments"),
+        *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
+        *("uses", "rewards", "punishments", "value", "level"),
         *("s1", "s2", "maximum front", "wheel speed left"),
     ]
     assert rows == [
-        ["1", "forward", "", "Hertha", "1", "1", STAMP, "41", "2", "1", "0.3333333333333333", "0.1", "81.0", "-5.0"],
-        ["2", "left", "", "Hertha", "2", "200", LATER, "0", "0", "0", "0.6666666666666666", "0.2", "82.0", "-5.0"],
+        [
+            *("1", "forward", "", "Hertha", "1", "1", STAMP, "41", "2", "1", "-0.30000000000000004", "basic"),
+            *("0.3333333333333333", "0.1", "81.0", "-5.0"),
+        ],
+        [
+            *("2", "left", "", "Hertha", "2", "200", LATER, "0", "0", "0", "", "basic"),
+            *("0.6666666666666666", "0.2", "82.0", "-5.0"),
+        ],
     ]
 
 
@@ -57,8 +76,8 @@ def test_numbers_and_names_come_back_exactly(path: Path, tmp_path: Path) -> None
     (_, row) = exported(path, tmp_path)
 
     assert (row[1], float(row[2])) == (rla.action, rla.radius)
-    assert tuple(float(number) for number in row[10:]) == condition
-    assert row[12] == "-0.0"
+    assert tuple(float(number) for number in row[12:]) == condition
+    assert row[14] == "-0.0"
 
 
 def test_where_nothing_was_taught_there_is_a_heading(path: Path, tmp_path: Path) -> None:
@@ -74,5 +93,22 @@ def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Pat
         heading, first, second = exported(path, tmp_path)
 
     column = heading.index("behaviour")
-    assert (heading[column - 1], heading[column + 1]) == ("punishments", "s1")
+    assert (heading[column - 1], heading[column + 1]) == ("level", "s1")
     assert (first[column], second[column]) == ("", "turn_left")
+
+
+def test_appraisal_rlas_come_behind_the_others_with_columns_of_their_own(path: Path, tmp_path: Path) -> None:
+    with Journal.open(path, WITH_CRITIC) as journal:
+        journal.append([entry(1)])
+        assert len(exported(path, tmp_path / "before")[0]) == len(exported(path, tmp_path / "again")[1])
+        journal.append([JournalEntry(appraisal(2), STAMP), entry(3), JournalEntry(withdrawn(3), STAMP)])
+        heading, *rows = exported(path, tmp_path / "out")
+
+    assert heading[12:] == [*BINDING.feature_names, "critic: left_m", "critic: speed_m_s", "critic: bumped"]
+    assert [(row[0], row[1], row[11]) for row in rows] == [
+        ("1", "forward", "basic"),
+        ("3", "ask", "basic"),
+        ("2", "good", "critic"),
+    ]
+    assert rows[0][16:] == ["", "", ""]
+    assert rows[2][12:] == ["", "", "", "", "0.4", "0.2", "0.0"]

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.critic.features import features
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
@@ -275,6 +277,7 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
     task = short_task()
     with open_knowledge(path, ROBOT, task) as journal:
         assert journal.binding.system == task.name
+        assert journal.binding.levels == {CRITIC: features(load_critic(task.critic))}
         lessons = [
             RlaCreated(Rla(number, (0.0,) * len(journal.binding.feature_names), "forward", None, origin(f"c{number}")))
             for number in (1, 2)

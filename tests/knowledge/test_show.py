@@ -9,8 +9,21 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics, follow_ups
-from kurt2rt.rla.rla import RlaCreated, TeachingEvent
-from tests.knowledge.lessons import BINDING, STAMP, created, deleted, replaced, rewarded, session, undone
+from kurt2rt.rla.rla import CRITIC, Appraised, Phase, RlaCreated, TeachingEvent
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    appraisal,
+    created,
+    deleted,
+    origin,
+    replaced,
+    rewarded,
+    session,
+    undone,
+    withdrawn,
+)
 
 
 def printed(what: RenderableType) -> list[str]:
@@ -79,20 +92,69 @@ def test_rewards_undone_lessons_and_sessions_are_shown(path: Path) -> None:
     assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]
 
 
+def test_withdrawn_actions_values_and_appraisals_are_shown(path: Path) -> None:
+    critics = replace(rewarded(1, -1), origin=replace(rewarded(1).origin, teacher=CRITIC))
+    events: list[TeachingEvent] = [
+        *(created(number) for number in (1, 2, 3)),
+        appraisal(4, (0.4, 0.2, 0.0)),
+        appraisal(5, (0.0, 0.0, 1.0), "bad"),
+        appraisal(6, (0.0, 0.0, 0.0), "neutral"),
+        Appraised("good", 1, 395, origin("same-1", 400, Phase.CRITIC)),
+        critics,
+        withdrawn(1),
+    ]
+    with Journal.open(path, WITH_CRITIC) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        before = printed(render_knowledge(journal))
+        journal.checkpoint(Statistics({1: 3}, values={1: -0.301, 3: 0.5}))
+        lines = printed(render_knowledge(journal))
+        fewer = printed(render_knowledge(journal, limit=2))
+        lessons = "\n".join(printed(render_lessons(journal)))
+        of_critic = printed(render_lessons(journal, taught_by=CRITIC))
+
+    assert not any(re.search(r"rewards\s+value", line) for line in before)  # no reward has made one
+    assert lines[1].startswith(
+        "3 RLAs, 1 of which ask again, and 3 appraisal RLAs from 8 lessons "
+        "(0 corrections, 0 deletions, 1 withdrawals, 1 rewards, 1 agreements) by Hertha, critic, "
+    )
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    first, second, third, *appraisals = rows(lines)
+    assert first[:9] == ["1", "asks again", "forward", when, "3", "450", "3", "-1", "-0.30"]
+    assert second[5] == "0"
+    assert third[6] == "0.50"
+    assert appraisals == [
+        ["4", "good", when, "left_m 0.40, speed_m_s 0.20"],
+        ["5", "bad", when, "bumped 1.00"],
+        ["6", "neutral", when, "all 0"],
+    ]
+    assert "and 1 more of the level critic" in fewer
+    assert "appraisal RLA 5 taught: bad" in lessons
+    assert "RLA 1 withdrawn: it asks again" in lessons
+    assert [line.strip().split("  ")[0] for line in of_critic if "RLA" in line] == ["RLA 1 punished"]
+
+
+def narrow(journal: Journal) -> tuple[str, list[str]]:
+    """Headings on 80 columns, and the cells of the only RLA."""
+    console = Console(width=80, color_system=None)
+    with console.capture() as capture:
+        console.print(render_knowledge(journal, wide=False))
+    lines = capture.get().splitlines()
+    assert max(len(line) for line in lines) <= 80
+    (row,) = rows(lines)
+    return " ".join(lines[lines.index(" " * 80) + 2].split()), row
+
+
 def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(event, STAMP) for event in (created(1, action="spin_right"), rewarded(1))])
-        console = Console(width=80, color_system=None)
-        with console.capture() as capture:
-            console.print(render_knowledge(journal, wide=False))
+        headings, row = narrow(journal)
+        journal.checkpoint(Statistics(values={1: 0.5}))
+        with_value, valued_row = narrow(journal)
 
-    lines = capture.get().splitlines()
-    assert max(len(line) for line in lines) <= 80
-    assert (
-        " ".join(lines[lines.index(" " * 80) + 2].split()) == "RLA action instead of (UTC), by phase tick uses rewards"
-    )
-    (row,) = rows(lines)
+    assert headings == "RLA action instead of (UTC), by phase tick uses rewards"
+    assert with_value == "RLA action instead of (UTC), by phase uses rewards value"
     assert (row[1], row[-1]) == ("spin_right", "+1")
+    assert (valued_row[1], valued_row[-2:]) == ("spin_right", ["+1", "0.50"])
 
 
 def test_lessons_are_listed_newest_first_with_their_ids_and_who_undid_them(path: Path) -> None:

@@ -1,5 +1,6 @@
-"""A lesson is taken back in a file that no robot runs on."""
+"""Lessons are taken back in a file that no robot runs on."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,10 +9,11 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.undo import undo_lesson
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
 from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import LessonUndone, Rla
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
+from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
 
 
 def rlas(path: Path) -> tuple[Rla, ...]:
@@ -64,3 +66,60 @@ def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: 
 def test_nothing_is_undone_under_a_running_robot(path: Path) -> None:
     with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
         undo(path)
+
+
+def by_critic(*events: Lesson) -> list[JournalEntry]:
+    """What the critic did on its own."""
+    return [
+        JournalEntry(replace(each, origin=replace(each.origin, teacher=CRITIC, phase=Phase.AUTONOMOUS)), STAMP)
+        for each in events
+        if not isinstance(each, RlaCreated)
+    ]
+
+
+def with_a_critics_work(path: Path) -> Path:
+    """Three RLAs by Hertha; the critic blamed two and had one deleted and one answered anew."""
+    with Journal.open(begun(path), BINDING) as journal:
+        blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
+        journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 2: 0.375, 3: 0.5}, {(1, 2): 95.0}))
+    return path
+
+
+def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays(path: Path) -> None:
+    told = undo_lessons_of(with_a_critics_work(path), CRITIC, teacher="command line", stamp=STAMP)
+
+    assert [record.event.origin.command_id for record in told] == ["replace-3-left", "praise-3", "delete-2", "blame-1"]
+    assert all(record.undone for record in told)
+    assert rlas(path) == (created(1).rla, created(2).rla, created(3).rla)
+    with Journal.read_only(path) as journal:
+        undos = [event for event in journal.events() if isinstance(event, LessonUndone)]
+        assert [event.lesson for event in undos] == [record.event.origin.command_id for record in told]
+        assert len({event.origin.command_id for event in undos}) == 4
+    with pytest.raises(KnowledgeError, match=r"holds no lesson by critic that stands; those that stand are by Hertha$"):
+        undo_lessons_of(path, CRITIC, teacher="command line", stamp=STAMP)
+
+
+def test_an_undone_reward_takes_its_credits_off_the_values(path: Path) -> None:
+    undo_lessons_of(with_a_critics_work(path), CRITIC, teacher="command line", stamp=STAMP)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == Statistics({1: 5}, {(1, 2): 3}, {1: 0.5, 2: 0.5, 3: 0.5}, {(1, 2): 95.0})
+
+
+def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(path: Path) -> None:
+    with Journal.open(with_a_critics_work(path), BINDING) as journal:
+        journal.append([JournalEntry(rewarded(1, 1, "praise-of-hertha"), STAMP)])
+        before = journal.events(), journal.statistics()
+    with pytest.raises(
+        KnowledgeError,
+        match=f"^{path}: nothing was undone: lesson 'praise-of-hertha' came after 'blame-1' .*; undo that one first",
+    ):
+        undo_lessons_of(path, CRITIC, teacher="command line", stamp=STAMP)
+    with Journal.read_only(path) as journal:
+        assert (journal.events(), journal.statistics()) == before
+
+
+def test_in_a_file_without_lessons_there_is_nothing_to_undo_of_anybody(path: Path) -> None:
+    Journal.open(path, BINDING).close()
+    with pytest.raises(KnowledgeError, match=r"holds no lesson by Ann that stands; there is nothing to undo$"):
+        undo_lessons_of(path, "Ann", teacher="command line", stamp=STAMP)

@@ -1,7 +1,9 @@
 """Teaching events in one line each."""
 
 from kurt2rt.rla.rla import (
+    BASIC,
     ActionReplaced,
+    ActionWithdrawn,
     LessonUndone,
     Origin,
     Phase,
@@ -25,13 +27,18 @@ def created(
     radius: float | None = None,
     command_id: str | None = None,
     behaviour: str = "",
+    level: str = BASIC,
 ) -> RlaCreated:
     taught = origin(command_id or f"lesson-{rla_id}", rla_id)
-    return RlaCreated(Rla(rla_id, condition, action, radius, taught, behaviour))
+    return RlaCreated(Rla(rla_id, condition, action, radius, taught, behaviour, level))
 
 
 def replaced(rla_id: int, action: str, instead_of: str, command_id: str | None = None) -> ActionReplaced:
     return ActionReplaced(rla_id, action, instead_of, origin(command_id or f"correction-{rla_id}", 1000 + rla_id))
+
+
+def withdrawn(rla_id: int, instead_of: str = "forward", command_id: str | None = None) -> ActionWithdrawn:
+    return ActionWithdrawn(rla_id, instead_of, origin(command_id or f"withdrawal-{rla_id}", 1500 + rla_id))
 
 
 def deleted(rla_id: int, command_id: str | None = None) -> RlaDeleted:

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
-from kurt2rt.rla.rla import Lesson, TeachingEvent
+from kurt2rt.rla.rla import ASK, CRITIC, Lesson, TeachingEvent
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
-from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone
+from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
 
 FIRST = created(1, (0.0, 0.0))
 SECOND = created(2, (0.0, 0.0), "back")
@@ -64,6 +64,16 @@ def test_an_undone_reward_is_not_counted() -> None:
     assert system.appraisal(1) == system.appraisal(77) == (0, 0)
 
 
+def test_an_undone_withdrawal_gives_the_action_back() -> None:
+    system = system_of(FIRST, withdrawn(1), replaced(1, "back", ASK), undone("correction-1"))
+    rla = system.get(1)
+    assert rla is not None
+    assert (rla.action, rla.origin.command_id) == (ASK, "withdrawal-1")
+    system.apply(undone("withdrawal-1"))
+    assert system.rlas == (FIRST.rla,)
+    assert winner(system, 0.0, 0.0) == (1, "forward")
+
+
 def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "phone-7"), SECOND)
     with pytest.raises(UnfitEventError) as refused:
@@ -113,6 +123,8 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
     [
         (FIRST, "RLA 1 taught: forward"),
         (replaced(1, "back", "forward"), "RLA 1 corrected: back instead of forward"),
+        (withdrawn(1), "RLA 1 withdrawn: it asks again"),
+        (replaced(1, "back", ASK), "RLA 1 answered anew: back"),
         (deleted(1), "RLA 1 deleted"),
         (rewarded(1), "RLA 1 rewarded"),
         (rewarded(1, -1), "RLA 1 punished"),
@@ -141,8 +153,17 @@ def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, tex
     assert (system.lessons[-1].text, system.lessons[-1].undone) == (text, True)
 
 
+def test_a_lesson_of_the_critics_rlas_is_told_as_one() -> None:
+    system = system_of(created(1, (0.0, 0.0), "bad", level=CRITIC), replaced(1, "good", "bad"), deleted(1))
+    assert [record.text for record in system.lessons] == [
+        "appraisal RLA 1 taught: bad",
+        "appraisal RLA 1 corrected: good instead of bad",
+        "appraisal RLA 1 deleted",
+    ]
+
+
 _STEPS = st.lists(
-    st.tuples(st.sampled_from("ccrdwwuuu"), st.integers(0, 30), st.sampled_from(("forward", "back"))), max_size=50
+    st.tuples(st.sampled_from("ccrdwwaauuu"), st.integers(0, 30), st.sampled_from(("forward", "back"))), max_size=50
 )
 
 
@@ -164,6 +185,8 @@ def lessons_and_undos(steps: list[tuple[str, int, str]], system: RlaSystem) -> I
                 yield replaced(rla.rla_id, action, rla.action, command_id)
             elif act == "d":
                 yield deleted(rla.rla_id, command_id)
+            elif act == "a":
+                yield withdrawn(rla.rla_id, rla.action, command_id)
             else:
                 yield rewarded(rla.rla_id, 1 if which % 2 else -1, command_id)
 
@@ -195,6 +218,9 @@ def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps
     assert system.last_standing_lesson == (list(standing)[-1] if standing else None)
     for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [3e19, 0.0], [-7.0, 1e5]):
         assert system.match(np.array(situation)) == direct.match(np.array(situation))  # bit for bit
+    for rla in system.rlas:
+        assert system.competitors(rla) == direct.competitors(rla)
+        assert system.competitors(rla) == tuple(each for each in system.rlas if each.condition == rla.condition)
 
 
 def test_a_lesson_can_be_taught_again_after_its_undo_under_another_command() -> None:
