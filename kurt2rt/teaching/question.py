@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.rla.rla import rla_title
+from kurt2rt.rla.rla import ASK, rla_title
 from kurt2rt.rla.rla_system import Match
 
 
@@ -39,8 +39,9 @@ class Question:
             return f"I know nothing{of} yet, teach me"
         features = ", ".join(f"{each.name} {each.here:.0f} not {each.in_condition:.0f}" for each in self.differing)
         nearest = rla_title(self.nearest_rla, self.behaviour)
+        action = "its action was withdrawn" if self.action == ASK else self.action
         return (
-            f"I don't know this situation, teach me: nearest is {nearest} ({self.action}) "
+            f"I don't know this situation, teach me: nearest is {nearest} ({action}) "
             f"at {self.distance:.0f} of {self.radius:.0f}; {features}"
         )
 

@@ -14,6 +14,7 @@ from kurt2rt.channel.credentials import Pairing, pair
 from kurt2rt.channel.reply import Reply, Verdict, done
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    AppraiseRequest,
     CorrectRequest,
     HelloRequest,
     LessonsRequest,
@@ -26,9 +27,11 @@ from kurt2rt.channel.requests import (
     TakeRequest,
 )
 from kurt2rt.cli.terminal import TerminalTeacher
-from kurt2rt.cli.terminal_words import question_in, sentence_of
+from kurt2rt.cli.terminal_words import change_in, opinion_in, question_in, sentence_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.hello import AppraisalName
+from kurt2rt.teaching.lesson_line import LessonLine
 from tests.channel.states import state
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO, Clock, seen
@@ -296,3 +299,49 @@ def test_a_question_is_about_the_behaviour_that_is_wanted() -> None:
 def test_what_drives_is_told_with_the_behaviour_that_it_belongs_to() -> None:
     assert sentence_of(state(action="forward", rla=3)) == "forward by RLA 3"
     assert sentence_of(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"
+
+
+async def test_the_critic_is_taught_by_the_names_of_its_appraisals(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("appraisals: bad, neutral, good")
+        await desk.reads("/take is done")
+        tick = await looked_at(desk, robot, phase=4)
+        desk.type("bad")
+        (taught,) = await robot.hears(AppraiseRequest)
+        assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
+        desk.type("help")
+        await desk.reads("an appraisal ")
+
+
+async def test_the_teacher_is_told_when_the_critic_is_trusted_and_may_ask_what_it_thinks(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        await looked_at(desk, robot, phase=4, signals_missing=(6, 2))
+        await desk.reads("critic: agreement is known after 6 bad and 2 good more signals of yours (not trusted)")
+        await looked_at(desk, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
+        await desk.reads("critic: agrees with you 0.87 (trusted)")
+        desk.type("critic")
+        await desk.reads("critic: thinks good · agrees with you 0.87 (trusted)")
+        await desk.reads("critic: changed nothing lately")
+
+
+async def test_what_is_typed_where_an_action_was_withdrawn_is_an_answer(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        tick = await looked_at(desk, robot, nearest=17, nearest_action="ask", distance=12.0)
+        desk.type("forward")
+        (answer,) = await robot.hears(AnswerRequest)
+        assert (answer.action, answer.decision_tick) == ("forward", tick)
+        assert robot.all_of(CorrectRequest) == []
+
+
+def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
+    appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
+    assert opinion_in(state(agreement=0.7), appraisals) == (
+        "critic: does not know this situation · agrees with you 0.70 (not trusted)"
+    )
+    changed = LessonLine("c", "RLA 7 corrected: back instead of stand", "critic", 5, 9, "", False)
+    assert change_in(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"
+    assert change_in(changed._replace(undone=True)).endswith("stand, undone")

@@ -6,7 +6,7 @@ import numpy as np
 
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.teaching.question import Question, ask
-from tests.rla.helpers import created
+from tests.rla.helpers import created, withdrawn
 
 NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
 
@@ -56,4 +56,15 @@ def test_where_behaviours_have_names_it_asks_about_the_one_that_is_wanted() -> N
     question = ask(system.match(here, "turn_left"), here, system.weights, NAMES, "turn_left")
     assert str(question) == (
         "I don't know this situation, teach me: nearest is RLA 1 of turn_left (curve_left) at 400 of 300; s3 400 not 0"
+    )
+
+
+def test_a_withdrawn_action_is_told_in_words() -> None:
+    system = RlaSystem(7, 300.0)
+    for event in (created(1, (0,) * 7, "forward"), withdrawn(1)):
+        system.apply(event)
+    here = np.zeros(7)
+    question = ask(system.match(here), here, system.weights, NAMES)
+    assert str(question).startswith(
+        "I don't know this situation, teach me: nearest is RLA 1 (its action was withdrawn) at 0 of 300"
     )
