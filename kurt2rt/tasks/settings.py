@@ -10,6 +10,7 @@ from behaviors.policies.finding import AnyPolicySettings
 from behaviors.policies.policy import PolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
+from kurt2rt.experiments.phases.settings import PhasesSettings
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -149,11 +150,20 @@ class TaskSettings(Settings):
     """The internal critic of `config/critics`, which is taught in phase 4."""
     judge: AnyJudgeSettings | None = None
     """What the scripted teacher praises and blames; None: nothing."""
+    phases: PhasesSettings | None = None
+    """How phases 3 to 5 are tried out; None: not at all."""
     policy: AnyPolicySettings
     course: AnyCourseSettings
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult
+
+    @field_validator("judge", mode="before")
+    @classmethod
+    def _named_or_left_out(cls, judge: object) -> object:
+        if judge is None:
+            raise ValueError("give its settings, or leave the key out where nothing is judged")
+        return judge
 
     @field_validator("policy")
     @classmethod

@@ -45,7 +45,7 @@ def test_what_is_far_from_all_it_was_taught_it_does_not_know() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply(appraisal(1, "bad", CLOSE))
-    said = critic.opinion(critic.vector_of(FREE))
+    said = critic.opinion(critic.vector_of(FREE._replace(left_m=0.1)))
     assert said is not None
     assert (said.value, said.appraisal, said.known, said.said) == (0, "", False, None)
     assert said.distance > said.radius == SETTINGS.learning.radius

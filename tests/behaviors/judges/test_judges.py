@@ -1,0 +1,185 @@
+"""What the judges think, as the shipped tasks set them."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from behaviors.judges.finding import judge_settings
+from behaviors.judges.judge import Circumstances, Judge
+from behaviors.judges.wall_following import WallFollowingSettings
+from kurt2rt.tasks.settings import load_task
+
+TASKS = ("wall_following", "fleeing", "eight")
+OPEN = Circumstances(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+
+distances_m = st.floats(0.1, 0.6)
+flags = st.sampled_from((0.0, 0.0, 0.0, 1.0))
+anywhere = st.builds(
+    Circumstances,
+    *[distances_m] * 6,
+    *[st.floats(-1.1, 1.1)] * 2,
+    st.floats(-0.3, 0.5),
+    st.floats(-1.5, 1.5),
+    *[flags] * 3,
+)
+
+
+def judge_of(task: str) -> Judge:
+    settings = load_task(task).judge
+    assert settings is not None
+    return settings.build()
+
+
+JUDGES = {task: judge_of(task) for task in TASKS}
+
+
+def thinks(task: str, **circumstances: float) -> int:
+    """Of circumstances that differ by these from those of a robot that drives straight on with nothing near."""
+    return JUDGES[task].judge(OPEN._replace(**circumstances))
+
+
+# Of all
+
+
+def test_a_judge_is_found_by_its_name() -> None:
+    assert judge_settings("wall_following") is WallFollowingSettings
+    with pytest.raises(ValueError, match=r"there is no kind 'hanging'; give one of: eight, fleeing, wall_following$"):
+        judge_settings("hanging")
+
+
+@pytest.mark.parametrize("task", TASKS)
+@given(circumstances=anywhere)
+@settings(max_examples=100)
+def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(task: str, circumstances: Circumstances) -> None:
+    assert JUDGES[task].judge(circumstances) in {-1, 0, 1}
+    for trouble in (
+        {"bumped": 1.0},
+        {"speed_m_s": -0.1},
+        {"speed_m_s": 0.0, "turn_rad_s": 0.0},
+        {"no_progress": 1.0, "speed_m_s": 0.05},
+    ):
+        assert JUDGES[task].judge(circumstances._replace(**trouble)) == -1
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_turn_right_round_on_its_way_is_no_lack_of_progress(task: str) -> None:
+    on_its_way = {"left_m": 0.2, "ahead_left_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": 0.5}
+    assert thinks(task, **on_its_way, no_progress=1.0) == thinks(task, **on_its_way)
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("of_it", [{"front_m": 0.12}, {"front_m": 0.12, "left_m": 0.2, "ahead_left_m": 0.15}])
+def test_who_drives_at_what_is_ahead_is_blamed(task: str, of_it: dict[str, float]) -> None:
+    assert thinks(task, **of_it, speed_m_s=0.3) == -1
+
+
+# Wall following
+
+ALONG = {"left_m": 0.2, "ahead_left_m": 0.3}
+
+
+@pytest.mark.parametrize(
+    ("circumstances", "thought"),
+    [
+        (ALONG, 1),
+        (ALONG | {"left_m": 0.25}, 1),
+        (ALONG | {"left_m": 0.28}, 0),  # too far off, and straight on
+        (ALONG | {"left_m": 0.28, "turn_rad_s": 0.5, "speed_m_s": 0.22}, 1),  # it mends that
+        (ALONG | {"left_m": 0.32, "turn_rad_s": -0.5, "speed_m_s": 0.22}, -1),  # it makes it worse
+        (ALONG | {"left_m": 0.11}, 0),  # too close
+        (ALONG | {"left_m": 0.11, "turn_rad_s": -0.5, "speed_m_s": 0.22}, 1),
+        (ALONG | {"left_m": 0.11, "turn_rad_s": 0.5, "speed_m_s": 0.22}, -1),
+        (ALONG | {"left_m": 0.16, "left_angle_rad": 0.5}, 1),  # close, but on its way off
+        (ALONG | {"speed_m_s": 0.15}, 0),  # slow
+        (ALONG | {"turn_rad_s": 1.0, "speed_m_s": 0.0}, -1),  # spins to the wall
+        (ALONG | {"turn_rad_s": 1.0, "speed_m_s": 0.0, "ahead_right_m": 0.15}, 0),  # but in a narrow place
+        (ALONG | {"turn_rad_s": -1.0, "speed_m_s": 0.0}, 0),
+        (
+            ALONG | {"turn_rad_s": -1.0, "speed_m_s": 0.0, "left_angle_rad": 0.5, "ahead_left_m": 0.5},
+            -1,
+        ),  # away from it for nothing
+        (ALONG | {"front_m": 0.2, "turn_rad_s": -1.0, "speed_m_s": 0.0}, 1),  # it turns where it must
+        (ALONG | {"front_m": 0.2, "turn_rad_s": 0.5, "speed_m_s": 0.2}, -1),
+        (ALONG | {"front_m": 0.2}, 0),  # not yet too late
+        (ALONG | {"ahead_left_m": 0.2, "turn_rad_s": -1.0, "speed_m_s": 0.0}, 1),
+        ({"turn_rad_s": 0.5, "speed_m_s": 0.22}, 1),  # round the end of the wall
+        ({}, 0),
+        ({"turn_rad_s": -0.5, "speed_m_s": 0.22}, -1),
+        ({"no_wall": 1.0}, -1),
+        ({"no_wall": 1.0, "turn_rad_s": 0.5, "speed_m_s": 0.22}, 0),  # it looks for one
+    ],
+)
+def test_wall_following(circumstances: dict[str, float], thought: int) -> None:
+    assert thinks("wall_following", **circumstances) == thought
+
+
+# Fleeing
+
+
+@pytest.mark.parametrize(
+    ("circumstances", "thought"),
+    [
+        ({"speed_m_s": 0.4}, 1),
+        ({"speed_m_s": 0.4, "left_m": 0.11, "right_m": 0.11, "rear_m": 0.1, "no_wall": 1.0}, 1),  # along the walls
+        ({"speed_m_s": 0.2}, -1),  # creeps where it is free
+        ({"speed_m_s": 0.3}, 0),
+        ({"speed_m_s": 0.0, "turn_rad_s": 1.4}, 0),
+        ({"speed_m_s": 0.0, "turn_rad_s": -1.4}, -1),
+        ({"front_m": 0.4, "speed_m_s": 0.0, "turn_rad_s": 1.4}, 1),  # the same way whatever is near
+        ({"ahead_left_m": 0.25, "speed_m_s": 0.0, "turn_rad_s": 1.4}, 1),
+        ({"front_m": 0.4, "speed_m_s": 0.0, "turn_rad_s": -1.4}, -1),
+        ({"front_m": 0.4, "speed_m_s": 0.4}, 0),  # not yet too late
+        ({"front_m": 0.25, "speed_m_s": 0.4}, -1),
+        ({"ahead_right_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": 0.5}, 0),
+        ({"ahead_right_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": -0.5}, -1),
+        ({"ahead_left_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": 0.5}, -1),
+        ({"ahead_left_m": 0.4, "speed_m_s": 0.4}, 1),
+    ],
+)
+def test_fleeing(circumstances: dict[str, float], thought: int) -> None:
+    assert thinks("fleeing", **circumstances) == thought
+
+
+# Eight
+
+ROUND = {"left_m": 0.18, "turn_rad_s": 0.5, "speed_m_s": 0.22}
+
+
+@pytest.mark.parametrize(
+    ("circumstances", "thought"),
+    [
+        (ROUND, 1),
+        (ROUND | {"left_m": 0.1}, 0),  # as near as it can tell
+        (ROUND | {"left_m": 0.35}, 0),
+        (ROUND | {"turn_rad_s": 0.0}, 0),
+        (ROUND | {"turn_rad_s": -0.5}, -1),  # away from it
+        (ROUND | {"turn_rad_s": -0.5, "ahead_left_m": 0.2}, 0),  # not into it
+        ({"left_m": 0.3, "right_m": 0.3}, 1),  # between the two
+        ({"left_m": 0.3, "right_m": 0.3, "turn_rad_s": 0.5}, 0),
+        ({}, 0),
+        ({"turn_rad_s": -0.5, "speed_m_s": 0.22}, -1),  # with neither in view: left, by agreement
+        ({"turn_rad_s": -0.5, "speed_m_s": 0.22, "ahead_right_m": 0.4}, 0),
+        ({"turn_rad_s": 1.0, "speed_m_s": 0.0}, -1),
+        ({"turn_rad_s": 1.0, "speed_m_s": 0.0, "front_m": 0.15}, 1),
+        ({"front_m": 0.18}, 0),
+    ],
+)
+def test_the_eight(circumstances: dict[str, float], thought: int) -> None:
+    assert thinks("eight", **circumstances) == thought
+
+
+@given(circumstances=anywhere)
+@settings(max_examples=200)
+def test_the_eight_is_judged_the_same_to_either_side(circumstances: Circumstances) -> None:
+    """But for what is done with neither column beside it, which has to be one side."""
+    now = circumstances._replace(left_m=min(circumstances.left_m, 0.3))
+    mirrored = now._replace(
+        left_m=now.right_m,
+        right_m=now.left_m,
+        ahead_left_m=now.ahead_right_m,
+        ahead_right_m=now.ahead_left_m,
+        left_angle_rad=now.right_angle_rad,
+        right_angle_rad=now.left_angle_rad,
+        turn_rad_s=-now.turn_rad_s,
+    )
+    assert JUDGES["eight"].judge(mirrored) == JUDGES["eight"].judge(now)
