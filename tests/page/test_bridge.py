@@ -361,7 +361,12 @@ async def test_an_order_means_the_picture_that_the_page_showed() -> None:
         page.picture = shown
         await page.order("correct", action="spin_left")
         await page.order("reward", value=-1)
-        assert hall.told("correct", "reward") == [("correct", "spin_left", 500), ("reward", -1, 500)]
+        await page.order("appraise", appraisal="bad")
+        assert hall.told("correct", "reward", "appraise") == [
+            ("correct", "spin_left", 500),
+            ("reward", -1, 500),
+            ("appraise", "bad", 500),
+        ]
 
 
 async def test_an_order_on_no_picture_or_on_one_of_an_earlier_robot_is_not_sent() -> None:
@@ -385,6 +390,7 @@ MOVING: list[tuple[str, dict[str, object]]] = [
 ]
 OTHERS: list[tuple[str, dict[str, object]]] = [
     ("correct", {"action": "forward"}),
+    ("appraise", {"appraisal": "bad"}),
     ("phase", {"phase": Phase.CRITIC}),
     ("hand_over", {"to": None}),
 ]

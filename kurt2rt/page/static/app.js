@@ -5,13 +5,13 @@ import { Critic, CRITIC } from "./critic.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
+import { Organising } from "./organising.js";
 import { drawRobot } from "./robot_view.js";
 import { Drive, stick } from "./stick.js";
 import { setText, Why, WITHDRAWN } from "./why.js";
 import { WorldView } from "./world_view.js";
 
 const $ = (id) => document.getElementById(id);
-const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
 const TABS = ["teach", "drive", "lessons", "more"];
 const IN_CHARGE = [...TABS, "behaviours"]; // what only the teacher may touch
 const FASTEST_BY_HAND_M_S = 0.6;
@@ -19,7 +19,7 @@ const SAID_MS = 8000;
 const PICTURE_MS = 1000;
 const LIST_MS = 5000;
 const USUAL = ["slew limit", "speed limit"]; // each change of speed meets them
-const AUTONOMOUS = 5;
+const REINFORCEMENT = 3;
 
 const link = new Link();
 const drive = new Drive(link);
@@ -27,11 +27,11 @@ const why = new Why();
 const pad = new ActionPad($("actions"), teach);
 const lessons = new Lessons((lesson) => tell("undo", { lesson }));
 const critic = new Critic(appraise);
+const organising = new Organising(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
 let hello = null;
 let page = { seat: "elsewhere", device: "", robot: "" };
-let phaseNames = PHASES;
 
 // ---- Orders
 
@@ -163,7 +163,7 @@ link.addEventListener("page", ({ detail }) => {
 
 link.addEventListener("hello", ({ detail }) => {
   hello = detail;
-  phaseNames = namesOf(hello.phases);
+  organising.build(hello);
   pad.build(hello.actions);
   critic.build(hello);
   world.greet(hello);
@@ -172,8 +172,6 @@ link.addEventListener("hello", ({ detail }) => {
   $("view").hidden = !hello.simulated;
   document.body.classList.toggle("simulated", hello.simulated);
   if (!hello.simulated) showView("robot");
-  buildPhases();
-  buildBehaviours();
   pace();
 });
 
@@ -214,7 +212,7 @@ function show() {
   if (!state || !hello || shown === state) return;
   shown = state;
   setText($("phase"), `phase ${state.phase}`);
-  setText($("phase-name"), phaseNames[state.phase - 1] ?? "");
+  setText($("phase-name"), organising.phaseNames[state.phase - 1] ?? "");
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
@@ -223,12 +221,12 @@ function show() {
   showLink(state);
   why.show(state);
   pad.show(state);
+  $("rewards").classList.toggle("first", state.phase >= REINFORCEMENT); // on a low screen they are seen first
   critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
   setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);
   if (state.refused && drive.held) say("refused", state.refused);
-  showMore(state);
-  showBehaviour(state);
+  organising.show(state, inCharge());
   claim();
   draw();
 }
@@ -304,98 +302,6 @@ function claim() {
 const take = () => tell("take", {}, "take");
 $("claim-button").addEventListener("click", take);
 $("take-here").addEventListener("click", take);
-$("hand-over").addEventListener("click", () => tell("hand_over", { to: null }, "hand over"));
-
-// ---- What the robot is to follow, where a task teaches several behaviours
-
-function buildBehaviours() {
-  const names = hello.behaviours;
-  $("behaviours").hidden = names.length < 2;
-  $("behaviours").replaceChildren(
-    ...names.map((name) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.dataset.behaviour = name;
-      button.textContent = words(name);
-      button.addEventListener("click", () => tell("pursue", { behaviour: name }, words(name)));
-      return button;
-    }),
-  );
-}
-
-function showBehaviour(state) {
-  for (const button of $("behaviours").children) {
-    button.setAttribute("aria-pressed", String(button.dataset.behaviour === state.behaviour));
-  }
-}
-
-// ---- More
-
-function namesOf(phases) {
-  return PHASES.map((name, i) => {
-    const given = phases?.[i];
-    return typeof given === "string" && given ? given[0].toUpperCase() + given.slice(1) : name;
-  });
-}
-
-function buildPhases() {
-  $("phases").replaceChildren(
-    ...phaseNames.map((name, i) => {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.dataset.phase = i + 1;
-      const number = document.createElement("b");
-      number.textContent = `${i + 1} `;
-      const label = document.createElement("small");
-      label.className = "word";
-      label.textContent = name;
-      button.append(number, label);
-      const enter = () => tell("phase", { phase: i + 1 }, `phase ${i + 1}`);
-      // From then on it drives with nobody looking: not by a slip of the thumb.
-      if (i + 1 === AUTONOMOUS) twice(button, "sure?", enter);
-      else button.addEventListener("click", enter);
-      return button;
-    }),
-  );
-}
-
-function showMore(state) {
-  for (const button of $("phases").children) {
-    button.setAttribute("aria-pressed", String(Number(button.dataset.phase) === state.phase));
-  }
-  setText($("session-button"), state.session === null ? "Begin" : "End");
-  const name = $("session-name");
-  name.disabled = state.session !== null;
-  if (state.session !== null) name.value = state.session;
-  else if (!name.value) name.value = newSession();
-  setText($("who"), state.teacher === null ? "nobody teaches" : `${state.teacher} teaches`);
-  $("hand-over").disabled = !inCharge();
-  $("take-here").disabled = inCharge();
-}
-
-function newSession() {
-  const two = (number) => String(number).padStart(2, "0");
-  const now = new Date();
-  return `${now.getFullYear()}-${two(now.getMonth() + 1)}-${two(now.getDate())} ${two(now.getHours())}:${two(now.getMinutes())}`;
-}
-
-$("session-button").addEventListener("click", async () => {
-  if (link.state.session !== null) {
-    const answer = await tell("end_session");
-    if (answer.accepted) $("session-name").value = newSession();
-  } else {
-    tell("begin_session", { name: $("session-name").value.trim() || newSession() });
-  }
-});
-
-async function keep(name, args) {
-  const answer = await tell(name, args);
-  if (!answer.accepted) return;
-  const { name: file, sha256 } = answer.extra;
-  setText($("saved"), `${file ?? ""}  sha256 ${(sha256 ?? "").slice(0, 12)}…`);
-}
-$("save").addEventListener("click", () => keep("save", { label: $("save-label").value.trim() }));
-$("export").addEventListener("click", () => keep("export", {}));
 
 // ---- Touch
 
