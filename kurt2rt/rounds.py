@@ -100,9 +100,11 @@ class Rounds:
         self._screen.settled(acknowledgement)
 
     def save_statistics(self) -> None:
-        """Hand the counts to the journal's thread."""
-        counted = self._runtime.statistics
-        self._writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
+        """Hand what was counted, and what the RLAs are worth, to the journal's thread."""
+        counted, rule = self._runtime.statistics, self._runtime.reinforcement.rule
+        self._writer.submit_statistics(
+            Statistics(dict(counted.uses), dict(counted.transitions), dict(rule.values), dict(rule.edge_weights))
+        )
 
     def _ask(self, record: TickRecord) -> None:
         if not record.decision.asking:

@@ -3,21 +3,30 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from behaviors.judges.judge import Circumstances
 from behaviors.repertoire import load_repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.critic import Critic
+from kurt2rt.critic.settings import load_critic
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
 from kurt2rt.perception.weights import weights_of
-from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.rla.rla import CRITIC, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.inbox import TeacherInbox
+from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import LessonKeeper, Tick
 from kurt2rt.timing.clock import Clock
@@ -35,6 +44,7 @@ class Runtime:
     level: BasicLevel
     wanted: Wanted
     school: School
+    reinforcement: Reinforcement
     inbox: TeacherInbox
     statistics: StatisticsCounter
     ledger: Ledger
@@ -54,11 +64,13 @@ def build_runtime(
     level_override: Level | None = None,
     attended: bool = False,
     wanted: Wanted | None = None,
+    saved: Statistics | None = None,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
-    `statistics` goes on from what was counted before. `level_override` puts another layer at the wheels, with
-    knowledge and teaching unchanged behind it: the teacher's own policy, for instance, to see what it would reach.
+    `statistics` goes on from what was counted before, `saved` from what the RLAs were worth.
+    `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
+    own policy, for instance, to see what it would reach.
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
     `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
     Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
@@ -67,20 +79,32 @@ def build_runtime(
     definition = load_situation(task.situation, sensors)
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = weights_of(definition, changed, task.learning.past_weight, task.name)
-    system = RlaSystem(definition.dimensions, task.learning.radius, weights)
+    critic = load_critic(task.critic)
+    appraisals = Space(len(Circumstances._fields), critic.learning.radius, critic.learning.weight_vector)
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others={CRITIC: appraisals})
     events = tuple(events)
-    system.apply_all(events)
     period_s = settings.can.cycle_s
+    recent = RecentDecisions(definition.dimensions)
+    reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
+    reinforcement.recall(events, saved)
     repertoire = load_repertoire(task.repertoire, settings)
     wanted = wanted or Wanted(task.behaviours)
-    level = BasicLevel(system, repertoire, round(task.learning.minimum_action_s / period_s), wanted)
+    level = BasicLevel(
+        system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
+    )
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = load_repertoire(task.repertoire, settings)
+    agreement = Agreement(critic.agreement, critic.values)
+    agreement.hear_all(events)
     school = School(
         level,
         Authority(hand, attended=attended),
         insert_beyond_share=task.learning.insert_beyond_share,
         taken_command_ids=(event.origin.command_id for event in events),
+        reinforcement=reinforcement,
+        critic=Critic(system, critic),
+        agreement=agreement,
+        self_teaching=SelfTeaching(reinforcement, system, critic, agreement, period_s),
     )
     inbox = TeacherInbox()
     statistics = statistics or StatisticsCounter()
@@ -96,6 +120,9 @@ def build_runtime(
         ledger,
         now=clock.now_s,
         stale_infrared_s=settings.guard.stale_infrared_s,
+        circumstances=CircumstancesPerception(critic, settings),
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
-    return Runtime(settings, task, definition, level, wanted, school, inbox, statistics, ledger, tick, scheduler)
+    return Runtime(
+        settings, task, definition, level, wanted, school, reinforcement, inbox, statistics, ledger, tick, scheduler
+    )

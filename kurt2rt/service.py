@@ -78,6 +78,7 @@ async def serve(
                 statistics=opened.counter,
                 attended=openness is not None,
                 wanted=wanted,
+                saved=opened.saved,
             )
             if stopped:
                 runtime.school.stop("the robot program was started")

@@ -8,6 +8,7 @@ from hal.robot import Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
+from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
@@ -70,10 +71,15 @@ class Tick:
         *,
         now: Callable[[], float],
         stale_infrared_s: float,
+        circumstances: CircumstancesPerception | None = None,
     ) -> None:
-        """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation."""
+        """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
+
+        `circumstances`: what the school's critic looks at.
+        """
         self._robot = robot
         self._perception = perception
+        self._circumstances = circumstances
         self._level = level
         self._school = school
         self._inbox = inbox
@@ -92,9 +98,10 @@ class Tick:
 
         # While the robot waits for its teacher history stands still: autonomy has no waits to learn from.
         situation = self._perception.perceive(senses, history_frozen=not self._driving)
+        blind = not senses.infrared_age_s <= self._stale_infrared_s
+        circumstances, opinion = self._appraise(senses, blind=blind)
         mark(Stage.PERCEIVE)
 
-        blind = not senses.infrared_age_s <= self._stale_infrared_s
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
         for command in self._inbox.take():
@@ -116,7 +123,6 @@ class Tick:
                 events.append(event)
         decision = self._decide(tick, situation, senses, blind=blind)
         behaviour = self._school.wanted.behaviour
-        self._school.recent.remember(tick, situation, decision, behaviour, blind=blind)
         mark(Stage.DECIDE)
 
         # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.
@@ -130,12 +136,30 @@ class Tick:
         if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)
         self._statistics.count(decision.rla_id if self._driving else None)
+        # A robot that stands blames nobody, also where it is the guard that has it stand.
+        answered = decision if self._driving else decision._replace(action=None, answers=False)
+        self._school.recent.remember(
+            tick, situation, answered, behaviour, blind=blind, circumstances=circumstances, opinion=opinion
+        )
+        events.extend(self._school.learn(tick, answered, opinion))
         mark(Stage.LEARN)
 
         for event in events:
             self._keeper.submit(event)
         mark(Stage.PUBLISH)
-        return TickRecord(tick, now_s, senses, situation, decision, grant, tuple(results), behaviour)
+        return TickRecord(
+            tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion
+        )
+
+    def _appraise(self, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
+        """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
+        critic = self._school.critic
+        if self._circumstances is None or critic is None:
+            return None, None
+        circumstances = self._circumstances.perceive(senses, driving=self._driving)
+        if blind:
+            return None, None
+        return circumstances, critic.opinion(critic.vector_of(circumstances))
 
     def _decide(self, tick: int, situation: Situation, senses: Senses, *, blind: bool) -> Decision:
         school, authority = self._school, self._school.authority

@@ -1,12 +1,16 @@
 """The basic level: RLAs over the 72-D situation, of the taught behaviour that is wanted; actions of the repertoire."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import RlaRewarded, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.rla.rla import Appraised, Rla, RlaRewarded, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.rla.rla_system import Match, RlaSystem
 
 
@@ -25,8 +29,18 @@ def _named(behaviour: str) -> str:
 class BasicLevel:
     """Winner takes all, with a minimum time per action against dithering between neighbours."""
 
-    def __init__(self, system: RlaSystem, repertoire: Repertoire, minimum_action_ticks: int, wanted: Wanted) -> None:
-        """Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask."""
+    def __init__(
+        self,
+        system: RlaSystem,
+        repertoire: Repertoire,
+        minimum_action_ticks: int,
+        wanted: Wanted,
+        choice: Choice | None = None,
+    ) -> None:
+        """`choice`: among RLAs on the very same condition; without it the oldest answers.
+
+        Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask.
+        """
         for rla in system.rlas:
             if rla.behaviour not in wanted.behaviours:
                 raise UnknownBehaviourError(
@@ -34,7 +48,7 @@ class BasicLevel:
                     f"{', '.join(wanted.behaviours) or 'one without a name'}; "
                     "give the task that this knowledge was taught with"
                 )
-            if rla.action not in repertoire:
+            if rla.action not in repertoire and not rla.asks:
                 raise UnknownActionError(
                     f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
                     f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"
@@ -44,12 +58,16 @@ class BasicLevel:
         self.wanted = wanted
         self._pursued = wanted.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
-        self._rla_id: int | None = None
+        self._choice = choice
+        self._decisions = 0
+        self._driver: Rla | None = None
+        self._drivers_condition: NDArray[np.float64] | None = None
+        """Of the RLA that drives, once it was needed."""
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
         self.system.apply(event)
-        if not isinstance(event, RlaRewarded | SessionBegun | SessionEnded):
+        if not isinstance(event, RlaRewarded | Appraised | SessionBegun | SessionEnded):
             self._held.yield_next()
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
@@ -57,16 +75,33 @@ class BasicLevel:
         if self._pursued != self.wanted.behaviour:
             self._pursued = self.wanted.behaviour
             self._held.yield_next()
+        self._decisions += 1
         match = self.system.match(situation.vector, self._pursued)
         if stand_because is not None:
             return self._stand(stand_because, match)
         if match is None or not match.known:
             return self._stand(Cause.UNKNOWN, match)
-        cause = Cause.HELD
-        if self._held.choose(match.rla.action):
-            cause = Cause.RLA
-            self._rla_id = match.rla.rla_id
-        return Decision(self._held.step(senses), cause, self._held.name, self._rla_id, match)
+        rla = match.rla
+        if self._choice is not None:
+            group = self.system.competitors(rla)
+            if len(group) > 1:
+                rla = self._choice.among(group, self._decisions)
+        if self._held.choose(rla.action):
+            if rla is not self._driver:
+                self._driver, self._drivers_condition = rla, None
+            return Decision(self._held.step(senses), Cause.RLA, self._held.name, rla.rla_id, match, answers=True)
+        driver = self._driver
+        assert driver is not None
+        answers = driver.condition == rla.condition or self._inside(driver, situation)
+        return Decision(self._held.step(senses), Cause.HELD, self._held.name, driver.rla_id, match, answers)
+
+    def _inside(self, rla: Rla, situation: Situation) -> bool:
+        """Whether the situation lies within the radius of the RLA that drives, though another one is nearer."""
+        if self._drivers_condition is None:
+            self._drivers_condition = np.array(rla.condition)
+        off = (situation.vector - self._drivers_condition) * self.system.weights
+        radius = self.system.radius if rla.radius is None else rla.radius
+        return float(off @ off) <= radius * radius
 
     def _stand(self, cause: Cause, match: Match | None) -> Decision:
         """Stand; the next action begins anew."""

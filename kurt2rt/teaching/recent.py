@@ -77,6 +77,13 @@ class RecentDecisions:
         """The RLA that drove in a tick that is known while the situation lay inside its radius: who may be blamed."""
         return int(self._answering[tick % self._capacity]) or None
 
+    def answering_up_to(self, tick: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """All ticks that are kept, up to and with one, oldest first, and the RLA that answered in each (0: none)."""
+        ticks = np.arange(max(0, tick - self._capacity + 1), tick + 1)
+        rows = ticks % self._capacity
+        kept = self._ticks[rows] == ticks
+        return ticks[kept], self._answering[rows[kept]]
+
     def circumstances(self, tick: int) -> Circumstances | None:
         """The appraisal situation of a tick that is known; None where the robot saw nothing, or has no critic."""
         return self._circumstances[tick % self._capacity]

@@ -1,0 +1,43 @@
+"""What the actions of an RLA have earned: that of the present one, and, for an undo, that of those before it."""
+
+from typing import Generic, TypeVar
+
+EarnedT = TypeVar("EarnedT")
+
+
+class Accounts(Generic[EarnedT]):
+    """By RLA id; an RLA that gets another action begins anew, and its former account waits until that is undone."""
+
+    def __init__(self) -> None:
+        self.present: dict[int, EarnedT] = {}
+        """Of the action that each RLA has now, where anything was earned."""
+        self._former: dict[int, list[EarnedT | None]] = {}
+
+    def depth(self, rla_id: int) -> int:
+        """How many accounts lie below the present one."""
+        return len(self._former.get(rla_id, ()))
+
+    def renew(self, rla_id: int) -> None:
+        """The RLA has another action now."""
+        self._former.setdefault(rla_id, []).append(self.present.pop(rla_id, None))
+
+    def go_back(self, rla_id: int) -> None:
+        """The RLA has the action again that it had before."""
+        former = self._former.get(rla_id)
+        earned = former.pop() if former else None
+        self.present.pop(rla_id, None)
+        if earned is not None:
+            self.present[rla_id] = earned
+
+    def at(self, rla_id: int, depth: int) -> EarnedT | None:
+        """What lies at a depth; None where nothing was earned."""
+        former = self._former.get(rla_id, [])
+        return former[depth] if depth < len(former) else self.present.get(rla_id)
+
+    def put(self, rla_id: int, depth: int, earned: EarnedT) -> None:
+        """Put something else at a depth."""
+        former = self._former.get(rla_id, [])
+        if depth < len(former):
+            former[depth] = earned
+        else:
+            self.present[rla_id] = earned

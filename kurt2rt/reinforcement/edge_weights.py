@@ -1,0 +1,105 @@
+"""Weights on the edges of the RLA network (Illerhues and Goerke 2007): the smaller, the better what follows what.
+
+Each edge that was used begins at 100. Praise multiplies the weights of the last three transitions before the tick that
+is meant by 0.9, 0.95 and 0.97, newest first; blame divides by them. An RLA is worth by how much the edges into it have
+fallen: (100 - their mean) / 100.
+"""
+
+from collections.abc import Iterable, Mapping
+
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.reinforcement.accounts import Accounts
+from kurt2rt.reinforcement.rule import Booking
+from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.trace import Trace
+from kurt2rt.rla.rla import Credit
+
+FIRST_WEIGHT = 100.0
+
+_Edges = dict[int, float]
+"""Weights of the used edges into one RLA, by the RLA before it."""
+
+
+class EdgeWeights:
+    """Weights of the edges, and worths by them."""
+
+    def __init__(self, settings: ReinforcementSettings) -> None:
+        self._factors = settings.factors
+        self._accounts = Accounts[_Edges]()
+        self._before: int | None = None
+
+    def drove(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - what follows what is all that counts
+        """Take in one tick: another RLA than before makes an edge used."""
+        if rla_id == self._before:
+            return
+        if rla_id is not None and self._before is not None:
+            self._accounts.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
+        self._before = rla_id
+
+    def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
+        """What the change of the weights does to the worths."""
+        return tuple(
+            Credit(rla_id, _worth(edges) - _worth(self._accounts.present.get(rla_id)))
+            for rla_id, edges in self._changed(value, trace).items()
+        )
+
+    def take(self, value: int, trace: Trace) -> None:
+        """Multiply or divide the weights of the last transitions."""
+        self._accounts.present.update(self._changed(value, trace))
+
+    def book(self, bookings: Iterable[Booking], sign: int) -> None:
+        """Shift all edges into an RLA, so that its worth changes by the credit: which edge it was is not kept."""
+        for (rla_id, change), depth in bookings:
+            edges = self._accounts.at(rla_id, depth) or {}
+            shifted = {before: weight - sign * change * FIRST_WEIGHT for before, weight in edges.items()}
+            self._accounts.put(rla_id, depth, shifted)
+
+    def worth(self, rla_id: int) -> float:
+        """From -1 to 1; 0 for one that nothing was ever said of."""
+        return max(-1.0, min(1.0, _worth(self._accounts.present.get(rla_id))))
+
+    def depth(self, rla_id: int) -> int:
+        """How many actions it has had before."""
+        return self._accounts.depth(rla_id)
+
+    def renew(self, rla_id: int) -> None:
+        """The edges into it begin anew."""
+        self._accounts.renew(rla_id)
+
+    def go_back(self, rla_id: int) -> None:
+        """The edges into it as they were."""
+        self._accounts.go_back(rla_id)
+
+    @property
+    def values(self) -> Mapping[int, float]:
+        """None."""
+        return {}
+
+    @property
+    def edge_weights(self) -> Mapping[tuple[int, int], float]:
+        """Weights of all edges that were used."""
+        return {
+            (before, after): weight
+            for after, edges in self._accounts.present.items()
+            for before, weight in edges.items()
+        }
+
+    def restore(self, saved: Statistics) -> None:
+        """Weights as they were saved."""
+        self._accounts.present = {}
+        for (before, after), weight in saved.edge_weights.items():
+            self._accounts.present.setdefault(after, {})[before] = weight
+
+    def _changed(self, value: int, trace: Trace) -> dict[int, _Edges]:
+        """Edges into each RLA that the signal means, after it."""
+        changed: dict[int, _Edges] = {}
+        for (before, after), factor in zip(trace.transitions, self._factors, strict=False):
+            edges = changed.setdefault(after, dict(self._accounts.present.get(after, {})))
+            weight = edges.get(before, FIRST_WEIGHT)
+            edges[before] = weight * factor if value > 0 else weight / factor
+        return changed
+
+
+def _worth(edges: _Edges | None) -> float:
+    """Not clipped, so that credits add up."""
+    return (FIRST_WEIGHT - sum(edges.values()) / len(edges)) / FIRST_WEIGHT if edges else 0.0

@@ -1,0 +1,166 @@
+"""Reinforcement, put together: signals change what RLAs are worth, and one that has sunk is mended (paper, phase 3)."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.reinforcement.edge_weights import EdgeWeights
+from kurt2rt.reinforcement.repair import OriginOf, Repair
+from kurt2rt.reinforcement.rule import Booking, ReinforcementRule
+from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.td_lambda import TdLambda
+from kurt2rt.reinforcement.trace import Trace, trace_of
+from kurt2rt.rla.rla import (
+    CRITIC,
+    ActionReplaced,
+    Credit,
+    Lesson,
+    LessonUndone,
+    Origin,
+    Phase,
+    RlaCreated,
+    RlaRewarded,
+    TeachingEvent,
+)
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.teaching.recent import RecentDecisions
+
+
+class _Blame(NamedTuple):
+    """A -1 whose RLAs have yet to be looked at."""
+
+    rlas: tuple[int, ...]
+    signal: str
+    """Command id of the signal."""
+    teacher: str
+
+
+class Reinforcement:
+    """Follows the teaching events and the ticks; what it changes in the knowledge is left to its owner to apply."""
+
+    def __init__(
+        self, system: RlaSystem, recent: RecentDecisions, settings: ReinforcementSettings, period_s: float
+    ) -> None:
+        """`recent`: the decisions that signals are about. `period_s` of a tick."""
+        self._system = system
+        self.recent = recent
+        self._period_s = period_s
+        self._settings = settings
+        self.rule: ReinforcementRule = (
+            TdLambda(settings, period_s) if settings.rule == "td_lambda" else EdgeWeights(settings)
+        )
+        self.choice = Choice(
+            self.rule.worth,
+            epsilon=settings.epsilon,
+            hold_ticks=round(settings.hold_s / period_s),
+            seed=settings.seed,
+        )
+        self._repair = Repair(system, self.rule.worth, settings)
+        self._bookings: dict[str, tuple[Booking, ...]] = {}
+        """Of each reward in the journal, by its command id: what an undo takes off."""
+        self._since: dict[int, int] = {}
+        """RLA id -> tick of this run in which it got the action it has."""
+        self._blames: list[_Blame] = []
+
+    def worth(self, rla_id: int) -> float:
+        """What the action is worth that an RLA has now."""
+        return self.rule.worth(rla_id)
+
+    def recall(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> None:
+        """Take in what was taught before this run, as it is applied to the system; then what was counted."""
+        for event in events:
+            self._system.apply(event)
+            if isinstance(event, RlaRewarded):
+                self._enter(event)
+                self.rule.book(self._bookings[event.origin.command_id], 1)
+            else:
+                self.hear(event)
+        self._since.clear()  # ticks of other runs
+        self._blames.clear()
+        if saved is not None and (saved.values or saved.edge_weights):
+            self.rule.restore(saved)
+
+    def credits_of(self, value: int, tick: int) -> tuple[Credit, ...]:
+        """What a teacher's signal about a tick that is remembered would change."""
+        return self.rule.credits_of(value, self._trace(tick, None))
+
+    def hear(self, event: TeachingEvent) -> None:
+        """Follow an event that was applied to the system just now."""
+        match event:
+            case RlaRewarded(_, value, decided_at_tick, origin, credits_):
+                self._enter(event)
+                self.rule.take(value, self._trace(decided_at_tick, None))
+                self._blame(value, tuple(credit.rla_id for credit in credits_), origin.command_id, origin.teacher)
+            case ActionReplaced(rla_id, _, _, origin):
+                self.rule.renew(rla_id)
+                self._since[rla_id] = origin.tick
+            case RlaCreated(rla):
+                self._repair.hear(rla)
+            case LessonUndone(lesson, origin):
+                self._hear_undone(lesson, origin.tick)
+
+    def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
+        """Learn from a signal that is no event: one of the critic's, which changes statistics only.
+
+        `signal`: what its changes are called after.
+        """
+        trace = self._trace(tick, trace_s)
+        self.rule.take(value, trace)
+        self._blame(value, tuple(trace.shares), signal, teacher)
+
+    def drove(self, rla_id: int | None, tick: int) -> None:
+        """Learn from a tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
+        self.rule.drove(rla_id, tick)
+
+    def repairs(self, tick: int, phase: Phase) -> Iterator[Lesson]:
+        """What is to be changed after blame, one by one: apply each before the next is asked for."""
+        if not self._blames:
+            return
+        blames, self._blames = self._blames, []
+        mend = self._repair.try_another if phase is Phase.AUTONOMOUS else self._repair.ask_again
+        for blame in blames:
+            for rla_id in blame.rlas:
+                if self._repair.sunk(rla_id):
+                    yield from mend(rla_id, self._origins(blame, phase, tick))
+
+    def _origins(self, blame: _Blame, phase: Phase, tick: int) -> OriginOf:
+        def origin_of(word: str) -> Origin:
+            # The critic's signals have no ids of their own; no two lessons are the same in number.
+            number = f"-{len(self._system.lessons) + 1}" if blame.teacher == CRITIC else ""
+            return Origin(f"{blame.signal}{number}/{word}", blame.teacher, phase, tick)
+
+        return origin_of
+
+    def _trace(self, tick: int, trace_s: float | None) -> Trace:
+        seconds = self._settings.trace_s if trace_s is None else trace_s
+        return trace_of(
+            self.recent,
+            tick,
+            trace_ticks=seconds / self._period_s,
+            most_transitions=len(self._settings.factors),
+            since=self._since,
+        )
+
+    def _enter(self, event: RlaRewarded) -> None:
+        self._bookings[event.origin.command_id] = tuple(
+            Booking(credit, self.rule.depth(credit.rla_id)) for credit in event.credits
+        )
+
+    def _blame(self, value: int, rlas: tuple[int, ...], signal: str, teacher: str) -> None:
+        if value < 0:
+            self.choice.forget()
+            self._blames.append(_Blame(rlas, signal, teacher))
+
+    def _hear_undone(self, lesson: str, tick: int) -> None:
+        record = self._system.lesson(lesson)
+        assert record is not None
+        match record.event:
+            case RlaRewarded():
+                self.rule.book(self._bookings.pop(lesson), -1)
+                self.choice.forget()
+            case ActionReplaced(rla_id):
+                self.rule.go_back(rla_id)
+                self._since[rla_id] = tick
+            case RlaCreated(rla):
+                self._repair.hear(rla, undone=True)

@@ -1,0 +1,93 @@
+"""What becomes of an RLA that has sunk: asked anew where somebody can be asked, else another action is tried."""
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+
+from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.rla.rla import (
+    ActionWithdrawn,
+    Condition,
+    Lesson,
+    Origin,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+)
+from kurt2rt.rla.rla_system import RlaSystem
+
+OriginOf = Callable[[str], Origin]
+"""Origin of a change, of which a word tells what it is and to which RLA."""
+
+
+class Repair:
+    """Makes the changes that mend an RLA; whoever asks for them applies them, one after the other."""
+
+    def __init__(self, system: RlaSystem, worth: Callable[[int], float], settings: ReinforcementSettings) -> None:
+        """`worth` of an RLA by its id."""
+        self._system = system
+        self._worth = worth
+        self._settings = settings
+        self._tried: dict[tuple[str, Condition], list[str]] = {}
+        """Actions tried on a condition, by behaviour and condition, where there were competitors."""
+
+    def sunk(self, rla_id: int) -> bool:
+        """Whether an RLA lives, has an action, and is worth too little."""
+        rla = self._system.get(rla_id)
+        return rla is not None and not rla.asks and self._worth(rla_id) < self._settings.sunk_below
+
+    def hear(self, created: Rla, *, undone: bool = False) -> None:
+        """An RLA was created, or its creation undone: where others stand on its condition, it was a try."""
+        if undone:
+            tried = self._tried.get(_place(created), [])
+            if created.action in tried:
+                tried.remove(created.action)
+            return
+        group = self._system.competitors(created)
+        if len(group) > 1:
+            tried = self._tried.setdefault(_place(created), [])
+            tried.extend(rla.action for rla in group if rla.action not in tried)
+
+    def ask_again(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
+        """Withdraw the action of an RLA that has sunk, so that its teacher is asked; a competitor is not needed."""
+        rla = self._system.get(rla_id)
+        if rla is None or rla.asks:
+            return
+        if len(self._system.competitors(rla)) > 1:
+            yield RlaDeleted(rla_id, origin_of(f"delete-{rla_id}"))
+        else:
+            yield ActionWithdrawn(rla_id, rla.action, origin_of(f"withdraw-{rla_id}"))
+
+    def try_another(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
+        """Where nobody is asked: a competitor with a neighbour's action, or an end to all once enough were tried."""
+        rla = self._system.get(rla_id)
+        if rla is None or rla.asks:
+            return
+        group = self._system.competitors(rla)
+        if any(not self.sunk(each.rla_id) and not each.asks for each in group):
+            yield RlaDeleted(rla_id, origin_of(f"delete-{rla_id}"))
+            return
+        tried = self._tried.get(_place(rla), [rla.action])
+        action = self._action_to_try(rla, tried) if len(tried) <= self._settings.most_competitors else None
+        if action is None:
+            for each in group:
+                yield RlaDeleted(each.rla_id, origin_of(f"delete-{each.rla_id}"))
+            return
+        new_id = self._system.next_id
+        origin = origin_of(f"try-{new_id}")
+        yield RlaCreated(Rla(new_id, rla.condition, action, rla.radius, origin, rla.behaviour, rla.level))
+
+    def _action_to_try(self, rla: Rla, tried: list[str]) -> str | None:
+        """What most of the nearest neighbours do that was not tried; None where all they do was."""
+        neighbours = [each for each in self._system.neighbours(rla, len(self._system)) if not each.asks]
+        votes: Counter[str] = Counter()
+        for place, each in enumerate(neighbours, 1):
+            votes[each.action] += 1
+            if place >= self._settings.neighbours:
+                untried = [action for action, _ in votes.most_common() if action not in tried]
+                if untried:
+                    return untried[0]
+        return next((action for action, _ in votes.most_common() if action not in tried), None)
+
+
+def _place(rla: Rla) -> tuple[str, Condition]:
+    return rla.behaviour, rla.condition

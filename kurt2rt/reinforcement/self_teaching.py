@@ -1,0 +1,68 @@
+"""The critic in its teacher's place: its signals, and the guard that takes back what made things worse (phase 5)."""
+
+from collections.abc import Iterator
+
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.autonomy import Autonomy
+from kurt2rt.critic.best_knowledge import BestKnowledge
+from kurt2rt.critic.critic import Opinion
+from kurt2rt.critic.settings import CriticSettings
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.layers.decision import Decision
+from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.rla.rla import CRITIC, LessonUndone, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem
+
+
+class SelfTeaching:
+    """Acts while the critic is trusted; to be asked in phase 5 only. Without trust it does nothing."""
+
+    def __init__(
+        self,
+        reinforcement: Reinforcement,
+        system: RlaSystem,
+        settings: CriticSettings,
+        agreement: Agreement,
+        period_s: float,
+    ) -> None:
+        """`period_s` of a tick."""
+        self._reinforcement = reinforcement
+        self._system = system
+        self._agreement = agreement
+        self._autonomy = Autonomy(settings, agreement, period_s)
+        self.best = BestKnowledge(settings.best, period_s)
+        self._best_score: float | None = None
+        self._best_statistics = self._statistics()
+        self.trusted = agreement.trusted
+        """Whether the critic may act; kept, because it changes only with what is heard."""
+
+    def hear(self, event: TeachingEvent) -> None:
+        """Follow an event that was applied just now, and that the agreement has heard."""
+        self.trusted = self._agreement.trusted
+        self.best.changed(event)
+
+    def signal(self, tick: int, decision: Decision, opinion: Opinion | None) -> None:
+        """Learn from what the critic thinks of this tick, as from a teacher's signal."""
+        signal = self._autonomy.signal(tick, opinion, driving=decision.answers)
+        if signal is not None:
+            self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)
+
+    def roll_back(self, tick: int, decision: Decision, opinion: Opinion | None) -> Iterator[LessonUndone]:
+        """Count the tick; after a window that was too bad, what to undo, one by one: apply each before the next."""
+        best = self.best
+        said = None if opinion is None else opinion.said
+        undone = best.look(tick, said, decision.driving)
+        if best.best != self._best_score:
+            self._best_score = best.best
+            self._best_statistics = self._statistics()
+        if undone:
+            for event in undone:
+                if self._system.why_not_undo(event.lesson) is None:  # a teacher went on from there: his lesson stays
+                    yield event
+            # What is come back to is as it was worth then: else the same RLAs would sink again at once.
+            self._reinforcement.rule.restore(self._best_statistics)
+            self._reinforcement.choice.forget()
+
+    def _statistics(self) -> Statistics:
+        rule = self._reinforcement.rule
+        return Statistics(values=dict(rule.values), edge_weights=dict(rule.edge_weights))
