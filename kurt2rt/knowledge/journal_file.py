@@ -219,10 +219,10 @@ def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, Le
     """Add what a file lacks that was begun by an earlier kurt2rt, or without these levels. Raises KnowledgeError."""
     known = read_binding(connection, path).levels
     missing = {level: features for level, features in levels.items() if level not in known}
-    tables = [statement for name, statement in LATER_TABLES.items() if not has_table(connection, name)]
-    if not missing and not tables:
-        return
     try:
+        tables = [statement for name, statement in LATER_TABLES.items() if not has_table(connection, name)]
+        if not missing and not tables:
+            return
         connection.execute("BEGIN IMMEDIATE")
         try:
             for statement in tables:
