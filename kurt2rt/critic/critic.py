@@ -40,6 +40,9 @@ class Critic:
         self.settings = settings
         self._system = system
         self._appraisals: dict[str, AppraisalSettings] = {each.name: each for each in settings.appraisals}
+        self._thought: Opinion | None = None
+        self._lessons = -1
+        self._think_again_tick = 0
 
     @property
     def appraisals(self) -> tuple[str, ...]:
@@ -50,6 +53,18 @@ class Critic:
     def insert_beyond(self) -> float:
         """Farther than this from the nearest condition another opinion is inserted, else it replaces."""
         return self.settings.learning.insert_beyond_share * self.settings.learning.radius
+
+    def think(self, tick: int, circumstances: Circumstances) -> Opinion | None:
+        """What it thinks in this tick, looked up anew every few ticks and after each lesson; None before its first one.
+
+        Circumstances do not change within hundredths of a second, and the search would be the dearest part of a tick.
+        """
+        lessons = self._system.standing_lessons
+        if tick >= self._think_again_tick or lessons != self._lessons:
+            self._thought = self.opinion(self.vector_of(circumstances))
+            self._lessons = lessons
+            self._think_again_tick = tick + self.settings.think_every_ticks
+        return self._thought
 
     def vector_of(self, circumstances: Circumstances) -> NDArray[np.float64]:
         """Appraisal situation vector (d,), unweighted, for `opinion` and for conditions."""

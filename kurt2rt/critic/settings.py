@@ -144,6 +144,8 @@ class CriticSettings(Settings):
     appraisals: Annotated[tuple[AppraisalSettings, ...], Field(min_length=1)]
     perception: CircumstancesSettings
     learning: CriticLearningSettings
+    think_every_ticks: Annotated[int, Field(ge=1, le=100)]
+    """How often it is looked up what it thinks."""
     agreement: AgreementSettings
     signal_every_s: SignalEverySettings
     best: BestSettings

@@ -5,7 +5,7 @@ import pytest
 
 from kurt2rt.critic.critic import Critic
 from kurt2rt.critic.settings import NAMES
-from kurt2rt.rla.rla import BASIC, CRITIC, ActionWithdrawn, Rla, RlaCreated
+from kurt2rt.rla.rla import BASIC, CRITIC, ActionReplaced, ActionWithdrawn, Rla, RlaCreated
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from tests.critic.helpers import FREE, SETTINGS, appraisal, origin
 
@@ -60,6 +60,19 @@ def test_an_appraisal_that_was_withdrawn_or_has_no_meaning_here_is_no_opinion() 
         said = critic.opinion(critic.vector_of(circumstances))
         assert said is not None
         assert said.said is None
+
+
+def test_it_thinks_anew_every_few_ticks_and_after_each_lesson() -> None:
+    knowledge = system()
+    critic = Critic(knowledge, SETTINGS.model_copy(update={"think_every_ticks": 5}))
+    assert critic.think(10, FREE) is None
+    knowledge.apply_all([appraisal(1, "good", FREE), appraisal(2, "bad", CLOSE)])
+    thought = [critic.think(tick, FREE if tick == 11 else CLOSE) for tick in range(11, 18)]
+    assert [opinion.value for opinion in thought if opinion is not None] == [1, 1, 1, 1, 1, -1, -1]
+    knowledge.apply(ActionReplaced(2, "neutral", "bad", origin()))
+    now = critic.think(18, CLOSE)
+    assert now is not None
+    assert now.appraisal == "neutral"
 
 
 def test_circumstances_become_numbers_in_their_order() -> None:
