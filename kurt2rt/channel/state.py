@@ -79,7 +79,7 @@ class State:
     behaviour: str = ""
     """The taught behaviour that is wanted; empty where the task has only one."""
     value: float | None = None
-    """V of the RLA that drives: what follows it, as rewards have taught; None while none drives or nothing learns."""
+    """What the action of the RLA that drives is worth, as rewards have taught; None while none drives."""
     opinion: int | None = None
     """What the critic thinks of this situation: -1, 0 or +1; None where it has no opinion."""
     opinion_of: int | None = None

@@ -88,6 +88,7 @@ class Telling:
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
             behaviour=record.behaviour,
+            value=None if decision.rla_id is None else float(runtime.reinforcement.worth(decision.rla_id)),
             opinion=None if opinion is None else opinion.said,
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,

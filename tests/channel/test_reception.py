@@ -33,6 +33,7 @@ from kurt2rt.channel.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.commands import Stop, Watch
@@ -518,6 +519,42 @@ async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_wor
     ):
         refused = await desk.ask(request)
         assert (why(refused), refused.body["text"]) == ("refused", "that cannot be")
+
+
+# The critic.
+
+
+async def test_the_robot_tells_what_its_critic_can_be_taught(desk: Desk) -> None:
+    hello = (await desk.ask(HelloRequest())).body
+    assert hello["appraisals"] == [["bad", -1], ["neutral", 0], ["good", 1]]
+    assert hello["trusted_from"] == load_critic().agreement.bound
+
+
+async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> None:
+    meant = desk.run(400, counts=100).tick
+    desk.run(400, counts=700)
+    blame = desk.command(AppraiseRequest, "bad", meant)
+    assert (await desk.ask(blame)).body["text"] == "appraisal RLA 1 taught: bad"
+    assert (await desk.ask(blame)).body["text"] == "appraisal RLA 1 taught: bad"
+    assert opinion_at(desk, 700) is None
+    assert opinion_at(desk, 100) == -1
+    again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
+    assert (again.verdict, again.body["text"]) == (Verdict.DONE, "the critic thought bad, too")
+    lessons = (await desk.ask(LessonsRequest(5))).body["lessons"]
+    assert [text for _, text, *_ in lessons] == ["appraisal RLA 1 taught: bad"]  # that it agreed is no lesson
+
+
+async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Desk) -> None:
+    refused = await desk.ask(desk.command(AppraiseRequest, "lovely", None))
+    assert (why(refused), refused.body["text"]) == (
+        "refused",
+        "there is no appraisal 'lovely'; the critic knows: bad, neutral, good",
+    )
+
+
+def opinion_at(desk: Desk, counts: int) -> int | None:
+    """What the critic thinks where the sensors have shown the same for a while."""
+    return desk.telling.picture(desk.run(400, counts=counts)).opinion
 
 
 # Several taught behaviours.

@@ -6,19 +6,23 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.channel.requests import (
+    AppraiseRequest,
     BehaviourRequest,
     PhaseRequest,
     PursueRequest,
     ResumeRequest,
+    RewardRequest,
     SessionRequest,
     TakeRequest,
 )
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.channel.wire import decode_state, encode_state
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
 
+LEAST = load_critic().agreement.least
 COUNT = len(ROBOT.infrared.sensors)
 
 
@@ -68,6 +72,7 @@ def test_a_robot_that_knows_nothing(desk: Desk) -> None:
         late_p99_ms=0.0,
         missed_ticks=0,
         place=None,
+        signals_missing=(LEAST, LEAST),
     )
 
 
@@ -186,3 +191,63 @@ async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it
     await desk.ask(desk.command(PursueRequest, "turn_left"))
     told = picture(desk)
     assert (told.behaviour, told.nearest, told.cause) == ("turn_left", None, "unknown")
+
+
+async def drives(desk: Desk) -> None:
+    """The robot drives by what it was taught, and its teacher looks."""
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    desk.run()
+    assert picture(desk).cause == "rla"
+
+
+async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(desk: Desk) -> None:
+    await drives(desk)
+    assert (picture(desk).opinion, picture(desk).opinion_of) == (None, None)
+    reply = await desk.ask(desk.command(AppraiseRequest, "bad", None))
+    assert reply.body["text"] == "appraisal RLA 2 taught: bad"
+    desk.run()
+    told = picture(desk)
+    assert (told.opinion, told.opinion_of, told.rla) == (-1, 2, 1)
+    assert (told.signals_missing, told.agreement, told.trusted) == ((LEAST - 1, LEAST), None, False)
+
+
+async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) -> None:
+    await drives(desk)
+    await desk.ask(desk.command(AppraiseRequest, "bad", None))
+    for each in ("bad",) * (LEAST - 1) + ("good",) * LEAST:
+        await desk.stream(desk.watch())
+        desk.run()
+        await desk.ask(desk.command(AppraiseRequest, each, None))
+    told = picture(desk)
+    # Of each value the first one was news to the critic, and was learnt.
+    assert told.agreement == pytest.approx((LEAST - 1) / LEAST)
+    assert (told.trusted, told.signals_missing) == (True, (0, 0))
+
+
+async def test_a_reward_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:
+    assert picture(desk).value is None
+    await drives(desk)
+    before = picture(desk).value
+    assert before is not None
+    await desk.ask(desk.command(RewardRequest, 1, None))
+    after = picture(desk).value
+    assert after is not None
+    assert after > before
+
+
+async def test_where_an_action_was_withdrawn_it_asks_again(desk: Desk) -> None:
+    await drives(desk)
+    while picture(desk).cause == "rla":
+        for _ in range(10):
+            await desk.stream(desk.watch())
+            desk.run(10)
+        await desk.ask(desk.command(RewardRequest, -1, None))
+        desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.nearest, told.nearest_action) == ("unknown", None, 1, "ask")
+    assert told.distance < told.radius
+    assert (await desk.ask(desk.answer("back"))).body["ok"]
+    await desk.stream(desk.watch())
+    desk.run()
+    assert (picture(desk).cause, picture(desk).action, picture(desk).rla) == ("rla", "back", 1)

@@ -97,7 +97,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
 
     lesson.show(phase=3, value=0.52)
     phone.wait(lambda: not phone.find("#critic").is_displayed(), "before phase 4 nobody sees it")
-    lesson.reads("#gauge-text", "V 0.52")
+    lesson.reads("#gauge-text", "worth 0.52")
     phone.touch("#blame")
     phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
 
