@@ -99,7 +99,7 @@ class Tick:
         # While the robot waits for its teacher history stands still: autonomy has no waits to learn from.
         situation = self._perception.perceive(senses, history_frozen=not self._driving)
         blind = not senses.infrared_age_s <= self._stale_infrared_s
-        circumstances, opinion = self._appraise(senses, blind=blind)
+        circumstances, opinion = self._appraise(tick, senses, blind=blind)
         mark(Stage.PERCEIVE)
 
         results: list[CommandResult] = []
@@ -151,7 +151,7 @@ class Tick:
             tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion
         )
 
-    def _appraise(self, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
+    def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
         critic = self._school.critic
         if self._circumstances is None or critic is None:
@@ -159,7 +159,7 @@ class Tick:
         circumstances = self._circumstances.perceive(senses, driving=self._driving)
         if blind:
             return None, None
-        return circumstances, critic.opinion(critic.vector_of(circumstances))
+        return circumstances, critic.think(tick, circumstances)
 
     def _decide(self, tick: int, situation: Situation, senses: Senses, *, blind: bool) -> Decision:
         school, authority = self._school, self._school.authority
