@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.channel.channel import Channel
-from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from kurt2rt.runtime import Runtime
 from kurt2rt.service_settings import ServiceSettings
@@ -101,10 +100,7 @@ class Rounds:
 
     def save_statistics(self) -> None:
         """Hand what was counted, and what the RLAs are worth, to the journal's thread."""
-        counted, rule = self._runtime.statistics, self._runtime.reinforcement.rule
-        self._writer.submit_statistics(
-            Statistics(dict(counted.uses), dict(counted.transitions), dict(rule.values), dict(rule.edge_weights))
-        )
+        self._writer.submit_statistics(self._runtime.to_save())
 
     def _ask(self, record: TickRecord) -> None:
         if not record.decision.asking:

@@ -51,6 +51,11 @@ class Runtime:
     tick: Tick
     scheduler: Scheduler
 
+    def to_save(self) -> Statistics:
+        """What was counted, and what the RLAs are worth, as it is now."""
+        counted, rule = self.statistics, self.reinforcement.rule
+        return Statistics(dict(counted.uses), dict(counted.transitions), dict(rule.values), dict(rule.edge_weights))
+
 
 def build_runtime(
     robot: Robot,

@@ -74,6 +74,7 @@ _COMMANDS = (
     "lesson",
     "exam",
     "paper",
+    "phases",
     "knowledge",
     "commission",
     "faults",

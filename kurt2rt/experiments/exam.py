@@ -94,7 +94,7 @@ async def examine(
     seed: int,
     on_progress: Callable[[float], None],
     by_teacher: bool = False,
-    saved: Statistics | None = None,  # noqa: ARG001 - until rewards change values
+    saved: Statistics | None = None,
     stuck_ends: bool = True,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
@@ -116,7 +116,7 @@ async def examine(
         )
     clock = LockstepClock(arena.step)
     runtime = build_runtime(
-        arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted
+        arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted, saved=saved
     )
     # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")

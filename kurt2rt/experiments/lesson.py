@@ -13,11 +13,12 @@ from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.load import Load, Minute
+from kurt2rt.experiments.primitives import primitives
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import Command, DeleteRla, Reward
 from kurt2rt.teaching.scripted_appraiser import Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
@@ -90,7 +91,7 @@ async def teach(
     seed: int,
     on_progress: Callable[[float], None],
     statistics: StatisticsCounter | None = None,
-    saved: Statistics | None = None,  # noqa: ARG001 - until rewards change values
+    saved: Statistics | None = None,
     plan: LessonPlan | None = None,
 ) -> LessonResult:
     """Teach the task for its whole duration; what was taught goes to `keeper`.
@@ -102,9 +103,10 @@ async def teach(
     plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics)
+    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics, saved=saved)
     session = f"{plan.purpose}-{seed}-after-{len(events)}"
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+    critics = runtime.school.agreement
     chance = random.Random(f"course of {session}")
     drive = Drive(arena, task, no_way_s=task.teaching.rescue_after_s, period_s=period_s, chance=chance)
     in_sight = task.teaching.reposition_to == "in_sight"
@@ -147,7 +149,7 @@ async def teach(
             ask_positions.append(arena.position)
         asking = record.decision.asking
         unknown += asking
-        trusted += _trusted(runtime)
+        trusted += critics is not None and critics.trusted
         drive.follow()
         if drive.makes_no_way(waits=asking and teacher.answers):
             drive.rescue()
@@ -167,7 +169,7 @@ async def teach(
             growth.append(len(runtime.level.system))
             on_progress(record.now_s)
         if record.tick % (_AGREEMENT_EVERY_S * ticks_per_second) == 0:
-            agreement.append(_agreement(runtime))
+            agreement.append(None if critics is None else critics.share)
 
     if drive.course.behaviour != runtime.wanted.behaviour:
         runtime.inbox.put(teacher.pursue(drive.course.behaviour))
@@ -204,7 +206,7 @@ async def teach(
         share_unknown=unknown / max(ticks, 1),
         agreement=tuple(agreement),
         share_trusted=trusted / max(ticks, 1),
-        saved=_saved(runtime),
+        saved=runtime.to_save(),
     )
 
 
@@ -235,23 +237,12 @@ def _teacher_of(
     habits = Habits(
         reaction=round(task.teaching.teacher.reaction_s / period_s),
         every={value: round(each_s / period_s) for value, each_s in every_s.items()},
+        gap=round(times.gap_s / period_s),
         most_blame=times.most_blame,
     )
     # Where several opinions are worth the same, the first one says it.
     named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if signs else {}
     answering = teacher_of(task, settings, actions, seed=seed, session=session)
-    return ScriptedAppraiser(answering, habits, signs, named, session=session, seed=seed, shown=actions)
-
-
-def _trusted(runtime: Runtime) -> bool:
-    agreement = getattr(runtime.school, "agreement", None)
-    return agreement is not None and agreement.trusted
-
-
-def _agreement(runtime: Runtime) -> float | None:
-    agreement = getattr(runtime.school, "agreement", None)
-    return None if agreement is None else agreement.share
-
-
-def _saved(runtime: Runtime) -> Statistics:
-    return Statistics(dict(runtime.statistics.uses), dict(runtime.statistics.transitions))
+    return ScriptedAppraiser(
+        answering, habits, signs, named, session=session, seed=seed, shown=primitives(task.repertoire)
+    )

@@ -18,6 +18,8 @@ class SignalTimes:
     good_every_s: float = 2.0
     neutral_every_s: float = 2.0
     """Only the critic is taught what is neutral."""
+    gap_s: float = 0.0
+    """The shortest time between two signals of any kind."""
     most_blame: int = 0
     """He blames no more often than this; 0: as often as he likes."""
 

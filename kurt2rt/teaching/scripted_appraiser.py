@@ -23,6 +23,8 @@ class Habits:
     """From the picture that he means to the signal."""
     every: Mapping[int, int]
     """The shortest time from one signal to the next of the same value, by value; neutral ones teach the critic only."""
+    gap: int = 0
+    """The shortest time between two signals of any value."""
     most_blame: int = 0
     """He blames no more often than this; 0: as often as he likes."""
 
@@ -96,6 +98,7 @@ class ScriptedAppraiser:
         self._shown = tuple(shown)
         self._said = self._blamed = 0
         self._next_tick: dict[int, int] = {}
+        self._next_any = 0
         self._waiting: deque[_Said] = deque()
         self._resume_at: int | None = None
         self.phase = answering.phase
@@ -154,13 +157,14 @@ class ScriptedAppraiser:
         if seen is None:
             return
         value, tick = seen
-        if record.tick < self._next_tick.get(value, 0):
+        if record.tick < max(self._next_tick.get(value, 0), self._next_any):
             return
         command = (
             self._reward(value, tick, record) if self.phase is Phase.REINFORCEMENT else self._appraise(value, tick)
         )
         if command is not None:
             self._next_tick[value] = record.tick + self._habits.every[value]
+            self._next_any = record.tick + self._habits.gap
             self._waiting.append(_Said(record.tick + self._habits.reaction, command))
 
     def _reward(self, value: int, tick: int, record: TickRecord) -> Command | None:

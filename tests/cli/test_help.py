@@ -32,6 +32,7 @@ def test_every_command_is_found() -> None:
             "lesson",
             "exam",
             "paper",
+            "phases",
             "knowledge",
             "show",
             "lessons",

@@ -95,14 +95,18 @@ class Fingerprints:
         self._stage = stage
         self._known: dict[tuple[str, str], str] = {}
 
-    def of(self, task: TaskSettings, worlds: Iterable[str]) -> MadeOf:
-        """Of one job that drives in these worlds. Raises hal.settings.SettingsError for what cannot be used."""
+    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> MadeOf:
+        """Of one job that drives in these worlds; `more`: what else it goes by.
+
+        Raises hal.settings.SettingsError for what cannot be used.
+        """
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
         return MadeOf(
             task=settings_hash(
                 of_task,
                 self._settings("situations", task.situation),
                 self._settings("repertoires", task.repertoire),
+                *more,
             ),
             robot=self._robot,
             worlds=settings_hash(*(self._settings("worlds", world) for world in sorted(set(worlds)))),

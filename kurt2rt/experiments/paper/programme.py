@@ -17,10 +17,9 @@ from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
 from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.experiments.phases.settings import PHASES
+from kurt2rt.experiments.shown.judging import ROBOTS
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
-ROBOTS = 20
-"""Robots that the numbers are asked of. So many that follow each other share all generated worlds."""
 OWN = {f"kurt2rt/experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")}
 """Modules that say how long and where robots drive here, and what of it is kept."""
 
@@ -138,7 +137,10 @@ def plan(
 
 
 def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
-    """Generated worlds that the robot of a seed drives in; which ones the other seeds are does not matter."""
+    """Generated worlds that the robot of a seed drives in; 20 seeds that follow each other share all of them.
+
+    Which ones the other seeds are does not matter.
+    """
     return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
 
 

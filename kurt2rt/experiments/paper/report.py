@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-from kurt2rt.experiments.paper.programme import ROBOTS
 from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import Study
 from kurt2rt.experiments.paper.tables import sheets, unseen_sheet
+from kurt2rt.experiments.shown.judging import ROBOTS
 from kurt2rt.experiments.shown.page import spans, write_page
 from kurt2rt.experiments.shown.picture import Picture
 

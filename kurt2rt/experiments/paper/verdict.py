@@ -2,25 +2,10 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from kurt2rt.experiments.paper.settings import AskedSettings
 from kurt2rt.experiments.paper.summary import Summary, WorldSummary
-
-
-@dataclass(frozen=True, slots=True)
-class Verdict:
-    """One number that was asked for."""
-
-    what: str
-    asked: str
-    came: str
-    met: bool
-
-    @property
-    def word(self) -> str:
-        """As it is shown: a miss is in capitals, and no colour is needed to see it."""
-        return "met" if self.met else "MISSED"
+from kurt2rt.experiments.shown.verdict import Verdict
 
 
 def verdicts(summary: Summary) -> Iterator[Verdict]:

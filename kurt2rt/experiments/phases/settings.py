@@ -1,4 +1,81 @@
-"""Schema of the section `phases` of a task."""
+"""Schema of the section `phases` of a task: how long phases 3 to 5 and their controls last, and what is asked."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from hal.settings import Settings
 
 PHASES = ("phases", "judge", "reinforcement", "critic")
 """Parts of a task that phases 1 and 2 have nothing to do with."""
+
+Seconds = Annotated[float, Field(ge=1, le=100_000)]
+SecondsOrNever = Annotated[float, Field(ge=0, le=100_000)]
+Share = Annotated[float, Field(gt=0, le=1)]
+
+
+class SignalsSettings(Settings):
+    """How often the scripted teacher praises and blames."""
+
+    bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
+    good_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
+    most_blame: Annotated[int, Field(ge=0, le=100_000)] = 100
+    """He blames no more often than this; 0: as often as he likes."""
+
+
+class AppraisalsSettings(Settings):
+    """How often he teaches the critic."""
+
+    bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
+    good_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
+    neutral_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
+    gap_s: Annotated[float, Field(ge=0, le=1000)] = 1.0
+    """The shortest time between two of any kind."""
+
+
+class AskedOfPhases(Settings):
+    """Numbers to reach; what is left out is not asked for."""
+
+    repaired_by_rewards: dict[str, Share] = Field(default_factory=dict)
+    """By world: share of the corrupted sets that succeed after phase 3."""
+    repaired_by_critic: dict[str, Share] = Field(default_factory=dict)
+    """By world: share of the corrupted sets that succeed after phase 5, without a teacher."""
+    collisions_fall_by: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """By the critic alone, of those of the corrupted sets; 0: not asked for."""
+    intact_not_worse: bool = False
+    interventions_below_per_hour: Annotated[float, Field(ge=0, le=1000)] = 0.0
+    """In the long run after phase 5; 0: not asked for."""
+
+
+class PhasesSettings(Settings):
+    """Times in s of robot time."""
+
+    reinforcement_s: Seconds
+    """Phase 3."""
+    critic_s: Seconds
+    """Phase 4."""
+    set_down_every_s: SecondsOrNever = 8.0
+    """In phase 4 the robot is set down in sight of something, also close to it, so often; 0: never."""
+    shown_s: SecondsOrNever = 2.5
+    """Then some action drives it for so long, that the critic may see what the robot does not do by itself."""
+    autonomy_s: Seconds
+    """Phase 5."""
+    long_run_s: Seconds
+    """After phase 5, each robot; interventions are counted in all of them together."""
+    corrupted_share: Share = 0.18
+    """Of the RLAs, which get another action."""
+    repair_s: Seconds
+    """Phase 3, or one of its controls, with a corrupted set."""
+    repair_alone_s: Seconds
+    """Phase 5 with a corrupted set, and with an intact one beside it."""
+    repair_worlds: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Worlds of the exams of corrupted sets."""
+    signals: SignalsSettings = SignalsSettings()
+    appraisals: AppraisalsSettings = AppraisalsSettings()
+    asked: AskedOfPhases = AskedOfPhases()
+
+    def shortened(self, most_s: float, worlds: tuple[str, ...]) -> "PhasesSettings":
+        """No time longer than this, and exams in these worlds only."""
+        times = ("reinforcement_s", "critic_s", "autonomy_s", "long_run_s", "repair_s", "repair_alone_s")
+        update: dict[str, object] = {name: min(getattr(self, name), most_s) for name in times}
+        return self.model_copy(update=update | {"repair_worlds": worlds})

@@ -61,3 +61,25 @@ def _probability_of(at_most: int, expected: float) -> float:
     """Poisson's, of `at_most` events or fewer."""
     log = math.log(expected)
     return math.fsum(math.exp(k * log - expected - math.lgamma(k + 1)) for k in range(at_most + 1))
+
+
+class Difference(NamedTuple):
+    """A mean of differences and its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+def difference_of(changes: Sequence[float]) -> Difference:
+    """The mean change of the same robots from one thing to another, bootstrapped over the robots.
+
+    Where all changes are alike, as where none is, the interval is a point; one robot says nothing of others.
+    """
+    value = math.fsum(changes) / len(changes)
+    if len(changes) == 1:
+        return Difference(value, -math.inf, math.inf)
+    chance = np.random.default_rng(_BOOTSTRAP_SEED)
+    drawn = chance.integers(len(changes), size=(_RESAMPLES, len(changes)))
+    low, high = np.quantile(np.asarray(changes, dtype=np.float64)[drawn].mean(axis=1), (_TAIL, 1 - _TAIL))
+    return Difference(value, min(float(low), value), max(float(high), value))

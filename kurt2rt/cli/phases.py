@@ -1,0 +1,100 @@
+"""`kurt2rt phases`."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.lesson import parse_seeds
+from kurt2rt.cli.options import Changes, changes_of
+from kurt2rt.cli.progress import one_bar
+
+_SEEDS, _QUICK_SEEDS = "100-119", "100-101"
+_WIDTH = 160
+_FOLDER = Path("results/phases")
+
+
+def phases(
+    task: Annotated[
+        str, typer.Option(help="By name (config/tasks), or a path to its YAML file; it needs a section `phases`.")
+    ] = "wall_following",
+    changes: Changes = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
+    ] = False,
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            help=f"One robot per seed, e.g. {_SEEDS}, which is the default; with --quick {_QUICK_SEEDS}.",
+            show_default=False,
+        ),
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Processes to use; 1: this one alone.")] = os.cpu_count() or 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help=f"Folder for what is made; created when absent. Default: {_FOLDER}/ and the task's name, with "
+            "-quick behind it.",
+            show_default=False,
+        ),
+    ] = None,
+) -> None:
+    """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
+
+    The path: untaught, answers (1), corrections (2), rewards (3), a critic is taught (4),
+    the robot goes on alone (5); an exam after each, and a long run at the end. Branches
+    from the set of phase 2 with wrong actions: untouched, answers only, unknown is -1,
+    rewards, the critic alone, a shuffled critic; and the intact set with the critic.
+
+    Leaves report.html, which holds everything, the figures as PNG, and each robot's
+    results and knowledge files after each step in the output folder.
+
+    A run that was interrupted goes on where it was. Results are kept with hashes of
+    what made them; when that has changed, they are refused and not mixed in. Settings
+    were searched on seeds 0 to 79; with one of those, or with fewer than 20 robots,
+    nothing is judged.
+    """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.experiments.kept.results import Results
+    from kurt2rt.experiments.phases.figures import draw_pictures
+    from kurt2rt.experiments.phases.programme import plan
+    from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
+    from kurt2rt.experiments.phases.study import conduct, read_study
+    from kurt2rt.experiments.phases.tables import sheets
+    from kurt2rt.experiments.shown.sheet import as_rich
+    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.tasks.settings import load_task
+
+    typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
+    robot, settings = load_robot(), load_task(task, changes=changes_of(changes))
+    results = Results(out or _FOLDER / (settings.name + ("-quick" if quick else "")))
+    programme = plan(settings, parse_seeds(typed_seeds), SimulatedStage(robot), robot, results, quick=quick)
+    with results.held():
+        todo = programme.jobs
+        missing = results.missing(todo)
+        with one_bar(sum(todo[place].robot_time_s for place in missing)) as bar:
+            conduct(programme, results, jobs, bar.look)
+            bar.say("figures and report")
+            study = read_study(programme, results)
+            pictures = list(draw_pictures(study, results.folder))
+            report = results.folder / "report.html"
+            command = _command(quick=quick, seeds=typed_seeds, task=task, changes=changes or [])
+            write_report(study, pictures, command, report)
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=_WIDTH)  # in a file a table need not be as narrow as a terminal that nobody has
+    reasons = list(reasons_not_to_judge(programme))
+    for sheet in sheets(study, reasons):
+        console.print(as_rich(sheet))
+    for reason in reasons:
+        console.print(f"Not judged: {reason}", markup=False, highlight=False, soft_wrap=True)
+    console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:
+    """What was typed as far as it decides the numbers; no paths of this machine."""
+    words = ["kurt2rt phases", *(["--quick"] if quick else []), f"--task {Path(task).name}", f"--seeds {seeds}"]
+    return " ".join([*words, *(f"--set {each}" for each in changes)])

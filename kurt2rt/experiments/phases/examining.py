@@ -1,0 +1,83 @@
+"""Exams of one stage."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.curriculum import Report
+from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.phases.outcome import ExamOutcome
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.tasks.settings import TaskSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Examiner:
+    """Examines one robot; a robot that gets stuck is set down elsewhere and goes on."""
+
+    stage: StudyStage
+    robot: RobotSettings
+    task: TaskSettings
+    seed: int
+    report: Report
+
+    async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
+        """Drives of the teacher's own policy."""
+        drives = [await self._drive(world, (), None, by_teacher=True) for world in worlds]
+        return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
+
+    async def robots(
+        self,
+        events: Sequence[TeachingEvent],
+        saved: Statistics | None,
+        worlds: Sequence[str],
+        teachers: Sequence[ExamOutcome],
+    ) -> tuple[ExamOutcome, ...]:
+        """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds."""
+        progress = {each.world: each.progress for each in teachers}
+        outcomes = []
+        for world in worlds:
+            drive = await self._drive(world, events, saved, by_teacher=False)
+            outcomes.append(_outcome(drive, succeeded=drive.succeeded(progress[world], self.task.exam.success)))
+        return tuple(outcomes)
+
+    async def _drive(
+        self, world: str, events: Sequence[TeachingEvent], saved: Statistics | None, *, by_teacher: bool
+    ) -> ExamResult:
+        who = "the teacher's own drive" if by_teacher else "exam without teacher"
+        arena = self.stage.open(world, self.seed, "exam")
+        try:
+            return await examine(
+                arena,
+                self.robot,
+                self.task,
+                world,
+                events,
+                seed=self.seed,
+                on_progress=lambda done_s: self.report(f"{who}, world {world}", done_s, self.task.exam.duration_s),
+                by_teacher=by_teacher,
+                saved=saved,
+                # A robot that knows nothing only stands, and that is soon seen.
+                stuck_ends=not events and not by_teacher,
+            )
+        finally:
+            arena.close()
+
+
+def _outcome(exam: ExamResult, *, succeeded: bool) -> ExamOutcome:
+    return ExamOutcome(
+        world=exam.world,
+        unit=exam.unit,
+        progress=exam.progress,
+        duration_s=exam.duration_s,
+        way_m=exam.way_m,
+        collisions=exam.collisions,
+        rescues=max(exam.rescues, int(exam.stuck)),
+        alarm=exam.alarm,
+        share_unknown=exam.share_unknown,
+        action_changes_per_s=exam.action_changes_per_s,
+        findings={name: float(value) for name, value in exam.findings.items()},
+        succeeded=succeeded,
+    )

@@ -1,0 +1,186 @@
+"""The figures of a path of all phases."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from kurt2rt.critic.settings import load_critic
+from kurt2rt.experiments.load import Minute
+from kurt2rt.experiments.phases.outcome import StageOutcome
+from kurt2rt.experiments.phases.steps import (
+    BRANCHES,
+    INTACT,
+    PATH,
+    PHASE_2,
+    PHASE_3,
+    PHASE_4,
+    PHASE_5,
+    TITLES,
+)
+from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.summary import MEASURES, Measure, worlds_of
+from kurt2rt.experiments.report import label_of
+from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.experiments.shown.style import save
+
+_LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
+_TEACHING = (PHASE_2, PHASE_3, PHASE_4, PHASE_5)
+_AGREEMENT_EVERY_MIN = 1 / 6
+_WORLD_COLOURS = ("#1f6fb2", "#d1495b", "#2e8540", "#b8860b", "#6b4c9a")
+
+
+def draw_pictures(study: Study, folder: Path) -> Iterator[Picture]:
+    """Draw each figure into the folder: phases.png, load.png, agreement.png, branches.png, intact.png."""
+    robots = len(study.programme.seeds)
+    path = folder / "phases.png"
+    _draw_stages(study, PATH, path)
+    yield Picture(path, "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
+    path = folder / "load.png"
+    _draw_load(study, path)
+    yield Picture(
+        path,
+        "The teacher's load",
+        "What he says in each minute, mean of all robots, along the path of all phases. In phase 5 nobody teaches.",
+    )
+    path = folder / "agreement.png"
+    _draw_agreement(study, path)
+    yield Picture(
+        path,
+        "Agreement of the critic",
+        "With the teacher's signals in phase 4, each compared before it was learnt: median (line) and quartiles (band) "
+        "of the robots of which enough was heard. Above the bound the critic is trusted.",
+    )
+    path = folder / "branches.png"
+    _draw_stages(study, BRANCHES, path)
+    yield Picture(path, "A corrupted set, and what repairs it", "Each with the same sets; bars are 95 % intervals.")
+    path = folder / "intact.png"
+    _draw_intact(study, path)
+    yield Picture(
+        path,
+        "An intact set, before and after phase 5",
+        "One point per robot and world. Above the line there is more of it after phase 5 than before.",
+    )
+
+
+def _draw_stages(study: Study, names: Sequence[str], path: Path) -> None:
+    """Success and collisions of each stage, a colour for each world."""
+    figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
+    success, collisions = figure.subplots(1, 2, sharey=True)
+    places = np.arange(len(names))[::-1]
+    for stage, place in zip(names, places, strict=True):
+        worlds = worlds_of(study.stages[stage])
+        for number, world in enumerate(worlds):
+            at = place + 0.14 * ((len(worlds) - 1) / 2 - number)
+            colour = _WORLD_COLOURS[number % len(_WORLD_COLOURS)]
+            label = f"world {world.label}" if stage == names[0] else None
+            _bar(success, at, world.share, world.interval, colour, label)
+            rate = world.collisions
+            _bar(collisions, at, rate.value, (rate.low, rate.high), colour, None)
+    success.set_yticks(places, [TITLES[name] for name in names])
+    success.set_xlim(-0.03, 1.03)
+    success.set_xlabel("share of the robots that succeed")
+    collisions.set_xlabel("collisions in 10 min")
+    most = max(world.collisions.value for name in names for world in worlds_of(study.stages[name]))
+    collisions.set_xlim(-0.03 * max(most, 1.0), 1.5 * max(most, 1.0))
+    for axes in (success, collisions):
+        axes.grid(alpha=0.25)
+    figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+    save(figure, path)
+
+
+def _bar(axes: Axes, at: float, value: float, span: tuple[float, float], colour: str, label: str | None) -> None:
+    axes.plot(span, [at, at], color=colour, linewidth=1.5, alpha=0.6)
+    axes.plot([value], [at], "o", color=colour, markersize=6, label=label)
+
+
+def _draw_load(study: Study, path: Path) -> None:
+    """Curves of all kinds of what he says, with the borders between phases."""
+    figure = Figure(figsize=(11.0, 4.6), layout="constrained")
+    axes = figure.subplots()
+    begins = 0.0
+    highest = 1.0
+    for name in _TEACHING:
+        taught = [stage.teaching for stage in study.stages[name] if stage.teaching is not None]
+        minutes = len(taught[0].load)
+        lasts = taught[0].duration_s / 60.0
+        ends = np.minimum(np.arange(1, minutes + 1), lasts)
+        width = np.diff(ends, prepend=0.0)
+        for kind in Minute._fields:
+            said = np.mean([[getattr(minute, kind) for minute in each.load] for each in taught], axis=0) / width
+            highest = max(highest, float(said.max()))
+            axes.stairs(
+                said,
+                begins + np.concatenate(([0.0], ends)),
+                color=_LOAD_COLOURS[kind],
+                linewidth=1.8,
+                label=kind.replace("lessons", "answers") if name == _TEACHING[0] else None,
+            )
+        title = "phases 1 and 2" if name == PHASE_2 else TITLES[name].split(",")[0]
+        axes.annotate(title, (begins + lasts / 2, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom")
+        begins += lasts
+        axes.axvline(begins, color="#999999", linewidth=0.8)
+    axes.set_xlim(0.0, begins)
+    axes.set_ylim(0.0, 1.05 * highest)
+    axes.set_xlabel("robot time, min")
+    axes.set_ylabel("said in a minute")
+    axes.grid(alpha=0.25)
+    figure.legend(loc="outside lower center", ncols=4, fontsize="small", frameon=False)
+    save(figure, path)
+
+
+def _draw_agreement(study: Study, path: Path) -> None:
+    """Median and quartiles against time, with the bound of trust."""
+    figure = Figure(figsize=(7.5, 4.4), layout="constrained")
+    axes = figure.subplots()
+    curves = [stage.teaching.agreement for stage in study.stages[PHASE_4] if stage.teaching is not None]
+    shares = np.array([[np.nan if share is None else share for share in curve] for curve in curves], dtype=np.float64)
+    times = _AGREEMENT_EVERY_MIN * np.arange(1, shares.shape[1] + 1)
+    heard = ~np.isnan(shares).all(axis=0)
+    if heard.any():
+        low, median, high = np.nanpercentile(shares[:, heard], (25, 50, 75), axis=0)
+        axes.fill_between(times[heard], low, high, alpha=0.2, color="#1f6fb2", linewidth=0)
+        axes.plot(times[heard], median, color="#1f6fb2", linewidth=1.8, label="agreement")
+    bound = load_critic(study.programme.task.critic).agreement.bound
+    axes.axhline(bound, color="#d1495b", linestyle="--", label=f"trusted from {bound:g}")
+    axes.set_ylim(0.0, 1.0)
+    axes.set_xlabel("phase 4, min")
+    axes.set_ylabel("agreement")
+    axes.grid(alpha=0.25)
+    axes.legend(loc="lower right", fontsize="small", frameon=False)
+    save(figure, path)
+
+
+def _draw_intact(study: Study, path: Path) -> None:
+    """Each robot before and after, by each measure but success."""
+    before, after = study.stages[PHASE_2], study.stages[INTACT]
+    shown = [measure for measure in MEASURES[1:] if any(measure.of(exam) is not None for exam in before[0].exams)]
+    figure = Figure(figsize=(3.6 * len(shown), 4.2), layout="constrained")
+    panels = figure.subplots(1, len(shown), squeeze=False)[0]
+    worlds = [exam.world for exam in after[0].exams]
+    for axes, measure in zip(panels, shown, strict=True):
+        for number, world in enumerate(worlds):
+            pairs = [(_of(measure, one, world), _of(measure, other, world)) for one, other in _both(before, after)]
+            colour = mpl.colors.to_rgba(_WORLD_COLOURS[number % len(_WORLD_COLOURS)], 0.6)
+            label = f"world {label_of(world)}" if measure is shown[0] else None
+            axes.plot(*zip(*pairs, strict=True), "o", color=colour, markersize=5, label=label)
+        low, high = (bound(*axes.get_xlim(), *axes.get_ylim()) for bound in (min, max))
+        axes.plot([low, high], [low, high], color="#999999", linewidth=0.8, zorder=0)
+        axes.set_title(measure.name, fontsize="medium")
+        axes.set_xlabel("before")
+        axes.grid(alpha=0.25)
+    panels[0].set_ylabel("after")
+    figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+    save(figure, path)
+
+
+def _both(before: Sequence[StageOutcome], after: Sequence[StageOutcome]) -> list[tuple[StageOutcome, StageOutcome]]:
+    return list(zip(before, after, strict=True))
+
+
+def _of(measure: Measure, stage: StageOutcome, world: str) -> float:
+    value = measure.of(next(exam for exam in stage.exams if exam.world == world))
+    return float("nan") if value is None else value

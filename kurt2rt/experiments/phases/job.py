@@ -1,0 +1,237 @@
+"""One robot's work in pieces that can be done apart: the lesson of phases 1 and 2, and each step after it."""
+
+import shutil
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.critic.settings import NAMES as CIRCUMSTANCES
+from kurt2rt.critic.settings import load_critic
+from kurt2rt.experiments.curriculum import run_lesson
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.examining import Examiner
+from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome, TeachingOutcome
+from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, Step
+from kurt2rt.experiments.phases.told import told
+from kurt2rt.experiments.pool import Tell
+from kurt2rt.experiments.primitives import primitives
+from kurt2rt.experiments.robot_time import RobotTime
+from kurt2rt.knowledge.fold import fold_journal
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
+from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.perception.definition import load_situation
+from kurt2rt.rla.rla import CRITIC, Phase, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.tasks.settings import TaskSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """One seed: where it is taught and where what it comes to is kept."""
+
+    stage: StudyStage
+    settings: RobotSettings
+    task: TaskSettings
+    seed: int
+    results: Results
+
+    def result_of(self, name: str) -> str:
+        """Path of a job's result within the folder of results."""
+        return f"results/{name}/{self.task.name}-{self.seed}.json"
+
+    def knowledge_of(self, name: str) -> str:
+        """Path of what it knows after a step, within the folder of results."""
+        return f"knowledge/{name}/{self.task.name}-{self.seed}.knowledge"
+
+    def folded(self, events: Sequence[TeachingEvent]) -> RlaSystem:
+        """What they have taught."""
+        dimensions = len(load_situation(self.task.situation, self.settings.infrared.names).names)
+        others = {CRITIC: Space(len(CIRCUMSTANCES), 1.0)}
+        system = RlaSystem(dimensions, self.task.learning.radius, others=others)
+        system.apply_all(events)
+        return system
+
+    def examiner(self, time: RobotTime) -> Examiner:
+        """Its examiner."""
+        return Examiner(self.stage, self.settings, self.task, self.seed, time.report)
+
+
+@dataclass(frozen=True, slots=True)
+class TaughtJob:
+    """Phases 1 and 2: the task's own lesson, with exams before it, of what phase 1 taught, and of all."""
+
+    robot: Robot
+    made_of: MadeOf
+
+    @property
+    def step(self) -> str:
+        """The step that it is."""
+        return PHASE_2
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"phases 1 and 2, seed {self.robot.seed}"
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        return self.robot.result_of(PHASE_2)
+
+    @property
+    def outcome(self) -> type[JobOutcome]:
+        """Schema of its result."""
+        return JobOutcome
+
+    @property
+    def robot_time_s(self) -> float:
+        """The lesson, and in each world two exams and the teacher's own drive."""
+        task = self.robot.task
+        return task.teaching.duration_s + 3 * len(task.exam.worlds) * task.exam.duration_s
+
+    def run(self, tell: Tell) -> None:
+        """Teach, examine, keep the result and the knowledge."""
+        anyio.run(self._run, tell)
+
+    async def _run(self, tell: Tell) -> None:
+        robot, time = self.robot, RobotTime(tell)
+        task, results, worlds = robot.task, robot.results, robot.task.exam.worlds
+        examiner = robot.examiner(time)
+        with results.scratch() as folder:
+            knowledge = folder / "knowledge"
+            lesson, events = await run_lesson(
+                robot.stage, robot.settings, task, knowledge, seed=robot.seed, report=time.report
+            )
+            teachers = await examiner.teachers(worlds)
+            answered = list(takewhile(lambda event: event.origin.phase is Phase.SUPERVISED, events))
+
+            async def examined(events: Sequence[TeachingEvent]) -> tuple[ExamOutcome, ...]:
+                return await examiner.robots(events, None, worlds, teachers)
+
+            stages = (
+                _stage(UNTAUGHT, robot.folded([]), None, await examined([])),
+                _stage(PHASE_1, robot.folded(answered), None, await examined(answered)),
+                _stage(PHASE_2, robot.folded(events), told(lesson, events), await examined(events)),
+            )
+            results.keep(knowledge, robot.knowledge_of(PHASE_2))
+        results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=stages, teachers=teachers))
+
+
+@dataclass(frozen=True, slots=True)
+class StepJob:
+    """A step after those."""
+
+    robot: Robot
+    of: Step
+    first: TaughtJob
+    """Holds the teacher's own drives."""
+    made_of: MadeOf
+
+    @property
+    def step(self) -> str:
+        """The step that it is."""
+        return self.of.name
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{TITLES[self.of.name]}, seed {self.robot.seed}"
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        return self.robot.result_of(self.of.name)
+
+    @property
+    def outcome(self) -> type[JobOutcome]:
+        """Schema of its result."""
+        return JobOutcome
+
+    @property
+    def robot_time_s(self) -> float:
+        """What is taught, and an exam in each world."""
+        taught_s = self.of.plan.duration_s if self.of.plan else 0.0
+        return taught_s + len(self.of.worlds) * self.robot.task.exam.duration_s
+
+    def run(self, tell: Tell) -> None:
+        """Make the set, teach, examine, keep the result and the knowledge."""
+        anyio.run(self._run, tell)
+
+    async def _run(self, tell: Tell) -> None:
+        robot, step, time = self.robot, self.of, RobotTime(tell)
+        results = robot.results
+        with results.scratch() as folder:
+            knowledge = folder / "knowledge"
+            shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
+            self._prepare(knowledge)
+            before = len(read_lessons(knowledge, robot.settings, robot.task))
+            teaching = None
+            if step.plan is not None:
+                lesson, events = await run_lesson(
+                    robot.stage,
+                    robot.settings,
+                    robot.task,
+                    knowledge,
+                    seed=robot.seed,
+                    report=time.report,
+                    plan=step.plan,
+                )
+                teaching = told(lesson, events[before:])
+            with Journal.read_only(knowledge) as journal:
+                events, saved = [entry.event for entry in journal.entries()], journal.statistics()
+                system = fold_journal(journal, radius=robot.task.learning.radius)
+            teachers = results.read(self.first, JobOutcome).teachers
+            exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers)
+            results.keep(knowledge, robot.knowledge_of(step.name))
+        stage = _stage(step.name, system, teaching, exams)
+        results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=(stage,)))
+
+    def _prepare(self, knowledge: Path) -> None:
+        """Wrong actions and the critic of phase 4, where the step begins with them."""
+        robot = self.robot
+        with Journal.read_only(knowledge) as journal:
+            system = fold_journal(journal, radius=robot.task.learning.radius)
+        lessons: list[TeachingEvent] = []
+        if self.of.corrupted:
+            lessons += corrupt(system.rlas, primitives(robot.task.repertoire), self.of.corrupted, robot.seed)
+        if self.of.critic != "own":
+            lessons += self._critics()
+        if not lessons:
+            return
+        with JournalWriter(go_on_teaching(knowledge, robot.settings, robot.task).journal, utc_now) as writer:
+            for lesson in lessons:
+                writer.submit(lesson)
+
+    def _critics(self) -> Iterator[TeachingEvent]:
+        robot = self.robot
+        taught = robot.results.folder / robot.knowledge_of(PHASE_4)
+        if self.of.critic == "taught":
+            yield from critics_lessons(read_lessons(taught, robot.settings, robot.task))
+            return
+        with Journal.read_only(taught) as journal:
+            appraisals = fold_journal(journal, radius=1.0).rlas_at(CRITIC)
+        yield from shuffled(appraisals, load_critic(robot.task.critic), robot.seed)
+
+
+Job = TaughtJob | StepJob
+
+
+def _stage(
+    name: str, system: RlaSystem, teaching: TeachingOutcome | None, exams: tuple[ExamOutcome, ...]
+) -> StageOutcome:
+    return StageOutcome(
+        name=name,
+        rlas=len(system),
+        appraisals=len(system.rlas_at(CRITIC)),
+        knowledge_hash=system.knowledge_hash(),
+        teaching=teaching,
+        exams=exams,
+    )

@@ -1,0 +1,77 @@
+"""What the steps of one robot come to, as they are kept in their files."""
+
+from hal.settings import Settings
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.load import Minute
+
+
+class ExamOutcome(Settings):
+    """One exam, or the drive of the teacher's own policy from the same start."""
+
+    world: str
+    unit: str
+    progress: float
+    duration_s: float
+    way_m: float
+    collisions: int
+    rescues: int
+    """How often it was stuck."""
+    alarm: str
+    share_unknown: float
+    action_changes_per_s: float
+    findings: dict[str, float]
+    succeeded: bool
+
+
+class TeachingOutcome(Settings):
+    """What was done in one step."""
+
+    duration_s: float
+    load: tuple[Minute, ...]
+    asks: int
+    praise: int
+    blame: int
+    refused_signals: int
+    collisions: int
+    rescues: int
+    unknown_rescues: int
+    """Of these, those of a robot that did not know the situation, with nobody there to be asked."""
+    alarms: int
+    share_unknown: float
+    agreement: tuple[float | None, ...]
+    """After each ten seconds."""
+    share_trusted: float
+    withdrawn: int
+    """Actions that had sunk and were asked for again."""
+    critics_changes: int
+    """Lessons that the critic gave itself."""
+    rolled_back: int
+    """Of its lessons, those that were undone since its score fell."""
+
+    @property
+    def interventions(self) -> int:
+        """How often a person had to look after the robot: collided, stuck, without an answer, or stopped for good."""
+        return self.collisions + self.rescues + self.alarms
+
+
+class StageOutcome(Settings):
+    """A robot's knowledge at one stage, how it came there, and how it drives with it."""
+
+    name: str
+    rlas: int
+    appraisals: int
+    """RLAs of its critic."""
+    knowledge_hash: str
+    teaching: TeachingOutcome | None
+    """None: nothing was taught since the stage before."""
+    exams: tuple[ExamOutcome, ...]
+
+
+class JobOutcome(Settings):
+    """What one job leaves."""
+
+    made_of: MadeOf
+    seed: int
+    stages: tuple[StageOutcome, ...]
+    teachers: tuple[ExamOutcome, ...] = ()
+    """Drives of the teacher's own policy; of the first job alone."""

@@ -1,0 +1,111 @@
+"""The steps of one robot's training: the path of all phases, and the branches that start from its set of phase 2."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from hal.settings import SettingsError
+from kurt2rt.experiments.lesson_plan import LessonPlan, SignalTimes
+from kurt2rt.experiments.phases.settings import PhasesSettings
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import TaskSettings
+
+Critic = Literal["own", "taught", "shuffled"]
+"""What the set has before the step: appraisals of its own, those of this robot's phase 4, or those in disorder."""
+
+UNTAUGHT, PHASE_1, PHASE_2 = "untaught", "phase-1", "phase-2"
+PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run"
+CORRUPTED, ASKS, UNKNOWN_BAD, REWARDS = "corrupted", "asks-only", "unknown-is-bad", "rewards"
+CRITIC_ALONE, SHUFFLED, INTACT = "critic-alone", "critic-shuffled", "intact-autonomous"
+
+PATH = (UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5)
+BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, REWARDS, CRITIC_ALONE, SHUFFLED)
+
+TITLES = {
+    UNTAUGHT: "untaught",
+    PHASE_1: "phase 1, answers",
+    PHASE_2: "phase 2, corrections",
+    PHASE_3: "phase 3, rewards",
+    PHASE_4: "phase 4, critic taught",
+    PHASE_5: "phase 5, autonomous",
+    LONG_RUN: "long run",
+    CORRUPTED: "corrupted, untouched",
+    ASKS: "asks only",
+    UNKNOWN_BAD: "asks, unknown is -1",
+    REWARDS: "asks and rewards (phase 3)",
+    CRITIC_ALONE: "critic alone (phase 5)",
+    SHUFFLED: "shuffled critic alone",
+    INTACT: "intact set, critic alone",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """Knowledge that another step left, what is done to it, and where it is examined."""
+
+    name: str
+    after: str
+    """The step that it goes on from."""
+    corrupted: float
+    """Share of its RLAs that get another action first."""
+    critic: Critic
+    plan: LessonPlan | None
+    """None: nothing is taught."""
+    worlds: tuple[str, ...]
+    """Of its exams."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Steps that have to be done before it."""
+        return (self.after,) if self.critic == "own" else (self.after, PHASE_4)
+
+
+def phases_of(task: TaskSettings) -> PhasesSettings:
+    """The task's section. Raises hal.settings.SettingsError where there is none."""
+    if task.phases is None:
+        raise SettingsError(f"task {task.name}: says nothing about phases 3 to 5; add a section `phases:` to its file")
+    if task.judge is None:
+        raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")
+    return task.phases
+
+
+def steps_of(task: TaskSettings) -> Iterator[Step]:
+    """All steps after the lesson of phases 1 and 2, each behind those it needs. Raises hal.settings.SettingsError."""
+    phases = phases_of(task)
+    worlds, repair_worlds = task.exam.worlds, phases.repair_worlds
+    signals, appraisals = phases.signals, phases.appraisals
+    of_rewards = SignalTimes(signals.bad_every_s, signals.good_every_s, most_blame=signals.most_blame)
+    of_appraisals = SignalTimes(
+        appraisals.bad_every_s, appraisals.good_every_s, appraisals.neutral_every_s, gap_s=appraisals.gap_s
+    )
+
+    def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
+        return LessonPlan(((phase, lasts_s),), purpose, **more)  # type: ignore[arg-type]
+
+    rewarded = taught(Phase.REINFORCEMENT, phases.reinforcement_s, "phase 3", signs="judge", times=of_rewards)
+    critic = taught(
+        Phase.CRITIC,
+        phases.critic_s,
+        "phase 4",
+        signs="judge",
+        times=of_appraisals,
+        set_down_every_s=phases.set_down_every_s,
+        shown_s=phases.shown_s,
+    )
+    yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, worlds)
+    yield Step(PHASE_4, PHASE_3, 0.0, "own", critic, worlds)
+    yield Step(PHASE_5, PHASE_4, 0.0, "own", taught(Phase.AUTONOMOUS, phases.autonomy_s, "phase 5"), worlds)
+    yield Step(LONG_RUN, PHASE_5, 0.0, "own", taught(Phase.AUTONOMOUS, phases.long_run_s, "long run"), ())
+
+    repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
+    asks = taught(Phase.SUPERVISED, repair_s, "repair")
+    unknown = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards)
+    rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards)
+    alone = taught(Phase.AUTONOMOUS, alone_s, "repair")
+    yield Step(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
+    yield Step(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
+    yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
+    yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
+    yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, repair_worlds)
+    yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", alone, repair_worlds)
+    yield Step(INTACT, PHASE_2, 0.0, "taught", alone, worlds)

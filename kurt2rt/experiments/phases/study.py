@@ -1,0 +1,50 @@
+"""The programme, done: results of all jobs, put together."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from kurt2rt.experiments.kept.doing import do_jobs
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome
+from kurt2rt.experiments.phases.programme import Programme
+from kurt2rt.experiments.pool import Standing
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """All numbers."""
+
+    programme: Programme
+    stages: dict[str, tuple[StageOutcome, ...]]
+    """By the name of the step, each in the order of the seeds."""
+    teachers: tuple[tuple[ExamOutcome, ...], ...]
+    """Drives of the teacher's own policy, per seed one in each world."""
+
+
+def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
+    """Do the jobs that are missing, wave by wave; each leaves its result as soon as it is done.
+
+    Raises StudyError and what a job raises.
+    """
+    before_s = 0.0
+    for wave in programme.waves:
+        jobs = [wave[place] for place in results.missing(wave)]
+
+        def look(standing: Standing, before_s: float = before_s) -> None:
+            on_standing(Standing(before_s + standing.done_s, standing.running))
+
+        do_jobs(jobs, processes, look)
+        before_s += sum(job.robot_time_s for job in jobs)
+
+
+def read_study(programme: Programme, results: Results) -> Study:
+    """Put together what all jobs have left. Raises StudyError."""
+    stages: dict[str, list[StageOutcome]] = {}
+    teachers = []
+    for job in programme.jobs:
+        outcome = results.read(job, JobOutcome)
+        for stage in outcome.stages:
+            stages.setdefault(stage.name, []).append(stage)
+        if outcome.teachers:
+            teachers.append(outcome.teachers)
+    return Study(programme, {name: tuple(each) for name, each in stages.items()}, tuple(teachers))

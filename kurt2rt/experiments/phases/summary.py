@@ -1,0 +1,148 @@
+"""What the robots come to together at one stage."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from kurt2rt.experiments.courses.course import DISTANCE_ERROR
+from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
+from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
+from kurt2rt.experiments.shown.intervals import Difference, Rate, difference_of, rate_of
+
+TEN_MIN_S = 600.0
+
+
+@dataclass(frozen=True, slots=True)
+class WorldSummary:
+    """All exams of one stage in one world."""
+
+    world: str
+    label: str
+    robots: int
+    succeeded: int
+    interval: tuple[float, float]
+    """Of the share that succeeded, 95 %."""
+    collisions: Rate
+    """In 10 min."""
+    stuck: int
+    """Robots that were stuck at least once, or stopped by the guard for good."""
+    unit: str
+    progress: tuple[float, float, float]
+    """Lower quartile, median, upper quartile."""
+    share_unknown: float
+    """Median."""
+    changes_per_s: float
+    """Median of the action changes."""
+    distance_error_m: float | None
+    """Median; None where the course measures none."""
+
+    @property
+    def share(self) -> float:
+        """Share that succeeded."""
+        return self.succeeded / self.robots
+
+
+def worlds_of(stages: Sequence[StageOutcome]) -> tuple[WorldSummary, ...]:
+    """One stage of all robots, world by world."""
+    return tuple(
+        summarize([exam for stage in stages for exam in stage.exams if exam.world == world])
+        for world in dict.fromkeys(exam.world for stage in stages for exam in stage.exams)
+    )
+
+
+def summarize(exams: Sequence[ExamOutcome]) -> WorldSummary:
+    """Exams in one world, of one robot each."""
+    succeeded = sum(each.succeeded for each in exams)
+    errors = [each.findings[DISTANCE_ERROR] for each in exams if DISTANCE_ERROR in each.findings]
+    return WorldSummary(
+        world=exams[0].world,
+        label=label_of(exams[0].world),
+        robots=len(exams),
+        succeeded=succeeded,
+        interval=wilson_interval(succeeded, len(exams)),
+        collisions=collisions_of(exams),
+        stuck=sum(each.rescues > 0 or bool(each.alarm) for each in exams),
+        unit=exams[0].unit,
+        progress=quartiles([each.progress for each in exams]),
+        share_unknown=quartiles([each.share_unknown for each in exams])[1],
+        changes_per_s=quartiles([each.action_changes_per_s for each in exams])[1],
+        distance_error_m=quartiles(errors)[1] if errors else None,
+    )
+
+
+def collisions_of(exams: Sequence[ExamOutcome]) -> Rate:
+    """In 10 min."""
+    return rate_of([each.collisions for each in exams], [each.duration_s / TEN_MIN_S for each in exams])
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """Something of an exam that may become better or worse."""
+
+    name: str
+    of: Callable[[ExamOutcome], float | None]
+    better: int
+    """+1: more is better, -1: less is."""
+
+
+MEASURES = (
+    Measure("success", lambda exam: float(exam.succeeded), +1),
+    Measure("collisions in 10 min", lambda exam: exam.collisions * TEN_MIN_S / exam.duration_s, -1),
+    Measure("progress", lambda exam: exam.progress, +1),
+    Measure(DISTANCE_ERROR, lambda exam: exam.findings.get(DISTANCE_ERROR), -1),
+    Measure("action changes per s", lambda exam: exam.action_changes_per_s, -1),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Paired:
+    """The same robots at two stages, in one world, by one measure."""
+
+    world: str
+    measure: Measure
+    before: float
+    """Mean."""
+    after: float
+    difference: Difference
+    better: int
+    """Robots."""
+    worse: int
+
+    @property
+    def surely_worse(self) -> bool:
+        """Whether the interval lies on the bad side altogether."""
+        return self.difference.high < 0 if self.measure.better > 0 else self.difference.low > 0
+
+    @property
+    def surely_better(self) -> bool:
+        """Whether the interval lies on the good side altogether."""
+        return self.difference.low > 0 if self.measure.better > 0 else self.difference.high < 0
+
+
+def paired(before: Sequence[StageOutcome], after: Sequence[StageOutcome]) -> tuple[Paired, ...]:
+    """Each measure in each world of both; robots in the same order."""
+    found = []
+    for world in dict.fromkeys(exam.world for stage in after for exam in stage.exams):
+        pairs = [(_exam_in(world, one), _exam_in(world, other)) for one, other in zip(before, after, strict=True)]
+        for measure in MEASURES:
+            values = [(measure.of(one), measure.of(other)) for one, other in pairs]
+            known = [(one, other) for one, other in values if one is not None and other is not None]
+            if known:
+                found.append(_paired(world, measure, known))
+    return tuple(found)
+
+
+def _paired(world: str, measure: Measure, values: Sequence[tuple[float, float]]) -> Paired:
+    changes = [other - one for one, other in values]
+    return Paired(
+        world=world,
+        measure=measure,
+        before=sum(one for one, _ in values) / len(values),
+        after=sum(other for _, other in values) / len(values),
+        difference=difference_of(changes),
+        better=sum(change * measure.better > 0 for change in changes),
+        worse=sum(change * measure.better < 0 for change in changes),
+    )
+
+
+def _exam_in(world: str, stage: StageOutcome) -> ExamOutcome:
+    return next(exam for exam in stage.exams if exam.world == world)
