@@ -76,7 +76,7 @@ def trust_in(state: State) -> str:
     if state.agreement is None:
         bad, good = state.signals_missing
         missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
-        return f"agreement is known after {missing or 'a few'} more signals of yours (not trusted)"
+        return f"needs {missing or 'a few'} signals more of yours (not trusted)"
     return f"agrees with you {state.agreement:.2f} ({'trusted' if state.trusted else 'not trusted'})"
 
 

@@ -319,7 +319,7 @@ async def test_the_teacher_is_told_when_the_critic_is_trusted_and_may_ask_what_i
     async with desk_at(pairing, robot.port) as desk:
         await desk.reads("/take is done")
         await looked_at(desk, robot, phase=4, signals_missing=(6, 2))
-        await desk.reads("critic: agreement is known after 6 bad and 2 good more signals of yours (not trusted)")
+        await desk.reads("critic: needs 6 bad and 2 good signals more of yours (not trusted)")
         await looked_at(desk, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
         await desk.reads("critic: agrees with you 0.87 (trusted)")
         desk.type("critic")

@@ -428,3 +428,21 @@ def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_foll
 def test_where_one_thing_is_taught_there_is_nothing_to_choose(a_phone: Phone, room: Classroom) -> None:
     begin(a_phone, room)
     assert not a_phone.find("#behaviours").is_displayed()
+
+
+def test_the_critic_of_a_robot_that_drives_is_taught_by_touch(a_phone: Phone, room: Classroom) -> None:
+    phone = a_phone
+    begin(phone, room)
+    phone.touch("#tab-more")
+    phone.touch("[data-phase='4']")
+    phone.wait(lambda: room.state().phase == 4, "phase 4")
+    phone.touch("#tab-teach")
+    for appraisal, value in (("good", 1), ("bad", -1)):
+        phone.touch(f"[data-appraisal={appraisal}]")
+        assert f": {appraisal}" in said(phone) or "too" in said(phone)
+        phone.wait(lambda: room.state().opinion == value, "the critic thinks so, too")  # noqa: B023 - called at once
+        phone.wait(lambda: appraisal in phone.text("#opinion"), "the page says so")  # noqa: B023
+    phone.show("12-critic")
+    phone.touch("#tab-more")
+    phone.touch("[data-phase='1']")
+    phone.wait(lambda: not phone.find("#critic").is_displayed(), "phase 1 is calm")

@@ -17,6 +17,7 @@ from tests.page.test_served_page import TOKEN, served
 ACTIONS = (
     *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
     *("quarter_turn_left", "quarter_turn_right", "along_left_wall", "along_right_wall"),
+    *("sharp_left", "sharp_right", "flee", "whirl_left", "whirl_right"),
 )
 APPRAISALS = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
 A_CHANGE = LessonLine(
@@ -75,7 +76,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     phone = lesson.phone
     lesson.reads("#opinion", "critic: thinks good")
     assert phone.text("#trusted") == "not trusted yet"
-    assert phone.text("#agreement-text") == "agreement: after 6 bad and 2 good more signals of yours"
+    assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
     shown = [each.text for each in phone.driver.find_elements("css selector", "#rewards button") if each.is_displayed()]
     assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
     phone.touch("[data-appraisal=bad]")

@@ -19,7 +19,6 @@ const SAID_MS = 8000;
 const PICTURE_MS = 1000;
 const LIST_MS = 5000;
 const USUAL = ["slew limit", "speed limit"]; // each change of speed meets them
-const REINFORCEMENT = 3;
 
 const link = new Link();
 const drive = new Drive(link);
@@ -221,7 +220,6 @@ function show() {
   showLink(state);
   why.show(state);
   pad.show(state);
-  $("rewards").classList.toggle("first", state.phase >= REINFORCEMENT); // on a low screen they are seen first
   critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
   setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);

@@ -18,7 +18,7 @@ function missing([bad, good]) {
 // How far it may be believed, in words.
 export function agreement(state, trustedFrom) {
   if (state.agreement === null) {
-    return `agreement: after ${missing(state.signals_missing) || "a few"} more signals of yours`;
+    return `needs ${missing(state.signals_missing) || "a few"} signals more of yours`;
   }
   const share = state.agreement.toFixed(2);
   return `agrees with you ${share}${state.trusted ? "" : `, trusted from ${trustedFrom.toFixed(2)}`}`;
