@@ -1,0 +1,134 @@
+"""A robot on a line: its situation is one number, and all that learns goes on behind it, one tick in a call."""
+
+from behaviors.judges.judge import Circumstances
+from kurt2rt.critic.agreement import Agreement
+from kurt2rt.critic.critic import Critic
+from kurt2rt.critic.settings import AgreementSettings, BestSettings, CriticSettings, SignalEverySettings
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.wanted import Wanted
+from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.rla.rla import CRITIC, Appraised, Phase, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.teaching.authority import Authority
+from kurt2rt.teaching.commands import Command, CommandResult, Drive, Reward, Watch
+from kurt2rt.teaching.recent import RecentDecisions
+from kurt2rt.teaching.school import School
+from tests.critic.helpers import FREE, SETTINGS, appraisal, origin
+from tests.layers.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
+
+PERIOD_S = 0.01
+SHARE = 0.5
+"""Corrections, and answers to what was withdrawn, replace within this share of RADIUS."""
+
+CALM = FREE
+CRASHED = FREE._replace(front_m=0.05, bumped=1.0)
+
+QUICK = SETTINGS.model_copy(
+    update={
+        "think_every_ticks": 1,
+        "agreement": AgreementSettings(bound=0.8, window=5, least=2),
+        "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
+        "best": BestSettings(window_s=1.0, margin=0.1),
+    }
+)
+"""A critic that is trusted after two signals of each value, and speaks ten times a second."""
+
+
+def knows_good_from_bad(first_id: int = 100) -> list[TeachingEvent]:
+    """What a critic was taught that thinks well of CALM and ill of CRASHED, and is trusted."""
+    return [
+        appraisal(first_id, "good", CALM),
+        appraisal(first_id + 1, "bad", CRASHED),
+        *(Appraised(name, value, 1, origin()) for name, value in (("good", 1), ("bad", -1)) for _ in range(5)),
+    ]
+
+
+class Track:
+    """A level with the actions a, b and c, its school, and everything that learns."""
+
+    def __init__(
+        self,
+        *events: TeachingEvent,
+        reinforcement: ReinforcementSettings | None = None,
+        critic: CriticSettings = QUICK,
+        phase: Phase = Phase.REINFORCEMENT,
+        saved: Statistics | None = None,
+    ) -> None:
+        space = Space(len(FREE), critic.learning.radius, critic.learning.weight_vector)
+        self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
+        self.recent = RecentDecisions(1)
+        self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or ReinforcementSettings(), PERIOD_S)
+        self.reinforcement.recall(events, saved)
+        actions = {name: Counted() for name in "abc"}
+        choice = self.reinforcement.choice
+        self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, Wanted(), choice)
+        self.critic = Critic(self.system, critic)
+        self.agreement = Agreement(critic.agreement, critic.values)
+        self.agreement.hear_all(events)
+        self.school = School(
+            self.level,
+            Authority(actions, attended=False),
+            insert_beyond_share=SHARE,
+            taken_command_ids=(event.origin.command_id for event in events),
+            reinforcement=self.reinforcement,
+            critic=self.critic,
+            agreement=self.agreement,
+            self_teaching=SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S),
+        )
+        self.school.phase = phase
+        self.events = list(events)
+        self.learnt: list[TeachingEvent] = []
+        """Of the last call of `go`."""
+        self.tick = 0
+        self._commands = 0
+
+    def go(self, place: float, ticks: int = 1, seen: Circumstances = CALM, because: Cause | None = None) -> Decision:
+        """So many ticks in one place; returns the last decision."""
+        self.learnt = []
+        for _ in range(ticks):
+            self.tick += 1
+            opinion = self.critic.think(self.tick, seen)
+            decision = self.level.decide(situation(place), sensed(), because)
+            self.recent.remember(
+                self.tick, situation(place), decision, blind=False, circumstances=seen, opinion=opinion
+            )
+            self.learnt += self.school.learn(self.tick, decision, opinion)
+        self.events += self.learnt
+        return decision
+
+    def say(self, command: Command, place: float = 0.0) -> CommandResult:
+        """A command arrives before the next tick, which takes it."""
+        assert not isinstance(command, Watch | Drive)
+        result, event = self.school.attend(command, situation(place), self.tick + 1)
+        if event is not None:
+            self.events.append(event)
+        return result
+
+    def signal(self, value: int, about: int | None = None) -> RlaRewarded:
+        """The teacher praises or blames; the event that comes of it."""
+        self._commands += 1
+        result = self.say(Reward(f"signal-{self._commands}", "Ann", value, about))
+        assert result.accepted, result.text
+        event = self.events[-1]
+        assert isinstance(event, RlaRewarded)
+        return event
+
+    def worth(self, rla_id: int) -> float:
+        return self.reinforcement.worth(rla_id)
+
+    @property
+    def actions(self) -> dict[int, str]:
+        """Of the living RLAs at the wheels."""
+        return {rla.rla_id: rla.action for rla in self.system.rlas}
+
+    @property
+    def hash(self) -> str:
+        return self.system.knowledge_hash()
+
+
+def deleted_ids(events: list[TeachingEvent]) -> list[int]:
+    return [event.rla_id for event in events if isinstance(event, RlaDeleted)]

@@ -1,0 +1,86 @@
+"""The authors' earlier rule: weights of the last three transitions."""
+
+import pytest
+
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.reinforcement.edge_weights import EdgeWeights
+from kurt2rt.reinforcement.rule import Booking
+from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.trace import Trace
+from kurt2rt.rla.rla import Credit
+
+LAST = Trace({}, ((3, 4), (2, 3), (1, 2)))
+
+
+def rule(*way: int | None) -> EdgeWeights:
+    """The RLAs drove one after the other."""
+    learner = EdgeWeights(ReinforcementSettings(rule="edge_weights"))
+    for tick, rla_id in enumerate(way):
+        learner.drove(rla_id, tick)
+    return learner
+
+
+def test_praise_multiplies_the_last_three_newest_first_and_blame_divides() -> None:
+    learner = rule(1, 2, 3, 4)
+    learner.take(1, LAST)
+    assert learner.edge_weights == {(3, 4): 90.0, (2, 3): 95.0, (1, 2): 97.0}
+    assert learner.worth(4) == pytest.approx(0.1)
+    learner.take(-1, LAST)
+    learner.take(-1, LAST)
+    assert learner.edge_weights[3, 4] == pytest.approx(100 / 0.9)
+    assert learner.worth(4) == pytest.approx(1 - 1 / 0.9)
+    assert learner.values == {}
+
+
+def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
+    learner = rule(1, 4, 2, 4, 3, 4)
+    assert learner.worth(4) == 0.0
+    learner.take(-1, Trace({}, ((3, 4),)))
+    assert learner.worth(4) == pytest.approx(-(100 / 0.9 - 100) / 3 / 100)
+    assert learner.worth(9) == 0.0
+
+
+def test_a_worth_stays_between_minus_one_and_one() -> None:
+    learner = rule(3, 4)
+    for _ in range(30):
+        learner.take(-1, Trace({}, ((3, 4),)))
+    assert learner.worth(4) == -1.0
+
+
+def test_standing_is_no_way_from_one_to_the_other() -> None:
+    assert rule(1, None, 2, 2, 3).edge_weights == {(2, 3): 100.0}
+
+
+def test_credits_tell_by_what_worths_change_and_an_undo_takes_them_off() -> None:
+    learner = rule(1, 2, 3, 4, 2, 4)
+    before = {rla_id: learner.worth(rla_id) for rla_id in (2, 3, 4)}
+    credits_ = learner.credits_of(-1, LAST)
+    assert {credit.rla_id for credit in credits_} == {2, 3, 4}
+    learner.take(-1, LAST)
+    for rla_id, change in credits_:
+        assert learner.worth(rla_id) == pytest.approx(before[rla_id] + change)
+    learner.take(1, Trace({}, ((2, 4),)))
+    now = {rla_id: learner.worth(rla_id) for rla_id in (2, 3, 4)}
+    learner.book([Booking(credit, 0) for credit in credits_], -1)
+    for rla_id, change in credits_:
+        assert learner.worth(rla_id) == pytest.approx(now[rla_id] - change)
+
+
+def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
+    learner = rule(3, 4)
+    learner.take(-1, Trace({}, ((3, 4),)))
+    worth = learner.worth(4)
+    learner.renew(4)
+    assert (learner.worth(4), learner.depth(4)) == (0.0, 1)
+    learner.book([Booking(Credit(4, worth), 0)], -1)
+    learner.go_back(4)
+    assert (learner.worth(4), learner.depth(4)) == pytest.approx((0.0, 0))
+
+
+def test_what_is_saved_is_gone_on_from() -> None:
+    learner = rule(1, 2, 3, 4)
+    learner.take(-1, LAST)
+    again = rule()
+    again.restore(Statistics(edge_weights=dict(learner.edge_weights)))
+    assert again.edge_weights == learner.edge_weights
+    assert again.worth(4) == learner.worth(4)
