@@ -1,5 +1,6 @@
 """What the terminal tells its teacher, in words."""
 
+import math
 from collections.abc import Sequence
 
 from kurt2rt.channel.state import State
@@ -77,7 +78,8 @@ def trust_in(state: State) -> str:
         bad, good = state.signals_missing
         missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
         return f"needs {missing or 'a few'} signals more of yours (not trusted)"
-    return f"agrees with you {state.agreement:.2f} ({'trusted' if state.trusted else 'not trusted'})"
+    share = math.floor(state.agreement * 100) / 100  # not rounded up to the bound that it misses
+    return f"agrees with you {share:.2f} ({'trusted' if state.trusted else 'not trusted'})"
 
 
 def change_in(lesson: LessonLine | None) -> str:

@@ -339,8 +339,8 @@ async def test_what_is_typed_where_an_action_was_withdrawn_is_an_answer(pairing:
 
 def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
     appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
-    assert opinion_in(state(agreement=0.7), appraisals) == (
-        "critic: does not know this situation · agrees with you 0.70 (not trusted)"
+    assert opinion_in(state(agreement=0.799), appraisals) == (
+        "critic: does not know this situation · agrees with you 0.79 (not trusted)"
     )
     changed = LessonLine("c", "RLA 7 corrected: back instead of stand", "critic", 5, 9, "", False)
     assert change_in(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"

@@ -46,12 +46,22 @@ class Lesson:
         """What the robot was told of one kind."""
         return [each[1] for each in self.robot.told if each[0] == name]
 
+    def fits(self) -> None:
+        """Nothing of the critic's words runs out of their box."""
+        over = self.phone.run(
+            "const edge = document.querySelector('#critic').getBoundingClientRect().right;"
+            "return [...document.querySelectorAll('#critic *')].filter((e) => e.checkVisibility())"
+            ".filter((e) => e.getBoundingClientRect().right > edge).map((e) => e.textContent);"
+        )
+        assert over == []
+
     def look(self, name: str) -> None:
         """It can be read and touched on each screen."""
         for size in SIZES:
             self.phone.turn(size, touch=size != LAPTOP)
             self.phone.show(f"11-{name}-{size[0]}x{size[1]}")
             assert_handy(self.phone, size, "teach")
+            self.fits()
         self.phone.turn(PORTRAIT)
 
 
@@ -77,6 +87,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     lesson.reads("#opinion", "critic: thinks good")
     assert phone.text("#trusted") == "not trusted yet"
     assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
+    lesson.fits()
     shown = [each.text for each in phone.driver.find_elements("css selector", "#rewards button") if each.is_displayed()]
     assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
     phone.touch("[data-appraisal=bad]")
@@ -87,7 +98,8 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
 
     lesson.show(opinion=None, opinion_of=None, agreement=0.61, signals_missing=(0, 0))
     lesson.reads("#opinion", "critic: does not know this")
-    lesson.reads("#agreement-text", "agrees with you 0.61, trusted from 0.80")
+    lesson.reads("#agreement-text", "agrees 0.61, needs 0.80")
+    lesson.fits()
     lesson.show(opinion=-1, opinion_of=41, agreement=0.87, trusted=True)
     lesson.reads("#agreement-text", "agrees with you 0.87")
     assert phone.text("#agreement-text") == "agrees with you 0.87"
@@ -116,7 +128,8 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.look("phase-5")
     lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
     lesson.show(agreement=0.7, trusted=False, lessons=1)
-    lesson.reads("#trusted", "not trusted: only listens")
+    lesson.reads("#trusted", "only listens")
+    lesson.fits()
     lesson.reads("#changed", "undone: RLA 17")
 
 

@@ -20,8 +20,8 @@ export function agreement(state, trustedFrom) {
   if (state.agreement === null) {
     return `needs ${missing(state.signals_missing) || "a few"} signals more of yours`;
   }
-  const share = state.agreement.toFixed(2);
-  return `agrees with you ${share}${state.trusted ? "" : `, trusted from ${trustedFrom.toFixed(2)}`}`;
+  const share = (Math.floor(state.agreement * 100) / 100).toFixed(2); // not rounded up to the bound that it misses
+  return state.trusted ? `agrees with you ${share}` : `agrees ${share}, needs ${trustedFrom.toFixed(2)}`;
 }
 
 export function lastChange(lesson) {
@@ -81,7 +81,7 @@ export class Critic {
     this.#think(state);
     const known = state.agreement !== null;
     $("trust").className = !known ? "unknown" : state.trusted ? "trusted" : "low";
-    setText($("trusted"), state.trusted ? "trusted" : state.phase > TAUGHT_IN ? "not trusted: only listens" : "not trusted yet");
+    setText($("trusted"), state.trusted ? "trusted" : state.phase > TAUGHT_IN ? "only listens" : "not trusted yet");
     $("agreement-fill").style.width = `${(state.agreement ?? 0) * 100}%`;
     setText($("agreement-text"), agreement(state, this.#trustedFrom));
     $("changed").hidden = state.phase === TAUGHT_IN;
