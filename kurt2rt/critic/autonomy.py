@@ -28,13 +28,22 @@ class Autonomy:
         every_s = settings.signal_every_s
         self._every_ticks = {-1: round(every_s.bad / period_s), 1: round(every_s.good / period_s)}
         self._next_tick = {-1: 0, 1: 0}
+        self._patience_ticks = round(settings.patience_s / period_s)
+        self._thought = 0
+        self._thought_since = 0
+        self._looked_at = -1
 
     def signal(self, tick: int, opinion: Opinion | None, driving: bool) -> Signal | None:
-        """What is to be learnt from in this tick, of what the critic thinks of it; to be asked in phase 5 only.
+        """What is to be learnt from in this tick, of what the critic thinks; to be asked in every tick of phase 5.
 
-        `driving`: whether an action drives. None where the critic is not trusted, or has just said the same.
+        `driving`: whether an action drives. None where the critic is not trusted, has just said the same, or has not
+        thought so for long enough: what it thinks for a moment is often chance.
         """
-        if opinion is None or not driving or not opinion.known or opinion.value == 0:
+        thought = opinion.value if opinion is not None and driving and opinion.known else 0
+        if thought != self._thought or tick != self._looked_at + 1:
+            self._thought, self._thought_since = thought, tick
+        self._looked_at = tick
+        if opinion is None or thought == 0 or tick - self._thought_since < self._patience_ticks:
             return None
         if tick < self._next_tick[opinion.value] or not self._agreement.trusted:
             return None

@@ -15,7 +15,7 @@ from kurt2rt.rla.rla import (
 
 
 class BestKnowledge:
-    """Scores each window of driving by the critic's opinion of it, and tells which of its changes are to be undone.
+    """Scores each window of driving, and of not knowing the way, and tells which of its changes are to be undone.
 
     Scores come with chance. After a roll-back the best score is that of the next window, with the knowledge that was
     come back to: else one lucky window would have everything undone that is ever learnt after it.
@@ -47,14 +47,17 @@ class BestKnowledge:
                 taught = rla_of(event)
                 self._since_best = [each for each in self._since_best if each[1] != taught]
 
-    def look(self, tick: int, opinion_value: int | None, driving: bool) -> tuple[LessonUndone, ...]:
+    def look(
+        self, tick: int, opinion_value: int | None, driving: bool, *, asking: bool = False
+    ) -> tuple[LessonUndone, ...]:
         """Count one tick; at the end of a window that was too bad: what to undo, in this order, newest first.
 
-        `opinion_value`: of the critic's opinion, None where it has none, which counts as neutral.
+        `opinion_value`: of the critic's opinion, None where it has none, which counts as neutral. `asking`: it stands
+        because it does not know the situation, which is bad, for nobody is there to be asked; to stand else is nothing.
         """
-        if not driving:
+        if not driving and not asking:
             return ()
-        self._sum += opinion_value or 0
+        self._sum += (opinion_value or 0) if driving else -1
         self._driven += 1
         if self._driven < self._window_ticks:
             return ()

@@ -148,6 +148,8 @@ class CriticSettings(Settings):
     """How often it is looked up what it thinks."""
     agreement: AgreementSettings
     signal_every_s: SignalEverySettings
+    patience_s: Annotated[float, Field(ge=0, le=10)]
+    """It gives a signal only when it has thought the same for so long."""
     best: BestSettings
 
     @field_validator("appraisals")

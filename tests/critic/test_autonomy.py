@@ -11,7 +11,7 @@ BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
 GOOD = Opinion(1, "good", 0.5, None, 0.1, 1.0, True)
 NEUTRAL = Opinion(0, "neutral", 0.7, None, 0.1, 1.0, True)
 UNKNOWN = Opinion(0, "", 0.0, None, 2.0, 1.0, False)
-RATES = SETTINGS.model_copy(update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0)})
+RATES = SETTINGS.model_copy(update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0), "patience_s": 0.0})
 
 
 def agreement(*, trusted: bool = True) -> Agreement:
@@ -52,3 +52,15 @@ def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
     assert speaking.signal(2, BAD, True) is not None
     heard.hear_all([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
     assert speaking.signal(300, BAD, True) is None
+
+
+def test_what_it_thinks_for_a_moment_only_it_keeps_to_itself() -> None:
+    speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
+    thought = [BAD, BAD, BAD, BAD, GOOD, BAD, BAD, BAD, BAD, BAD, BAD, BAD]
+    assert [tick for tick, opinion in enumerate(thought) if speaking.signal(tick, opinion, True)] == [10]
+
+
+def test_a_wait_or_a_gap_begins_the_thought_anew() -> None:
+    speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
+    assert [tick for tick in range(20) if speaking.signal(tick, BAD, tick != 4)] == [10]
+    assert [tick for tick in range(200, 210) if speaking.signal(tick, BAD, True)] == [205]

@@ -83,6 +83,15 @@ def test_time_in_which_it_stands_does_not_count() -> None:
     assert kept.score == 0.3
 
 
+def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
+    kept = best()
+    window(kept, good=1)
+    kept.changed(created(1, "first"))
+    undone = [event for tick in range(10) for event in kept.look(tick, 1, False, asking=True)]
+    assert [each.lesson for each in undone] == ["first"]
+    assert kept.score == -1.0
+
+
 def test_what_was_undone_by_hand_is_not_undone_again() -> None:
     kept = best()
     window(kept, good=9)
