@@ -51,7 +51,7 @@ class SelfTeaching:
         """Count the tick; after a window that was too bad, what to undo, one by one: apply each before the next."""
         best = self.best
         said = None if opinion is None else opinion.said
-        undone = best.look(tick, said, decision.driving)
+        undone = best.look(tick, said, decision.driving, asking=decision.asking)
         if best.best != self._best_score:
             self._best_score = best.best
             self._best_statistics = self._statistics()
