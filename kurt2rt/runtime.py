@@ -70,6 +70,7 @@ def build_runtime(
     attended: bool = False,
     wanted: Wanted | None = None,
     saved: Statistics | None = None,
+    asked: bool = True,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
@@ -78,6 +79,7 @@ def build_runtime(
     own policy, for instance, to see what it would reach.
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
     `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
+    `asked`: False where nobody is there who could be asked: RLAs whose action was withdrawn are passed over.
     Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
     """
     sensors = settings.infrared.names
@@ -110,6 +112,7 @@ def build_runtime(
         critic=Critic(system, critic),
         agreement=agreement,
         self_teaching=SelfTeaching(reinforcement, system, critic, agreement, period_s),
+        asked=asked,
     )
     inbox = TeacherInbox()
     statistics = statistics or StatisticsCounter()

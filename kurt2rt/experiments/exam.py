@@ -116,7 +116,16 @@ async def examine(
         )
     clock = LockstepClock(arena.step)
     runtime = build_runtime(
-        arena.robot, settings, task, events, NothingIsTaught(), clock, level_override=level, wanted=wanted, saved=saved
+        arena.robot,
+        settings,
+        task,
+        events,
+        NothingIsTaught(),
+        clock,
+        level_override=level,
+        wanted=wanted,
+        saved=saved,
+        asked=False,
     )
     # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")

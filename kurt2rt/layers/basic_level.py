@@ -10,7 +10,16 @@ from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.choice import Choice
-from kurt2rt.rla.rla import Appraised, Rla, RlaRewarded, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.rla.rla import (
+    BASIC,
+    ActionReplaced,
+    ActionWithdrawn,
+    LessonUndone,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    TeachingEvent,
+)
 from kurt2rt.rla.rla_system import Match, RlaSystem
 
 
@@ -59,6 +68,8 @@ class BasicLevel:
         self._pursued = wanted.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._choice = choice
+        self.nobody_is_asked = False
+        """Whether RLAs whose action was withdrawn are passed over, so that their neighbours answer."""
         self._decisions = 0
         self._driver: Rla | None = None
         self._drivers_condition: NDArray[np.float64] | None = None
@@ -66,9 +77,20 @@ class BasicLevel:
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
+        drives = self._is_about_driving(event)
         self.system.apply(event)
-        if not isinstance(event, RlaRewarded | Appraised | SessionBegun | SessionEnded):
+        if drives:
             self._held.yield_next()
+
+    def _is_about_driving(self, event: TeachingEvent) -> bool:
+        """Whether an event, not yet applied, may change what drives; rewards, and what the critic is taught, do not."""
+        match event:
+            case RlaCreated(rla):
+                return rla.level == BASIC
+            case ActionReplaced(rla_id) | ActionWithdrawn(rla_id) | RlaDeleted(rla_id):
+                rla_meant = self.system.get(rla_id)
+                return rla_meant is not None and rla_meant.level == BASIC
+        return isinstance(event, LessonUndone)
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
@@ -76,7 +98,7 @@ class BasicLevel:
             self._pursued = self.wanted.behaviour
             self._held.yield_next()
         self._decisions += 1
-        match = self.system.match(situation.vector, self._pursued)
+        match = self.system.match(situation.vector, self._pursued, asking=not self.nobody_is_asked)
         if stand_because is not None:
             return self._stand(stand_because, match)
         if match is None or not match.known:

@@ -88,10 +88,9 @@ class Reinforcement:
     def hear(self, event: TeachingEvent) -> None:
         """Follow an event that was applied to the system just now."""
         match event:
-            case RlaRewarded(_, value, decided_at_tick, origin, credits_):
+            case RlaRewarded(_, value, decided_at_tick, origin):
                 self._enter(event)
-                self.rule.take(value, self._trace(decided_at_tick, None))
-                self._blame(value, tuple(credit.rla_id for credit in credits_), origin.command_id, origin.teacher)
+                self._take(value, self._trace(decided_at_tick, None), origin.command_id, origin.teacher)
             case ActionReplaced(rla_id, _, _, origin):
                 self.rule.renew(rla_id)
                 self._since[rla_id] = origin.tick
@@ -105,9 +104,7 @@ class Reinforcement:
 
         `signal`: what its changes are called after.
         """
-        trace = self._trace(tick, trace_s)
-        self.rule.take(value, trace)
-        self._blame(value, tuple(trace.shares), signal, teacher)
+        self._take(value, self._trace(tick, trace_s), signal, teacher)
 
     def drove(self, rla_id: int | None, tick: int) -> None:
         """Learn from a tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
@@ -147,10 +144,13 @@ class Reinforcement:
             Booking(credit, self.rule.depth(credit.rla_id)) for credit in event.credits
         )
 
-    def _blame(self, value: int, rlas: tuple[int, ...], signal: str, teacher: str) -> None:
+    def _take(self, value: int, trace: Trace, signal: str, teacher: str) -> None:
+        self.rule.take(value, trace)
         if value < 0:
             self.choice.forget()
-            self._blames.append(_Blame(rlas, signal, teacher))
+            least = self._settings.blamed_share
+            blamed = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
+            self._blames.append(_Blame(blamed, signal, teacher))
 
     def _hear_undone(self, lesson: str, tick: int) -> None:
         record = self._system.lesson(lesson)

@@ -3,6 +3,8 @@
 from collections import Counter
 from collections.abc import Callable, Iterable
 
+import numpy as np
+
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.rla import (
     ActionWithdrawn,
@@ -58,7 +60,10 @@ class Repair:
             yield ActionWithdrawn(rla_id, rla.action, origin_of(f"withdraw-{rla_id}"))
 
     def try_another(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
-        """Where nobody is asked: a competitor with a neighbour's action, or an end to all once enough were tried."""
+        """Where nobody is asked: a competitor with a neighbour's action, or an end to all once enough were tried.
+
+        Not where no neighbour reaches: the robot would stand there, and nobody would come.
+        """
         rla = self._system.get(rla_id)
         if rla is None or rla.asks:
             return
@@ -69,23 +74,25 @@ class Repair:
         tried = self._tried.get(_place(rla), [rla.action])
         action = self._action_to_try(rla, tried) if len(tried) <= self._settings.most_competitors else None
         if action is None:
-            for each in group:
+            for each in group if self._neighbours_answer(rla) else ():
                 yield RlaDeleted(each.rla_id, origin_of(f"delete-{each.rla_id}"))
             return
         new_id = self._system.next_id
         origin = origin_of(f"try-{new_id}")
         yield RlaCreated(Rla(new_id, rla.condition, action, rla.radius, origin, rla.behaviour, rla.level))
 
+    def _neighbours_answer(self, rla: Rla) -> bool:
+        """Whether the condition of an RLA lies within the radius of another one that has an action."""
+        near = next((each for each in self._system.neighbours(rla, len(self._system)) if not each.asks), None)
+        if near is None:
+            return False
+        off = (np.array(near.condition) - np.array(rla.condition)) * self._system.weights
+        return float(np.sqrt(off @ off)) <= (self._system.radius if near.radius is None else near.radius)
+
     def _action_to_try(self, rla: Rla, tried: list[str]) -> str | None:
         """What most of the nearest neighbours do that was not tried; None where all they do was."""
-        neighbours = [each for each in self._system.neighbours(rla, len(self._system)) if not each.asks]
-        votes: Counter[str] = Counter()
-        for place, each in enumerate(neighbours, 1):
-            votes[each.action] += 1
-            if place >= self._settings.neighbours:
-                untried = [action for action, _ in votes.most_common() if action not in tried]
-                if untried:
-                    return untried[0]
+        nearest = self._system.neighbours(rla, self._settings.neighbours)
+        votes = Counter(each.action for each in nearest if not each.asks and not self.sunk(each.rla_id))
         return next((action for action, _ in votes.most_common() if action not in tried), None)
 
 

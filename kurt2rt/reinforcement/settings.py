@@ -23,23 +23,27 @@ class ReinforcementSettings(Settings):
     """What the value of the next RLA counts, one step later."""
     step_s: _Seconds = 0.1
     """Time between two steps of temporal difference learning."""
-    first_value: Annotated[float, Field(ge=-1, le=1)] = 0.5
+    first_value: Annotated[float, Field(ge=-1, le=1)] = 0.0
     """Value of an action that was just taught."""
+    highest_value: Annotated[float, Field(ge=-1, le=1)] = 0.0
+    """Praise lifts no value above this: what was praised a hundred times may be wrong elsewhere in its radius."""
     factors: Annotated[tuple[Annotated[float, Field(gt=0, le=1)], ...], Field(min_length=1, max_length=100)] = (
         0.9,
         0.95,
         0.97,
     )
     """Edge weights: by what praise multiplies, and blame divides, those of the last transitions, newest first."""
-    sunk_below: Annotated[float, Field(ge=-1, le=1)] = -0.2
+    sunk_below: Annotated[float, Field(ge=-1, le=1)] = -0.1
     """An RLA that was blamed and is worth less has sunk: its action is mended."""
+    blamed_share: _Share = 0.1
+    """Only an RLA with so much of the blame's trace is looked at."""
     epsilon: _Share = 0.02
     """Share of the choices among competitors that are made by chance instead of by worth."""
     hold_s: Annotated[float, Field(ge=0, le=1000)] = 1.0
     """A choice among competitors stands until they have not been nearest for so long, or are blamed."""
-    most_competitors: Annotated[int, Field(ge=1, le=100)] = 3
-    """Actions that are tried on one condition where nobody is asked, before its RLAs are deleted."""
+    most_competitors: Annotated[int, Field(ge=0, le=100)] = 3
+    """Actions that are tried on one condition where nobody is asked, before its RLAs are deleted; 0: at once."""
     neighbours: Annotated[int, Field(ge=1, le=1000)] = 5
-    """Of so many RLAs around it, the action that most have is the next one to try."""
+    """Of so many RLAs around it, the action that most have is the next one to try; one that has sunk has no vote."""
     seed: Annotated[int, Field(ge=0)] = 0
     """Of the choices by chance."""

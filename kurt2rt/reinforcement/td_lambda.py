@@ -3,7 +3,7 @@
 Every step, with e the trace:   delta = gamma V(now) - V(before),   V_i += alpha delta e_i
 At a signal r about a tick t:   V_i += alpha r e_i(t)
 
-V begins at `first_value`. Without signals it sinks towards 0, so praise is needed to keep what is good apart.
+V begins at `first_value` and never rises above `highest_value`.
 """
 
 import math
@@ -48,8 +48,10 @@ class TdLambda:
             self._step(rla_id, tick)
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
-        """Each RLA its share of the signal."""
-        return tuple(Credit(rla_id, self._settings.alpha * value * share) for rla_id, share in trace.shares.items())
+        """Each RLA its share of the signal, as far as its value may rise."""
+        alpha = self._settings.alpha
+        changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
+        return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
     def take(self, value: int, trace: Trace) -> None:
         """V_i += alpha r e_i(t)."""
@@ -97,12 +99,16 @@ class TdLambda:
         """Values as they were saved."""
         self._accounts.present = dict(saved.values)
 
+    def _change(self, rla_id: int, change: float) -> float:
+        """What is left of a change below the highest value; an undone blame may have lifted V above it."""
+        return min(change, max(0.0, self._settings.highest_value - self.worth(rla_id)))
+
     def _step(self, now: int | None, tick: int) -> None:
         alpha, gamma = self._settings.alpha, self._settings.gamma
         if now is not None and self._before is not None and tick - self._before_tick == self._step_ticks:
             delta = gamma * self.worth(now) - self.worth(self._before)
             for rla_id, share in self._trace_before.items():
-                self._accounts.present[rla_id] = self.worth(rla_id) + alpha * delta * share
+                self._accounts.present[rla_id] = self.worth(rla_id) + self._change(rla_id, alpha * delta * share)
         self._before, self._before_tick = now, tick
         faded = {rla_id: share * self._scale for rla_id, share in self._trace.items()}
         self._trace = {rla_id: share for rla_id, share in faded.items() if share >= LEAST_SHARE}

@@ -5,6 +5,7 @@ Where a task teaches several behaviours there is one such system for each, and w
 """
 
 import hashlib
+import math
 from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -191,19 +192,37 @@ class RlaSystem:
         """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
         return self._book.why_not_undo(command_id)
 
-    def match(self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC) -> Match | None:
+    def match(
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, asking: bool = True
+    ) -> Match | None:
         """The RLA of a level and taught behaviour nearest to a situation vector (d,), and the one behind it.
 
-        None when nothing was taught there yet.
+        None when nothing was taught there yet. `asking`: False passes over those that ask, for nobody is there.
         """
         contest = self._contests.get((level, behaviour))
         nearest = None if contest is None else contest.index.nearest(situation * contest.weights)
         if contest is None or nearest is None:
             return None
         rla = self._rlas[contest.ids[nearest.position]]
+        if rla.asks and not asking:
+            return self._match_passing_over(contest, situation)
         runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = contest.radius if rla.radius is None else rla.radius
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
+
+    def _match_passing_over(self, contest: _Contest, situation: NDArray[np.float64]) -> Match | None:
+        """The nearest that has an action: looks at all, for it is seldom needed."""
+        distances = contest.index.distances(situation * contest.weights)
+        order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
+        found = [place for place in order if not self._rlas[contest.ids[place]].asks][:2]
+        if not found:
+            return None
+        rla = self._rlas[contest.ids[found[0]]]
+        radius = contest.radius if rla.radius is None else rla.radius
+        if len(found) == 1:
+            return Match(rla, float(distances[found[0]]), radius, None, math.inf)
+        runner_up = self._rlas[contest.ids[found[1]]]
+        return Match(rla, float(distances[found[0]]), radius, runner_up, float(distances[found[1]]))
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
         """The living RLAs of its level and behaviour with exactly its condition, itself among them, oldest first."""

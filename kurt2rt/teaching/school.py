@@ -49,9 +49,14 @@ class School:
         critic: Critic | None = None,
         agreement: Agreement | None = None,
         self_teaching: SelfTeaching | None = None,
+        asked: bool = True,
     ) -> None:
-        """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5."""
+        """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
+
+        `asked`: False where nobody is there who could be asked, as in an exam.
+        """
         self._level = level
+        self._asked = asked
         self.wanted = level.wanted
         self.authority = authority
         self.critic = critic
@@ -104,7 +109,11 @@ class School:
         return self._session_ticks if self.session is None else tick - self._session_from
 
     def look_after(self, tick: int, *, was_driving: bool) -> None:
-        """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume."""
+        """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume.
+
+        Where nobody is asked, RLAs whose action was withdrawn are passed over.
+        """
+        self._level.nobody_is_asked = not self._asked or self.phase is Phase.AUTONOMOUS
         authority = self.authority
         if was_driving and not self.stopped_because and self.needs_a_teacher and not authority.present(tick):
             self.stop(authority.why_absent)

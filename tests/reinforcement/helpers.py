@@ -21,6 +21,11 @@ from tests.critic.helpers import FREE, SETTINGS, appraisal, origin
 from tests.layers.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 
 PERIOD_S = 0.01
+SIGNALS_ONLY = ReinforcementSettings(
+    step_s=100.0, first_value=0.5, highest_value=1.0, sunk_below=-0.2, blamed_share=0.001
+)
+"""Values change by signals alone, so that they can be told in one's head; three blames sink an RLA."""
+
 SHARE = 0.5
 """Corrections, and answers to what was withdrawn, replace within this share of RADIUS."""
 
@@ -30,6 +35,7 @@ CRASHED = FREE._replace(front_m=0.05, bumped=1.0)
 QUICK = SETTINGS.model_copy(
     update={
         "think_every_ticks": 1,
+        "patience_s": 0.0,
         "agreement": AgreementSettings(bound=0.8, window=5, least=2),
         "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
         "best": BestSettings(window_s=1.0, margin=0.1),
@@ -61,7 +67,7 @@ class Track:
         space = Space(len(FREE), critic.learning.radius, critic.learning.weight_vector)
         self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
         self.recent = RecentDecisions(1)
-        self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or ReinforcementSettings(), PERIOD_S)
+        self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or SIGNALS_ONLY, PERIOD_S)
         self.reinforcement.recall(events, saved)
         actions = {name: Counted() for name in "abc"}
         choice = self.reinforcement.choice

@@ -16,14 +16,12 @@ from kurt2rt.rla.rla import (
 )
 from kurt2rt.teaching.commands import Reward, Teach, Undo
 from tests.layers.helpers import MINIMUM_TICKS, RADIUS
-from tests.reinforcement.helpers import SHARE, Track, deleted_ids
+from tests.reinforcement.helpers import SHARE, SIGNALS_ONLY, Track, deleted_ids
 from tests.rla.helpers import created
 from tests.teaching.helpers import correct, teach
 
 LEFT, RIGHT = 0.0, 50.0
 KNOWN = (created(1, (LEFT,), "a"), created(2, (RIGHT,), "b"))
-SIGNALS_ONLY = ReinforcementSettings(step_s=100.0)
-"""Values change by signals alone, so that they can be told in one's head."""
 
 
 def track(*, phase: Phase = Phase.REINFORCEMENT, saved: Statistics | None = None) -> Track:
@@ -203,7 +201,7 @@ def test_blame_counts_in_every_phase_that_has_a_teacher(phase: Phase) -> None:
 
 @pytest.mark.parametrize(("phase", "learns"), [(1, False), (2, False), (3, True), (4, True), (5, False)])
 def test_values_follow_each_other_only_while_signals_are_to_be_expected(phase: int, learns: bool) -> None:
-    robot = Track(*KNOWN, phase=Phase(phase))
+    robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"step_s": 0.1}), phase=Phase(phase))
     robot.go(LEFT, 400)
     assert (robot.worth(1) < 0.5) == learns
 
@@ -277,7 +275,7 @@ def test_competitors_that_sink_while_a_teacher_is_there_go_and_the_last_one_asks
 
 def whole_story(seed: int) -> Track:
     """Blamed at every turn, with chance at work."""
-    settings = ReinforcementSettings(epsilon=0.3, hold_s=0.05, seed=seed)
+    settings = SIGNALS_ONLY.model_copy(update={"step_s": 0.1, "epsilon": 0.3, "hold_s": 0.05, "seed": seed})
     events = [created(n, (4.0 * n,), "abc"[n % 3]) for n in range(1, 12)]
     robot = Track(*events, reinforcement=settings, phase=Phase.AUTONOMOUS)
     robot.agreement._heard[1].extend([("x", True)] * 5)

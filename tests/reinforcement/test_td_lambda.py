@@ -13,7 +13,9 @@ from kurt2rt.rla.rla import Credit
 
 ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
 D = math.exp(-0.01 / TRACE_S)
-SETTINGS = ReinforcementSettings(alpha=ALPHA, gamma=GAMMA, first_value=V0, trace_s=TRACE_S, step_s=0.1)
+SETTINGS = ReinforcementSettings(
+    alpha=ALPHA, gamma=GAMMA, first_value=V0, highest_value=1.0, trace_s=TRACE_S, step_s=0.1
+)
 HALF_EACH = Trace({1: 0.5, 2: 0.25}, ())
 
 
