@@ -21,7 +21,7 @@ from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import Command, DeleteRla, Reward
-from kurt2rt.teaching.scripted_appraiser import Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
+from kurt2rt.teaching.scripted_appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
 from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -110,7 +110,8 @@ async def teach(
     chance = random.Random(f"course of {session}")
     drive = Drive(arena, task, no_way_s=task.teaching.rescue_after_s, period_s=period_s, chance=chance)
     in_sight = task.teaching.reposition_to == "in_sight"
-    reposition_every = round(task.teaching.reposition_every_s / period_s)
+    reposition_s = task.teaching.reposition_every_s if plan.reposition_every_s is None else plan.reposition_every_s
+    reposition_every = round(reposition_s / period_s)
     set_down_every = round(plan.set_down_every_s / period_s)
     shown = round(plan.shown_s / period_s)
     ticks = round(plan.duration_s / period_s)
@@ -151,7 +152,9 @@ async def teach(
         unknown += asking
         trusted += critics is not None and critics.trusted
         drive.follow()
-        if drive.makes_no_way(waits=asking and teacher.answers):
+        waits = asking and teacher.answers
+        # A robot that is pressed to a wall and asks again and again is no nearer to getting away.
+        if not (waits and plan.rescues_who_asks) and drive.makes_no_way(waits=waits):
             drive.rescue()
             rescues += 1
             unknown_rescues += asking
@@ -229,10 +232,12 @@ def _teacher_of(
     signs: Signs | None = None
     if plan.signs == "unknown":
         signs = UnknownIsBad()
+    elif plan.signs == "chance":
+        signs = BlamedByChance(round(times.bad_every_s / period_s), seed)
     elif plan.signs == "judge":
         if task.judge is None:
             raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")
-        signs = Judged(task.judge.build())
+        signs = Judged(task.judge.build(), round(times.patience_s / period_s))
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
     habits = Habits(
         reaction=round(task.teaching.teacher.reaction_s / period_s),

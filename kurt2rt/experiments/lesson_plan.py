@@ -6,8 +6,9 @@ from typing import Literal
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings
 
-Signs = Literal["none", "judge", "unknown"]
-"""What the teacher goes by when he praises and blames: nothing, the task's judge, or that the robot knew no answer."""
+Signs = Literal["none", "judge", "unknown", "chance"]
+"""What the teacher goes by when he praises and blames: nothing, the task's judge, that the robot knew no answer, or
+chance, which blames as often as a judge that is asked to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,6 +19,8 @@ class SignalTimes:
     good_every_s: float = 2.0
     neutral_every_s: float = 2.0
     """Only the critic is taught what is neutral."""
+    patience_s: float = 0.0
+    """He speaks of what has been bad for so long without a break; teaching the critic he needs none."""
     gap_s: float = 0.0
     """The shortest time between two signals of any kind."""
     most_blame: int = 0
@@ -34,10 +37,17 @@ class LessonPlan:
     """Another one begins at another place, with other noise."""
     signs: Signs = "none"
     times: SignalTimes = SignalTimes()
+    reposition_every_s: float | None = None
+    """The robot is set down at some start so often; 0: never; None: as the task says."""
     set_down_every_s: float = 0.0
     """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
     shown_s: float = 0.0
     """Then some action of the repertoire, whatever it leads to, drives it for so long."""
+
+    @property
+    def rescues_who_asks(self) -> bool:
+        """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
+        return self.phases[0][0] >= Phase.REINFORCEMENT
 
     @property
     def duration_s(self) -> float:

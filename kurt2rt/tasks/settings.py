@@ -165,6 +165,13 @@ class TaskSettings(Settings):
             raise ValueError("give its settings, or leave the key out where nothing is judged")
         return judge
 
+    @field_validator("phases")
+    @classmethod
+    def _given_or_left_out(cls, phases: PhasesSettings | None) -> PhasesSettings | None:
+        if phases is None:
+            raise ValueError("give its settings, or leave the key out where phases 3 to 5 are not tried out")
+        return phases
+
     @field_validator("policy")
     @classmethod
     def _knows_what_is_taught(cls, policy: PolicySettings, others: ValidationInfo) -> PolicySettings:

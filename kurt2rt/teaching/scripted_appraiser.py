@@ -40,14 +40,20 @@ class Signs(Protocol):
 class Judged:
     """Says of every picture what a judge thinks of it, while something drives the robot."""
 
-    def __init__(self, judge: Judge) -> None:
+    def __init__(self, judge: Judge, patience: int = 0) -> None:
+        """`patience`: ticks for which it must have been bad without a break before anything is said of it."""
         self._judge = judge
+        self._patience = patience
+        self._bad = 0
 
     def look(self, record: TickRecord) -> tuple[int, int] | None:
         """Of this tick."""
         if record.circumstances is None or not record.decision.driving:
+            self._bad = 0
             return None
-        return self._judge.judge(record.circumstances), record.tick
+        value = self._judge.judge(record.circumstances)
+        self._bad = self._bad + 1 if value < 0 else 0
+        return None if 0 < self._bad < self._patience else (value, record.tick)
 
 
 class UnknownIsBad:
@@ -60,6 +66,19 @@ class UnknownIsBad:
         """Of the tick before the robot began to ask."""
         drove, self._drove = self._drove, record.decision.driving
         return (-1, record.tick - 1) if record.decision.asking and drove else None
+
+
+class BlamedByChance:
+    """Blames whatever drives, now and then: what a teacher does to whom it does not matter what he sees."""
+
+    def __init__(self, every: int, seed: int) -> None:
+        """`every`: ticks from one blame to the next, on the mean."""
+        self._every = every
+        self._chance = random.Random(f"blame by chance, seed {seed}")
+
+    def look(self, record: TickRecord) -> tuple[int, int] | None:
+        """Of this tick."""
+        return (-1, record.tick) if self._chance.random() * self._every < 1.0 and record.decision.driving else None
 
 
 class _Said(NamedTuple):

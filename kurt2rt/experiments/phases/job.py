@@ -9,7 +9,6 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.settings import NAMES as CIRCUMSTANCES
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.curriculum import run_lesson
 from kurt2rt.experiments.kept.made_of import MadeOf
@@ -17,6 +16,7 @@ from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.examining import Examiner
+from kurt2rt.experiments.phases.folding import folded
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, Step
 from kurt2rt.experiments.phases.told import told
@@ -27,9 +27,8 @@ from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
-from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import CRITIC, Phase, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.tasks.settings import TaskSettings
 
 
@@ -50,14 +49,6 @@ class Robot:
     def knowledge_of(self, name: str) -> str:
         """Path of what it knows after a step, within the folder of results."""
         return f"knowledge/{name}/{self.task.name}-{self.seed}.knowledge"
-
-    def folded(self, events: Sequence[TeachingEvent]) -> RlaSystem:
-        """What they have taught."""
-        dimensions = len(load_situation(self.task.situation, self.settings.infrared.names).names)
-        others = {CRITIC: Space(len(CIRCUMSTANCES), 1.0)}
-        system = RlaSystem(dimensions, self.task.learning.radius, others=others)
-        system.apply_all(events)
-        return system
 
     def examiner(self, time: RobotTime) -> Examiner:
         """Its examiner."""
@@ -117,9 +108,9 @@ class TaughtJob:
                 return await examiner.robots(events, None, worlds, teachers)
 
             stages = (
-                _stage(UNTAUGHT, robot.folded([]), None, await examined([])),
-                _stage(PHASE_1, robot.folded(answered), None, await examined(answered)),
-                _stage(PHASE_2, robot.folded(events), told(lesson, events), await examined(events)),
+                _stage(UNTAUGHT, folded(task, robot.settings, []), None, await examined([])),
+                _stage(PHASE_1, folded(task, robot.settings, answered), None, await examined(answered)),
+                _stage(PHASE_2, folded(task, robot.settings, events), told(lesson, events), await examined(events)),
             )
             results.keep(knowledge, robot.knowledge_of(PHASE_2))
         results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=stages, teachers=teachers))

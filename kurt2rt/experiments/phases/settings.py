@@ -19,6 +19,10 @@ class SignalsSettings(Settings):
 
     bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
+    patience_s: Annotated[float, Field(ge=0, le=10)] = 0.2
+    """He blames what has been bad for so long without a break."""
+    by_chance_every_s: Annotated[float, Field(gt=0, le=100_000)] = 20.0
+    """The control that blames by chance does so so often."""
     most_blame: Annotated[int, Field(ge=0, le=100_000)] = 100
     """He blames no more often than this; 0: as often as he likes."""
 
@@ -33,13 +37,20 @@ class AppraisalsSettings(Settings):
     """The shortest time between two of any kind."""
 
 
+class AskedShare(Settings):
+    """Share of the robots that are to succeed in a world."""
+
+    world: str
+    share: Share
+
+
 class AskedOfPhases(Settings):
     """Numbers to reach; what is left out is not asked for."""
 
-    repaired_by_rewards: dict[str, Share] = Field(default_factory=dict)
-    """By world: share of the corrupted sets that succeed after phase 3."""
-    repaired_by_critic: dict[str, Share] = Field(default_factory=dict)
-    """By world: share of the corrupted sets that succeed after phase 5, without a teacher."""
+    repaired_by_rewards: tuple[AskedShare, ...] = ()
+    """Of the corrupted sets, after phase 3."""
+    repaired_by_critic: tuple[AskedShare, ...] = ()
+    """Of the corrupted sets, after phase 5 without a teacher."""
     collisions_fall_by: Annotated[float, Field(ge=0, le=1)] = 0.0
     """By the critic alone, of those of the corrupted sets; 0: not asked for."""
     intact_not_worse: bool = False
@@ -52,6 +63,8 @@ class PhasesSettings(Settings):
 
     reinforcement_s: Seconds
     """Phase 3."""
+    reposition_every_s: SecondsOrNever = 15.0
+    """In phase 3, and in its controls, the robot is set down at some start so often; 0: never."""
     critic_s: Seconds
     """Phase 4."""
     set_down_every_s: SecondsOrNever = 8.0

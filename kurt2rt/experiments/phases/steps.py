@@ -15,11 +15,12 @@ Critic = Literal["own", "taught", "shuffled"]
 
 UNTAUGHT, PHASE_1, PHASE_2 = "untaught", "phase-1", "phase-2"
 PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run"
-CORRUPTED, ASKS, UNKNOWN_BAD, REWARDS = "corrupted", "asks-only", "unknown-is-bad", "rewards"
+CORRUPTED, ASKS, UNKNOWN_BAD = "corrupted", "asks-only", "unknown-is-bad"
+BLAME_BY_CHANCE, REWARDS = "blame-by-chance", "rewards"
 CRITIC_ALONE, SHUFFLED, INTACT = "critic-alone", "critic-shuffled", "intact-autonomous"
 
 PATH = (UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5)
-BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, REWARDS, CRITIC_ALONE, SHUFFLED)
+BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, CRITIC_ALONE, SHUFFLED)
 
 TITLES = {
     UNTAUGHT: "untaught",
@@ -32,6 +33,7 @@ TITLES = {
     CORRUPTED: "corrupted, untouched",
     ASKS: "asks only",
     UNKNOWN_BAD: "asks, unknown is -1",
+    BLAME_BY_CHANCE: "asks, -1 by chance",
     REWARDS: "asks and rewards (phase 3)",
     CRITIC_ALONE: "critic alone (phase 5)",
     SHUFFLED: "shuffled critic alone",
@@ -74,7 +76,11 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     phases = phases_of(task)
     worlds, repair_worlds = task.exam.worlds, phases.repair_worlds
     signals, appraisals = phases.signals, phases.appraisals
-    of_rewards = SignalTimes(signals.bad_every_s, signals.good_every_s, most_blame=signals.most_blame)
+    of_rewards = SignalTimes(
+        signals.bad_every_s, signals.good_every_s, patience_s=signals.patience_s, most_blame=signals.most_blame
+    )
+    by_chance = SignalTimes(signals.by_chance_every_s)
+    moved = phases.reposition_every_s
     of_appraisals = SignalTimes(
         appraisals.bad_every_s, appraisals.good_every_s, appraisals.neutral_every_s, gap_s=appraisals.gap_s
     )
@@ -82,7 +88,14 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
         return LessonPlan(((phase, lasts_s),), purpose, **more)  # type: ignore[arg-type]
 
-    rewarded = taught(Phase.REINFORCEMENT, phases.reinforcement_s, "phase 3", signs="judge", times=of_rewards)
+    rewarded = taught(
+        Phase.REINFORCEMENT,
+        phases.reinforcement_s,
+        "phase 3",
+        signs="judge",
+        times=of_rewards,
+        reposition_every_s=moved,
+    )
     critic = taught(
         Phase.CRITIC,
         phases.critic_s,
@@ -98,13 +111,17 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     yield Step(LONG_RUN, PHASE_5, 0.0, "own", taught(Phase.AUTONOMOUS, phases.long_run_s, "long run"), ())
 
     repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
-    asks = taught(Phase.SUPERVISED, repair_s, "repair")
-    unknown = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards)
-    rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards)
+    asks = taught(Phase.SUPERVISED, repair_s, "repair", reposition_every_s=moved)
+    chance = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="chance", times=by_chance, reposition_every_s=moved)
+    unknown = taught(
+        Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards, reposition_every_s=moved
+    )
+    rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards, reposition_every_s=moved)
     alone = taught(Phase.AUTONOMOUS, alone_s, "repair")
     yield Step(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
     yield Step(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
     yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
+    yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds)
     yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
     yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, repair_worlds)
     yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", alone, repair_worlds)

@@ -6,6 +6,7 @@ from kurt2rt.experiments.load import Minute
 from kurt2rt.experiments.phases.outcome import StageOutcome, TeachingOutcome
 from kurt2rt.experiments.phases.steps import (
     ASKS,
+    BLAME_BY_CHANCE,
     BRANCHES,
     CRITIC_ALONE,
     INTACT,
@@ -50,13 +51,19 @@ def sheets(study: Study, reasons: Sequence[str]) -> Iterator[Sheet]:
         BRANCHES,
         study,
         "All branches begin with the same set of each robot. Asks only: the teacher answers, no more. Unknown is -1: "
-        "he also blames what led into a situation that the robot does not know. Critic alone: nobody is asked. "
+        "he also blames what led into a situation that the robot does not know. By chance: he blames whatever drives "
+        "now and then, and answers where the robot asks again. Critic alone: nobody is asked. "
         "Shuffled: the same appraisals with their opinions dealt out anew, trusted all the same.",
     )
-    yield load_sheet("What that took", (ASKS, UNKNOWN_BAD, REWARDS), study)
+    yield load_sheet("What that took", (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS), study)
     yield alone_sheet(study)
     yield paired_sheet(
         "What rewards add to answers alone", paired(study.stages[ASKS], study.stages[REWARDS]), f"{_PAIRED}"
+    )
+    yield paired_sheet(
+        "What judging adds to blame by chance",
+        paired(study.stages[BLAME_BY_CHANCE], study.stages[REWARDS]),
+        _PAIRED,
     )
     yield paired_sheet(
         "What its opinions add to the shuffled critic",

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
+from kurt2rt.experiments.phases.settings import AskedShare
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS, phases_of
 from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.summary import collisions_of, paired, worlds_of
@@ -54,11 +55,12 @@ def interventions(study: Study, stage: str = LONG_RUN) -> Rate:
     return rate_of([each.interventions for each in taught], [each.duration_s / _HOUR_S for each in taught])
 
 
-def _repaired(what: str, stages: tuple[StageOutcome, ...], asked: dict[str, float]) -> Iterator[Verdict]:
+def _repaired(what: str, stages: tuple[StageOutcome, ...], asked: tuple[AskedShare, ...]) -> Iterator[Verdict]:
+    share_in = {each.world: each.share for each in asked}
     for world in worlds_of(stages):
-        if world.world in asked:
+        if world.world in share_in:
             # 0.9 of 20 is 18, also where the product is a trifle more.
-            needed = math.ceil(asked[world.world] * world.robots - 1e-9)
+            needed = math.ceil(share_in[world.world] * world.robots - 1e-9)
             yield Verdict(
                 f"{what}, {world.label}",
                 f"at least {needed} of {world.robots}",
