@@ -1,0 +1,69 @@
+"""What the judges think of drives in the simulator, as the critic's perception shows them."""
+
+from collections import Counter
+
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from kurt2rt.experiments.exam import NothingIsTaught
+from kurt2rt.layers.policy_level import PolicyLevel
+from kurt2rt.layers.wanted import Wanted
+from kurt2rt.runtime import build_runtime
+from kurt2rt.simulated import SimulatedArena
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from tests.behaviors.helpers import ROBOT
+
+
+class Always:
+    """A policy that knows one action only."""
+
+    def __init__(self, action: str) -> None:
+        self._action = action
+
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002
+        return self._action
+
+
+async def judged(task_name: str, seconds: float, action: str | None = None) -> dict[int, float]:
+    """Shares of the driven time that were bad, neutral and good, by value; one action instead of the task's policy."""
+    task = load_task(task_name)
+    assert task.judge is not None
+    judge = task.judge.build()
+    arena = SimulatedArena(ROBOT, task.teaching.world, 1, "exam")
+    wanted = Wanted(task.behaviours)
+    policy = task.policy.build(ROBOT.infrared) if action is None else Always(action)
+    level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
+    clock = LockstepClock(arena.step)
+    runtime = build_runtime(arena.robot, ROBOT, task, (), NothingIsTaught(), clock, level_override=level, wanted=wanted)
+    heard: Counter[int] = Counter()
+
+    def after_tick(record: TickRecord) -> None:
+        if record.circumstances is not None and record.decision.driving and record.tick > 50:
+            heard[judge.judge(record.circumstances)] += 1
+
+    await runtime.scheduler.run(round(seconds * 100), after_tick)
+    arena.close()
+    return {value: heard[value] / heard.total() for value in (-1, 0, 1)}
+
+
+@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+async def test_the_teachers_own_drive_is_good_and_hardly_ever_bad(task: str) -> None:
+    shares = await judged(task, seconds=15)
+    assert shares[1] > 0.5
+    assert shares[-1] < 0.02
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+async def test_it_stays_so_for_minutes(task: str) -> None:
+    shares = await judged(task, seconds=240)
+    assert shares[1] > 0.55
+    assert shares[-1] < 0.01
+
+
+@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+@pytest.mark.parametrize("action", ["stand", "back"])
+async def test_who_stands_or_backs_all_the_time_is_blamed(task: str, action: str) -> None:
+    assert (await judged(task, seconds=5, action=action))[-1] > 0.95
