@@ -1,16 +1,15 @@
 """Exams of one stage."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.curriculum import Report
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.kept.stage import StudyStage
-from kurt2rt.experiments.phases.folding import folded
 from kurt2rt.experiments.phases.outcome import ExamOutcome
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import Origin, Phase, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
 
 
@@ -38,18 +37,11 @@ class Examiner:
     ) -> tuple[ExamOutcome, ...]:
         """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds."""
         progress = {each.world: each.progress for each in teachers}
-        events = [*events, *self._passed_over(events)]
         outcomes = []
         for world in worlds:
             drive = await self._drive(world, events, saved, by_teacher=False)
             outcomes.append(_outcome(drive, succeeded=drive.succeeded(progress[world], self.task.exam.success)))
         return tuple(outcomes)
-
-    def _passed_over(self, events: Sequence[TeachingEvent]) -> Iterator[TeachingEvent]:
-        """Nobody is there to be asked: RLAs whose action was withdrawn leave it to their neighbours."""
-        for rla in folded(self.task, self.robot, events).rlas:
-            if rla.asks:
-                yield RlaDeleted(rla.rla_id, Origin(f"exam-{rla.rla_id}", "examiner", Phase.SUPERVISED, 0))
 
     async def _drive(
         self, world: str, events: Sequence[TeachingEvent], saved: Statistics | None, *, by_teacher: bool
