@@ -225,15 +225,15 @@ async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) 
     assert (told.trusted, told.signals_missing) == (True, (0, 0))
 
 
-async def test_a_reward_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:
+async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:
     assert picture(desk).value is None
     await drives(desk)
     before = picture(desk).value
     assert before is not None
-    await desk.ask(desk.command(RewardRequest, 1, None))
+    await desk.ask(desk.command(RewardRequest, -1, None))
     after = picture(desk).value
     assert after is not None
-    assert after > before
+    assert after < before
 
 
 async def test_where_an_action_was_withdrawn_it_asks_again(desk: Desk) -> None:

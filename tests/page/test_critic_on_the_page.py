@@ -108,9 +108,11 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     assert not phone.find("#changed").is_displayed()
     lesson.look("phase-4")
 
-    lesson.show(phase=3, value=0.52)
+    lesson.show(phase=3, value=-0.001)
     phone.wait(lambda: not phone.find("#critic").is_displayed(), "before phase 4 nobody sees it")
-    lesson.reads("#gauge-text", "worth 0.52")
+    lesson.reads("#gauge-text", "worth 0.00")
+    lesson.show(value=-0.08)
+    lesson.reads("#gauge-text", "worth \N{MINUS SIGN}0.08")
     phone.touch("#blame")
     phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
 

@@ -75,7 +75,7 @@ export class Why {
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
     const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
     setText(this.#nearest, known ? `nearest: RLA ${state.nearest}, ${its}` : "touch the action that is right here");
-    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · worth ${state.value.toFixed(2)}`;
+    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · worth ${signed(state.value)}`;
     setText(this.#text, known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet");
     this.#trace.see(state.tick, known ? share : null);
     if (asks) this.#show(state.question);
@@ -109,6 +109,10 @@ export class Why {
       }),
     );
   }
+}
+
+function signed(value) {
+  return (Math.round(value * 100) / 100 || 0).toFixed(2).replace("-", "−"); // never −0.00
 }
 
 function short(name) {
