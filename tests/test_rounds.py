@@ -9,15 +9,19 @@ from kurt2rt.channel.reply import Verdict
 from kurt2rt.channel.requests import CorrectRequest
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from kurt2rt.rla.rla import RlaDeleted
 from kurt2rt.rounds import Rounds, Screen, Status
+from kurt2rt.runtime import build_runtime
 from kurt2rt.service_settings import load_service
 from kurt2rt.teaching.commands import Command, Teach
 from kurt2rt.teaching.question import Question
 from kurt2rt.tick import TickRecord
-from tests.channel.desk import ROBOT, STAMP, TASK, Desk, reply_of, turns
+from kurt2rt.timing.clock import LockstepClock
+from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
 from tests.rla.helpers import origin
+from tests.test_tick import Notebook
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
 SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
@@ -124,6 +128,17 @@ def test_counts_are_saved_once_per_checkpoint(shift: Shift) -> None:
     shift.rounds.save_statistics()
     shift.write()
     assert saved_uses(shift) == {7: 99}
+
+
+def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift: Shift) -> None:
+    shift.desk.runtime.reinforcement.rule.restore(Statistics(values={7: -0.25}))
+    shift.run(CHECKPOINT)
+    shift.write()
+    with Journal.read_only(shift.path) as journal:
+        saved = journal.statistics()
+    assert saved.values == {7: -0.25}
+    again = build_runtime(WideRobot(), ROBOT, TASK, (), Notebook(), LockstepClock(lambda: None), saved=saved)
+    assert again.reinforcement.worth(7) == -0.25
 
 
 def test_the_robot_asks_when_it_begins_to_ask_and_not_in_each_tick(shift: Shift) -> None:

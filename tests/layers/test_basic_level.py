@@ -2,16 +2,18 @@
 
 import itertools
 
+import numpy as np
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
-from kurt2rt.rla.rla import RlaCreated
+from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.rla.rla import CRITIC, RlaCreated
 from kurt2rt.rla.rla_system import RlaSystem
-from tests.layers.helpers import MINIMUM_TICKS, Counted, SmallLevel
-from tests.rla.helpers import created, deleted, replaced
+from tests.layers.helpers import MINIMUM_TICKS, RADIUS, Counted, SmallLevel, sensed, situation
+from tests.rla.helpers import created, deleted, replaced, withdrawn
 
 A_AT_0 = created(1, (0.0,), "a")
 B_AT_8 = created(2, (8.0,), "b")
@@ -205,3 +207,73 @@ def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
 ) -> None:
     with pytest.raises(UnknownBehaviourError, match=problem):
         SmallLevel(*events, behaviours=behaviours)
+
+
+def test_a_withdrawn_rla_asks_where_it_is_nearest_and_its_neighbours_answer_elsewhere() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
+    assert small.at(1.0) == Decision(STANDSTILL, Cause.UNKNOWN, None, None, small.level.system.match(np.array([1.0])))
+    assert small.at(5.0).action == "b"
+
+
+def test_where_nobody_is_asked_the_neighbours_of_a_withdrawn_rla_answer_inside_their_radius() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
+    small.level.nobody_is_asked = True
+    assert small.at(1.0).action == "b"
+    assert small.at(-5.0).asking  # farther than the radius of the neighbour
+
+
+def test_withdrawing_stops_at_once_whatever_was_being_held() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"))
+    assert small.at(0.0).driving
+    small.level.apply(withdrawn(1, "a"))
+    assert small.at(0.0).wheel_speeds == STANDSTILL
+
+
+@pytest.mark.parametrize(("radius", "answers"), [(2.0, False), (3.0, True), (None, True)])
+def test_a_held_action_answers_only_inside_the_radius_of_its_rla(radius: float | None, answers: bool) -> None:
+    small = SmallLevel(created(1, (0.0,), "a", radius), created(2, (4.0,), "b"))
+    assert small.at(1.0).answers
+    held = small.at(3.0)
+    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, answers)
+
+
+def test_standing_answers_nothing() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"))
+    assert not small.at(0.0, Cause.STOPPED).answers
+    assert not small.at(50.0).answers
+
+
+def test_what_the_critic_is_taught_does_not_end_an_action_that_is_held() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (4.0,), "b"))
+    small.at(1.0)
+    small.level.apply(created(3, (0.0,), "bad", level=CRITIC))
+    small.level.apply(replaced(3, "good", "bad"))
+    assert small.at(3.0).cause is Cause.HELD
+    small.level.apply(replaced(2, "c", "b"))
+    assert small.at(3.0).action == "c"
+
+
+def test_of_competitors_the_chosen_one_drives_and_the_oldest_where_nothing_chooses() -> None:
+    events = (created(1, (0.0,), "a"), created(2, (0.0,), "b"))
+    assert SmallLevel(*events).at(0.0).rla_id == 1
+    system = RlaSystem(1, RADIUS)
+    system.apply_all(events)
+    choice = Choice({1: -0.5, 2: 0.0}.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    decision = level.decide(situation(3.0), sensed(), None)
+    assert (decision.action, decision.rla_id, decision.answers) == ("b", 2, True)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 1
+
+
+def test_a_competitor_that_is_held_while_another_one_is_chosen_is_inside_its_radius() -> None:
+    worths = {1: 0.5, 2: 0.0}
+    system = RlaSystem(1, RADIUS)
+    system.apply_all((created(1, (0.0,), "a"), created(2, (0.0,), "b")))
+    choice = Choice(worths.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    level.decide(situation(0.0), sensed(), None)
+    worths[1] = -1.0
+    choice.forget()
+    held = level.decide(situation(0.0), sensed(), None)
+    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, True)

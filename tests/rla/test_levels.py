@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from kurt2rt.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
 from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
@@ -123,3 +125,22 @@ def test_how_an_rla_is_spoken_of() -> None:
     assert rla_title(17, "turn_left") == "RLA 17 of turn_left"
     assert rla_title(40, "", CRITIC) == created(40, (), level=CRITIC).rla.title == "appraisal RLA 40"
     assert rla_title(3, "", "reflex") == "reflex RLA 3"
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(st.integers(-5, 5), st.booleans()), min_size=1, max_size=12), st.integers(-6, 6))
+def test_passing_over_those_that_ask_is_as_if_they_were_not_there(taught: list[tuple[int, bool]], place: int) -> None:
+    every = [created(number, (float(x), 0.0)) for number, (x, _) in enumerate(taught, 1)]
+    asking = [number for number, (_, asks) in enumerate(taught, 1) if asks]
+    system = system_of(*every, *(withdrawn(number) for number in asking))
+    without = system_of(*every, *(deleted(number) for number in asking))
+    here = np.array([float(place), 1.0])
+    passed_over, expected = system.match(here, asking=False), without.match(here)
+    assert (passed_over is None) == (expected is None)
+    if passed_over is not None and expected is not None:
+        assert passed_over.rla == expected.rla
+        assert (passed_over.distance, passed_over.radius) == (expected.distance, expected.radius)
+        if not system.match(here).rla.asks:  # type: ignore[union-attr] # there is one
+            return  # who is behind the nearest is told as ever
+        assert passed_over.runner_up == expected.runner_up
+        assert passed_over.runner_up_distance == expected.runner_up_distance

@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from hal.robot import STANDSTILL
+from kurt2rt.critic.critic import Opinion
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.teaching.recent import RecentDecisions
+from tests.critic.helpers import FREE
+
+SITUATION = Situation(np.zeros(2), history_frozen=False)
 
 
 def remembered(*ticks: int, capacity: int = 10) -> RecentDecisions:
@@ -19,7 +23,9 @@ def remembered(*ticks: int, capacity: int = 10) -> RecentDecisions:
 
 def remember(recent: RecentDecisions, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
-    recent.remember(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None), behaviour, blind=blind)
+    recent.remember(
+        tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True), behaviour, blind=blind
+    )
 
 
 @pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
@@ -79,3 +85,31 @@ def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
     assert [recent.behaviour(tick) for tick in (1, 2)] == ["straight_on", "turn_left"]
     remember(recent, 3)
     assert [recent.behaviour(tick) for tick in (2, 3)] == ["turn_left", ""]
+
+
+def test_each_tick_has_who_may_be_blamed_for_it() -> None:
+    recent = remembered()
+    for tick, answers in enumerate((True, False, True), 1):
+        decision = Decision(STANDSTILL, Cause.HELD, "a", 100 + tick, None, answers)
+        recent.remember(tick, SITUATION, decision, blind=False)
+    recent.remember(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None), blind=False)
+    assert [recent.answering(tick) for tick in (1, 2, 3, 4)] == [101, None, 103, None]
+    ticks, rlas = recent.answering_up_to(3)
+    assert (ticks.tolist(), rlas.tolist()) == ([1, 2, 3], [101, 0, 103])
+
+
+def test_ticks_up_to_one_are_told_oldest_first_without_those_that_were_missed_or_forgotten() -> None:
+    recent = remembered(*range(1, 8), *range(9, 14))
+    assert recent.answering_up_to(12)[0].tolist() == [4, 5, 6, 7, 9, 10, 11, 12]
+    assert recent.answering_up_to(7)[0].tolist() == [4, 5, 6, 7]
+    assert recent.answering_up_to(2)[0].tolist() == []
+
+
+def test_each_tick_has_what_the_critic_looked_at_and_thought() -> None:
+    recent = remembered()
+    opinion = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
+    decision = Decision(STANDSTILL, Cause.RLA, "a", 1, None, True)
+    recent.remember(1, SITUATION, decision, blind=False, circumstances=FREE, opinion=opinion)
+    remember(recent, 2)
+    assert (recent.circumstances(1), recent.opinion(1)) == (FREE, opinion)
+    assert (recent.circumstances(2), recent.opinion(2)) == (None, None)
