@@ -55,7 +55,8 @@ class TickRecord(NamedTuple):
 class Tick:
     """bus -> sense -> perceive -> decide -> guard -> bus, then learn and publish.
 
-    A deterministic function of its state, the senses and the commands: no wall clock, no chance but what a seed settles, no I/O but the bus.
+    A deterministic function of its state, the senses and the commands: no wall clock, no chance that a seed does not
+    settle, no I/O but the bus.
     """
 
     def __init__(
