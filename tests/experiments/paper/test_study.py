@@ -4,7 +4,6 @@ import base64
 import html
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -19,37 +18,9 @@ from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
+from tests.experiments.shown.page import Page
 
 pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
-
-_VOID = {"meta", "img", "br", "hr", "link", "input"}
-
-
-class Page(HTMLParser):
-    """Reads a page as strictly as it was meant: every tag that opens closes, in order."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.images: list[str] = []
-        self.tags: list[str] = []
-        self.addresses: list[str] = []
-        self._open: list[str] = []
-        self.feed(text)
-        self.close()
-        assert self._open == []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        for name, value in attrs:
-            if name in ("src", "href", "action", "srcset", "data"):
-                self.addresses.append(value or "")
-            if tag == "img" and name == "alt":
-                self.images.append(value or "")
-        if tag not in _VOID:
-            self._open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self._open.pop() == tag
 
 
 def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> None:

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.shown.intervals import poisson_interval, rate_of
+from kurt2rt.experiments.shown.intervals import difference_of, poisson_interval, rate_of
 
 
 def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
@@ -66,3 +66,22 @@ def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int,
     more = rate_of(counts, exposures)
     assert more.low >= rate.low
     assert more.high >= rate.high
+
+
+def test_the_same_change_in_every_robot_is_sure_and_one_robot_says_nothing() -> None:
+    assert difference_of([0.5, 0.5, 0.5]) == (0.5, 0.5, 0.5)
+    assert difference_of([0.5]) == (0.5, -math.inf, math.inf)
+
+
+def test_changes_to_both_sides_leave_it_open() -> None:
+    change = difference_of([-1.0, 1.0, -2.0, 2.0, 0.5])
+    assert change.value == pytest.approx(0.1)
+    assert change.low < 0.0 < change.high
+
+
+@settings(max_examples=20)
+@given(st.lists(st.floats(-100, 100), min_size=2, max_size=20))
+def test_the_interval_of_a_change_turns_round_with_it(changes: list[float]) -> None:
+    there, back = difference_of(changes), difference_of([-change for change in changes])
+    assert there.low <= there.value <= there.high
+    assert (back.low, back.value, back.high) == pytest.approx((-there.high, -there.value, -there.low), abs=1e-9)

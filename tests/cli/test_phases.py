@@ -1,0 +1,42 @@
+"""`kurt2rt phases` as a user meets it."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.helpers import CommandLine
+
+QUICK = ("phases", "--quick", "--seeds", "100", "--jobs", "1")
+
+
+def test_a_task_that_says_nothing_of_these_phases_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
+    said = kurt2rt.refused("phases", "--task", "circle", "--out", "made")
+    assert "task circle: says nothing about phases 3 to 5; add a section `phases:` to its file" in said
+    assert not Path("made").exists()
+
+
+def test_a_world_that_is_unknown_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
+    said = kurt2rt.refused("phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
+    assert "nowhere: no such file in worlds" in said
+    assert not Path("made").exists()
+
+
+@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+@pytest.mark.deep
+def test_quick_goes_the_whole_path_leaves_a_report_and_goes_on_where_it_was(kurt2rt: CommandLine, task: str) -> None:
+    first = kurt2rt(*QUICK, "--task", task)
+    assert first.exit_code == 0, first.err
+    assert "Phase by phase" in first.out
+    assert "Not judged: A part only" in first.out
+    assert "MISSED" not in first.out
+    folder = Path(f"results/phases/{task}-quick")
+    assert first.out.endswith(f"report  {folder}/report.html\n")
+    results = sorted(folder.glob("results/*/*.json"))
+    assert len(results) == 13
+    stamps_ns = [path.stat().st_mtime_ns for path in results]
+    results[4].unlink()
+    again = kurt2rt(*QUICK, "--task", task)
+    assert again.out == first.out
+    changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
+    assert changed == [place == 4 for place in range(13)]
+    assert f"kurt2rt phases --quick --task {task} --seeds 100" in (folder / "report.html").read_text()

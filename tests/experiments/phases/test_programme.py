@@ -1,0 +1,62 @@
+"""What is planned before anything runs."""
+
+from pathlib import Path
+
+from kurt2rt.experiments.kept.made_of import sources
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.phases.programme import OWN, Programme, plan
+from kurt2rt.experiments.phases.steps import CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from tests.experiments.helpers import ROBOT, STAGE
+
+TASK = load_task("wall_following")
+
+
+def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> Programme:
+    results = Results(Path("never-made"))
+    return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda: "s")
+
+
+def with_phases(**changed: float) -> TaskSettings:
+    assert TASK.phases is not None
+    return TASK.model_copy(update={"phases": TASK.phases.model_copy(update=changed)})
+
+
+def test_jobs_come_in_waves_of_which_each_needs_only_those_before() -> None:
+    waves = [{job.step for job in wave} for wave in planned().waves]
+    assert waves[0] == {PHASE_2}
+    place = {step: number for number, wave in enumerate(waves) for step in wave}
+    assert place[REWARDS] < place[PHASE_4] < place[CRITIC_ALONE] == place[PHASE_5] < place[LONG_RUN]
+    assert all(len(wave) % 2 == 0 for wave in planned().waves)  # as many of each seed
+
+
+def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
+    jobs = planned().jobs
+    assert len({job.file for job in jobs}) == len(jobs) == 2 * 13
+
+
+def test_another_time_of_one_step_makes_only_what_follows_from_it_anew() -> None:
+    before = {job.file: job.made_of for job in planned().jobs}
+    after = {job.file: job.made_of for job in planned(with_phases(autonomy_s=77.0)).jobs}
+    changed = {Path(file).parent.name for file in before if before[file] != after[file]}
+    assert changed == {PHASE_5, LONG_RUN}
+
+
+def test_another_time_of_phase_4_makes_all_critics_anew_and_no_rewards() -> None:
+    before = {job.step: job.made_of for job in planned().jobs}
+    after = {job.step: job.made_of for job in planned(with_phases(critic_s=77.0)).jobs}
+    assert before[CRITIC_ALONE].differences(after[CRITIC_ALONE]) == ["task"]
+    assert before[REWARDS] == after[REWARDS]
+
+
+def test_what_is_done_to_robots_is_source_and_what_only_shows_it_is_not() -> None:
+    names = dict(sources(OWN))
+    assert {name for name in names if "/phases/" in name} == OWN
+    assert "kurt2rt/experiments/lesson_plan.py" in names
+    assert "kurt2rt/critic/agreement.py" in names
+
+
+def test_quick_is_every_step_for_seconds() -> None:
+    quick = planned(quick=True)
+    assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
+    assert sum(job.robot_time_s for job in quick.jobs) < 600

@@ -1,0 +1,66 @@
+"""The steps of one robot: each behind what it needs, with the same time and the same start for all that is compared."""
+
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.experiments.phases.steps import (
+    ASKS,
+    BLAME_BY_CHANCE,
+    BRANCHES,
+    CORRUPTED,
+    CRITIC_ALONE,
+    INTACT,
+    LONG_RUN,
+    PATH,
+    PHASE_2,
+    PHASE_4,
+    REWARDS,
+    SHUFFLED,
+    TITLES,
+    UNKNOWN_BAD,
+    steps_of,
+)
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import load_task
+
+TASK = load_task("wall_following")
+STEPS = {step.name: step for step in steps_of(TASK)}
+
+
+def test_each_step_stands_behind_those_it_needs() -> None:
+    done = {PHASE_2}
+    for step in steps_of(TASK):
+        assert done.issuperset(step.needs)
+        done.add(step.name)
+    assert done > set(BRANCHES) | set(PATH[2:])
+    assert done <= set(TITLES)
+
+
+def test_every_repair_begins_with_the_same_wrong_set_at_the_same_place_for_the_same_time() -> None:
+    repairs = [STEPS[name] for name in (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS)]
+    for step in (*repairs, STEPS[CORRUPTED], STEPS[CRITIC_ALONE], STEPS[SHUFFLED]):
+        assert (step.after, step.corrupted) == (PHASE_2, 0.18)
+        assert step.worlds == STEPS[CORRUPTED].worlds
+    plans = [step.plan for step in repairs if step.plan]
+    assert {(plan.duration_s, plan.purpose, plan.reposition_every_s) for plan in plans} == {
+        (plans[0].duration_s, "repair", 15.0)
+    }
+    assert STEPS[CRITIC_ALONE].plan == STEPS[SHUFFLED].plan == STEPS[INTACT].plan
+
+
+def test_a_critic_is_taken_from_this_robot_s_phase_4() -> None:
+    assert {name for name, step in STEPS.items() if step.critic != "own"} == {CRITIC_ALONE, SHUFFLED, INTACT}
+    assert all(PHASE_4 in STEPS[name].needs for name in (CRITIC_ALONE, SHUFFLED, INTACT))
+
+
+def test_nobody_teaches_where_the_robot_is_alone() -> None:
+    for name in (CRITIC_ALONE, SHUFFLED, INTACT, LONG_RUN):
+        plan = STEPS[name].plan
+        assert plan is not None
+        assert [phase for phase, _ in plan.phases] == [Phase.AUTONOMOUS]
+
+
+@pytest.mark.parametrize("key", ["phases", "judge"])
+def test_a_task_that_says_nothing_of_these_phases_is_refused(key: str) -> None:
+    with pytest.raises(SettingsError, match=f"task wall_following: .*; add .*`{key}:`"):
+        list(steps_of(TASK.model_copy(update={key: None})))

@@ -1,0 +1,112 @@
+"""From a plan to results, figures and a report, on the simulated robot."""
+
+import base64
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from kurt2rt.experiments.error import StudyError
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, LONG_RUN, PHASE_1, PHASE_2, PHASE_4, SHUFFLED
+from kurt2rt.experiments.phases.study import conduct, read_study
+from kurt2rt.experiments.phases.tables import sheets
+from kurt2rt.experiments.pool import Standing
+from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.rla.rla import CRITIC, RlaCreated
+from tests.experiments.helpers import ROBOT
+from tests.experiments.phases.outcomes import ALL
+from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_programme, tiny_task
+from tests.experiments.shown.page import Page
+
+
+def lessons(tiny: Tiny, step: str) -> list[object]:
+    return list(
+        read_lessons(tiny.results.folder / f"knowledge/{step}/wall_following-100.knowledge", ROBOT, tiny_task())
+    )
+
+
+def test_every_stage_is_there_and_every_step_leaves_what_the_robot_knows(tiny: Tiny) -> None:
+    assert set(tiny.study.stages) == set(ALL)
+    assert tiny.results.missing(tiny.programme.jobs) == []
+    kept = {path.parent.name for path in tiny.results.folder.glob("knowledge/*/*.knowledge")}
+    assert kept == {job.step for job in tiny.programme.jobs}
+    (long_run,) = tiny.study.stages[LONG_RUN]
+    assert long_run.exams == ()
+
+
+def test_what_phase_1_taught_is_the_beginning_of_what_both_did(tiny: Tiny) -> None:
+    (one,), (two,) = tiny.study.stages[PHASE_1], tiny.study.stages[PHASE_2]
+    assert (
+        0
+        < one.rlas
+        <= two.rlas
+        == len(lessons(tiny, PHASE_2)) - sum(not isinstance(event, RlaCreated) for event in lessons(tiny, PHASE_2))
+    )
+
+
+def test_the_corrupted_set_has_the_same_rlas_and_knows_otherwise(tiny: Tiny) -> None:
+    (before,), (after,) = tiny.study.stages[PHASE_2], tiny.study.stages[CORRUPTED]
+    assert after.rlas == before.rlas
+    assert after.knowledge_hash != before.knowledge_hash
+    assert after.teaching is None
+
+
+def test_the_critic_of_phase_4_goes_along_to_the_branches(tiny: Tiny) -> None:
+    (taught,) = tiny.study.stages[PHASE_4]
+    assert taught.appraisals > 0
+    assert taught.teaching is not None
+    assert sum(minute.appraisals for minute in taught.teaching.load) > 0
+    for step in (CRITIC_ALONE, SHUFFLED):
+        (branch,) = tiny.study.stages[step]
+        assert branch.appraisals == taught.appraisals
+        assert any(isinstance(event, RlaCreated) and event.rla.level == CRITIC for event in lessons(tiny, step))
+
+
+def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same(tiny: Tiny, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    programme = tiny_programme(results)
+    left_out = {job.file for job in programme.jobs if job.step in (CORRUPTED, LONG_RUN)}
+    for path in tiny.results.folder.rglob("*-100.*"):
+        name = path.relative_to(tiny.results.folder)
+        if str(name) not in left_out:
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_bytes(path.read_bytes())
+    seen: list[Standing] = []
+    conduct(programme, results, 1, seen.append)
+    assert {name for standing in seen for name in standing.running} == {
+        "corrupted, untouched, seed 100",
+        "long run, seed 100",
+    }
+    assert seen[-1].done_s == sum(job.robot_time_s for job in programme.jobs if job.file in left_out)
+    assert read_study(programme, results).stages == tiny.study.stages
+
+
+def test_results_that_are_not_there_are_not_shown(tiny: Tiny, tmp_path: Path) -> None:
+    with pytest.raises(StudyError):
+        read_study(tiny.programme, Results(tmp_path))
+
+
+def test_the_report_holds_every_figure_and_every_table_and_needs_nothing_else(tiny: Tiny) -> None:
+    text = tiny.report.read_text(encoding="utf-8")
+    page = Page(text)
+    assert [each.path.name for each in tiny.pictures] == [
+        "phases.png",
+        "load.png",
+        "agreement.png",
+        "branches.png",
+        "intact.png",
+    ]
+    assert page.images == [each.title for each in tiny.pictures]
+    pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
+    assert pictures == [each.path.read_bytes() for each in tiny.pictures]
+    assert all(min(imread(each.path).shape[:2]) > 400 for each in tiny.pictures)
+    titles = [sheet.title for sheet in sheets(tiny.study, tiny.reasons)]
+    assert len(titles) == len(set(titles))
+    assert all(f"<caption>{title}</caption>" in text for title in titles)
+    assert page.tags.count("table") == len(titles) + 1  # and that of the settings
+    assert f"<code>{COMMAND}</code>" in text
+    assert "1 robot only" in text
+    assert "MISSED" not in text  # seconds judge nothing
+    assert "<script" not in text
+    assert str(tiny.results.folder) not in text

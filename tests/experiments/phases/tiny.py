@@ -1,0 +1,50 @@
+"""A run of seconds: too short to teach anything, long enough to leave every kind of result."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.phases.figures import draw_pictures
+from kurt2rt.experiments.phases.programme import Programme, plan
+from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
+from kurt2rt.experiments.phases.study import Study, conduct, read_study
+from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from tests.experiments.helpers import ROBOT, STAGE
+
+COMMAND = "kurt2rt phases --task wall_following --seeds 100"
+
+
+@dataclass(frozen=True)
+class Tiny:
+    results: Results
+    programme: Programme
+    study: Study
+    pictures: list[Picture]
+    report: Path
+    reasons: list[str]
+
+
+def tiny_task() -> TaskSettings:
+    task = load_task("wall_following")
+    assert task.phases is not None
+    teaching = task.teaching.model_copy(update={"supervised_s": 6.0, "corrections_s": 3.0})
+    exam = task.exam.model_copy(update={"worlds": ("a",), "duration_s": 1.0})
+    phases = task.phases.shortened(2.0, ("a",)).model_copy(update={"critic_s": 8.0, "set_down_every_s": 4.0})
+    return task.model_copy(update={"teaching": teaching, "exam": exam, "phases": phases})
+
+
+def tiny_programme(results: Results) -> Programme:
+    return plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda: "tested")
+
+
+def do_tiny(folder: Path) -> Tiny:
+    results = Results(folder)
+    programme = tiny_programme(results)
+    with results.held():
+        conduct(programme, results, 1, lambda _: None)
+    study = read_study(programme, results)
+    pictures = list(draw_pictures(study, folder))
+    report = folder / "report.html"
+    write_report(study, pictures, COMMAND, report)
+    return Tiny(results, programme, study, pictures, report, list(reasons_not_to_judge(programme)))
