@@ -9,6 +9,7 @@ import pytest
 from hal.settings import SettingsError, load_settings
 from kurt2rt.critic.features import features
 from kurt2rt.critic.settings import NAMES, CircumstanceWeights, CriticSettings, load_critic
+from kurt2rt.tasks.settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
 
@@ -25,8 +26,19 @@ def test_the_shipped_critic_thinks_bad_neutral_or_good() -> None:
     assert load_critic().values == {"bad": -1, "neutral": 0, "good": 1}
 
 
+@pytest.mark.parametrize("name", ["eight", "fleeing"])
+def test_the_critics_of_other_tasks_look_at_the_same_and_differ_in_what_counts(name: str) -> None:
+    basic, other = load_critic(), load_critic(name)
+    same = {"name": basic.name, "learning": basic.learning}
+    assert other.model_copy(update=same) == basic
+    assert other.learning.model_copy(update={"weights": basic.learning.weights}) == basic.learning
+    assert load_task(name).critic == name
+
+
 def test_a_name_that_is_not_there_is_told() -> None:
-    with pytest.raises(SettingsError, match=r"no such file in critics; give a path to a \.yaml file or one of: basic"):
+    with pytest.raises(
+        SettingsError, match=r"no such file in critics; give a path to a \.yaml file or one of: basic, eight"
+    ):
         load_critic("stern")
 
 
