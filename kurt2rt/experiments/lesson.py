@@ -162,7 +162,7 @@ async def teach(
             drive.reposition(in_sight=in_sight)
         if set_down_every and teacher.phase is Phase.CRITIC and record.tick % set_down_every == 0:
             drive.reposition(in_sight=True, close=True)
-            for command in teacher.show(record.tick, shown):
+            for command in teacher.show(record.tick, shown, plan.shown_share):
                 runtime.inbox.put(command)
         if drive.course.behaviour != record.behaviour:
             runtime.inbox.put(teacher.pursue(drive.course.behaviour))

@@ -17,7 +17,7 @@ class SignalTimes:
 
     bad_every_s: float = 1.0
     good_every_s: float = 2.0
-    neutral_every_s: float = 2.0
+    neutral_every_s: float = 1.0
     """Only the critic is taught what is neutral."""
     patience_s: float = 0.0
     """He speaks of what has been bad for so long without a break; teaching the critic he needs none."""
@@ -43,6 +43,8 @@ class LessonPlan:
     """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
     shown_s: float = 0.0
     """Then some action of the repertoire, whatever it leads to, drives it for so long."""
+    shown_share: float = 1.0
+    """So often of the times that it is set down."""
 
     @property
     def rescues_who_asks(self) -> bool:

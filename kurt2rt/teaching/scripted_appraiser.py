@@ -147,9 +147,9 @@ class ScriptedAppraiser:
         """Whether he is there to be asked."""
         return self.phase is not Phase.AUTONOMOUS
 
-    def show(self, tick: int, ticks: int) -> list[Command]:
-        """The robot was just set down: some action drives it for so long; nothing where none is to be shown."""
-        if not self._shown or not ticks:
+    def show(self, tick: int, ticks: int, share: float = 1.0) -> list[Command]:
+        """The robot was just set down: some action drives it for so long, or, but for a share of the times, none."""
+        if not self._shown or not ticks or self._chance.random() >= share:
             return []
         self._resume_at = tick + ticks + 1
         return [RunBehaviour(self._next_id(), _NAME, self._chance.choice(self._shown), ticks)]

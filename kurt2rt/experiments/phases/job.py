@@ -11,6 +11,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.curriculum import run_lesson
+from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
@@ -176,6 +177,9 @@ class StepJob:
                     plan=step.plan,
                 )
                 teaching = told(lesson, events[before:])
+                if step.aside:
+                    shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
+                    self._add(knowledge, list(critics_lessons(events[before:])))
             with Journal.read_only(knowledge) as journal:
                 events, saved = [entry.event for entry in journal.entries()], journal.statistics()
                 system = fold_journal(journal, radius=robot.task.learning.radius)
@@ -195,11 +199,20 @@ class StepJob:
             lessons += corrupt(system.rlas, primitives(robot.task.repertoire), self.of.corrupted, robot.seed)
         if self.of.critic != "own":
             lessons += self._critics()
+        self._add(knowledge, lessons)
+
+    def _add(self, knowledge: Path, lessons: Sequence[TeachingEvent]) -> None:
+        """Write lessons behind those that the file holds."""
         if not lessons:
             return
+        robot = self.robot
         with JournalWriter(go_on_teaching(knowledge, robot.settings, robot.task).journal, utc_now) as writer:
             for lesson in lessons:
                 writer.submit(lesson)
+            writer.flush(timeout_s=30.0)
+            refused = [each.error for each in writer.acknowledged() if each.error is not None]
+        if refused:
+            raise LessonLostError(f"{self.name}: {refused[0]}")
 
     def _critics(self) -> Iterator[TeachingEvent]:
         robot = self.robot

@@ -21,7 +21,7 @@ class SignalsSettings(Settings):
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
     patience_s: Annotated[float, Field(ge=0, le=10)] = 0.2
     """He blames what has been bad for so long without a break."""
-    by_chance_every_s: Annotated[float, Field(gt=0, le=100_000)] = 20.0
+    by_chance_every_s: Annotated[float, Field(gt=0, le=100_000)] = 60.0
     """The control that blames by chance does so so often."""
     most_blame: Annotated[int, Field(ge=0, le=100_000)] = 100
     """He blames no more often than this; 0: as often as he likes."""
@@ -32,7 +32,7 @@ class AppraisalsSettings(Settings):
 
     bad_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
-    neutral_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
+    neutral_every_s: Annotated[float, Field(gt=0, le=1000)] = 1.0
     gap_s: Annotated[float, Field(ge=0, le=1000)] = 1.0
     """The shortest time between two of any kind."""
 
@@ -67,10 +67,15 @@ class PhasesSettings(Settings):
     """In phase 3, and in its controls, the robot is set down at some start so often; 0: never."""
     critic_s: Seconds
     """Phase 4."""
-    set_down_every_s: SecondsOrNever = 8.0
+    set_down_every_s: SecondsOrNever = 15.0
     """In phase 4 the robot is set down in sight of something, also close to it, so often; 0: never."""
     shown_s: SecondsOrNever = 2.5
     """Then some action drives it for so long, that the critic may see what the robot does not do by itself."""
+    shown_share: Annotated[float, Field(ge=0, le=1)] = 0.5
+    """So often of the times that it is set down."""
+    critic_sees_wrong: bool = True
+    """Whether it drives with wrong actions in phase 4, as many as in a corrupted set, so that the critic hears what is
+    bad; of what was taught then only the critic is kept."""
     autonomy_s: Seconds
     """Phase 5."""
     long_run_s: Seconds

@@ -55,6 +55,8 @@ class Step:
     """None: nothing is taught."""
     worlds: tuple[str, ...]
     """Of its exams."""
+    aside: bool = False
+    """Whether only the critic is kept of what was taught, and all else is as it was before the step."""
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -104,9 +106,11 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
         times=of_appraisals,
         set_down_every_s=phases.set_down_every_s,
         shown_s=phases.shown_s,
+        shown_share=phases.shown_share,
     )
     yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, worlds)
-    yield Step(PHASE_4, PHASE_3, 0.0, "own", critic, worlds)
+    errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
+    yield Step(PHASE_4, PHASE_3, errs, "own", critic, worlds, aside=True)
     yield Step(PHASE_5, PHASE_4, 0.0, "own", taught(Phase.AUTONOMOUS, phases.autonomy_s, "phase 5"), worlds)
     yield Step(LONG_RUN, PHASE_5, 0.0, "own", taught(Phase.AUTONOMOUS, phases.long_run_s, "long run"), ())
 
