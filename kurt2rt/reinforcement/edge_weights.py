@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.accounts import Accounts
 from kurt2rt.reinforcement.rule import Booking
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
@@ -35,6 +35,9 @@ class EdgeWeights:
         if rla_id is not None and self._before is not None:
             self._accounts.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
         self._before = rla_id
+
+    def count_from(self, worths: WorthSettings) -> None:
+        """All the same: an edge begins at 100."""
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
         """What the change of the weights does to the worths."""

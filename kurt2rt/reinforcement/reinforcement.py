@@ -8,7 +8,7 @@ from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.reinforcement.edge_weights import EdgeWeights
 from kurt2rt.reinforcement.repair import OriginOf, Repair
 from kurt2rt.reinforcement.rule import Booking, ReinforcementRule
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.td_lambda import TdLambda
 from kurt2rt.reinforcement.trace import Trace, trace_of
 from kurt2rt.rla.rla import (
@@ -47,6 +47,7 @@ class Reinforcement:
         self.recent = recent
         self._period_s = period_s
         self._settings = settings
+        self._worths: WorthSettings = settings.with_teacher
         self.rule: ReinforcementRule = (
             TdLambda(settings, period_s) if settings.rule == "td_lambda" else EdgeWeights(settings)
         )
@@ -57,6 +58,7 @@ class Reinforcement:
             seed=settings.seed,
         )
         self._repair = Repair(system, self.rule.worth, settings)
+        self._repair.count_from(self._worths)
         self._bookings: dict[str, tuple[Booking, ...]] = {}
         """Of each reward in the journal, by its command id: what an undo takes off."""
         self._since: dict[int, int] = {}
@@ -80,6 +82,14 @@ class Reinforcement:
         self._blames.clear()
         if saved is not None and (saved.values or saved.edge_weights):
             self.rule.restore(saved)
+
+    def count_for(self, phase: Phase) -> None:
+        """Values of a robot that has a teacher begin elsewhere, and sink elsewhere, than those of one that is alone."""
+        worths = self._settings.alone if phase is Phase.AUTONOMOUS else self._settings.with_teacher
+        if worths is not self._worths:
+            self._worths = worths
+            self.rule.count_from(worths)
+            self._repair.count_from(worths)
 
     def credits_of(self, value: int, tick: int) -> tuple[Credit, ...]:
         """What a teacher's signal about a tick that is remembered would change."""
@@ -148,7 +158,7 @@ class Reinforcement:
         self.rule.take(value, trace)
         if value < 0:
             self.choice.forget()
-            least = self._settings.blamed_share
+            least = self._worths.blamed_share
             blamed = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
             self._blames.append(_Blame(blamed, signal, teacher))
 

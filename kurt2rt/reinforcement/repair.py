@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.rla.rla import (
     ActionWithdrawn,
     Condition,
@@ -29,13 +29,21 @@ class Repair:
         self._system = system
         self._worth = worth
         self._settings = settings
+        self._worths: WorthSettings = settings.with_teacher
         self._tried: dict[tuple[str, Condition], list[str]] = {}
         """Actions tried on a condition, by behaviour and condition, where there were competitors."""
+
+    def count_from(self, worths: WorthSettings) -> None:
+        """What counts as sunk and as well from now on."""
+        self._worths = worths
 
     def sunk(self, rla_id: int) -> bool:
         """Whether an RLA lives, has an action, and is worth too little."""
         rla = self._system.get(rla_id)
-        return rla is not None and not rla.asks and self._worth(rla_id) < self._settings.sunk_below
+        return rla is not None and not rla.asks and self._worth(rla_id) < self._worths.sunk_below
+
+    def _well(self, rla: Rla) -> bool:
+        return not rla.asks and self._worth(rla.rla_id) > self._worths.well_above
 
     def hear(self, created: Rla, *, undone: bool = False) -> None:
         """An RLA was created, or its creation undone: where others stand on its condition, it was a try."""
@@ -68,7 +76,7 @@ class Repair:
         if rla is None or rla.asks:
             return
         group = self._system.competitors(rla)
-        if any(not self.sunk(each.rla_id) and not each.asks for each in group):
+        if any(self._well(each) for each in group):
             yield RlaDeleted(rla_id, origin_of(f"delete-{rla_id}"))
             return
         tried = self._tried.get(_place(rla), [rla.action])
@@ -92,7 +100,7 @@ class Repair:
     def _action_to_try(self, rla: Rla, tried: list[str]) -> str | None:
         """What most of the nearest neighbours do that was not tried; None where all they do was."""
         nearest = self._system.neighbours(rla, self._settings.neighbours)
-        votes = Counter(each.action for each in nearest if not each.asks and not self.sunk(each.rla_id))
+        votes = Counter(each.action for each in nearest if self._well(each))
         return next((action for action, _ in votes.most_common() if action not in tried), None)
 
 

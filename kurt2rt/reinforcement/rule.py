@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple, Protocol
 
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.reinforcement.settings import WorthSettings
 from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
@@ -21,6 +22,10 @@ class ReinforcementRule(Protocol):
 
     def drove(self, rla_id: int | None, tick: int) -> None:
         """Take in one tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
+        ...
+
+    def count_from(self, worths: WorthSettings) -> None:
+        """Where values begin from now on, and how high they may rise: with a teacher, or alone."""
         ...
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:

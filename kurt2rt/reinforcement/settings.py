@@ -8,6 +8,41 @@ from hal.settings import Settings
 
 _Seconds = Annotated[float, Field(gt=0, le=1000)]
 _Share = Annotated[float, Field(ge=0, le=1)]
+_Value = Annotated[float, Field(ge=-1, le=1)]
+
+
+class WorthSettings(Settings):
+    """Where values begin, and from where an RLA has to be mended."""
+
+    first_value: _Value
+    """Of an action that was just taught."""
+    highest_value: _Value | None = None
+    """Praise lifts no value above this, and blame counts from there; None: wherever it leads."""
+    sunk_below: _Value
+    """An RLA that was blamed and is worth less has sunk: its action is mended."""
+    well_above: _Value
+    """One that is worth more is well: it may stand in for a competitor that has sunk, and has a vote as a neighbour."""
+    blamed_share: _Share
+    """Only an RLA with so much of the blame's trace is looked at."""
+
+
+class TaughtWorths(WorthSettings):
+    """With a teacher. What was praised a hundred times may be wrong elsewhere in its radius: praise only heals."""
+
+    first_value: _Value = 0.0
+    highest_value: _Value | None = 0.0
+    sunk_below: _Value = -0.1
+    well_above: _Value = -0.1
+    blamed_share: _Share = 0.1
+
+
+class LonelyWorths(WorthSettings):
+    """Without one. A critic errs more often than a teacher, and its praise has to weigh against that."""
+
+    first_value: _Value = 0.5
+    sunk_below: _Value = -0.2
+    well_above: _Value = -0.1
+    blamed_share: _Share = 0.02
 
 
 class ReinforcementSettings(Settings):
@@ -23,20 +58,16 @@ class ReinforcementSettings(Settings):
     """What the value of the next RLA counts, one step later."""
     step_s: _Seconds = 0.1
     """Time between two steps of temporal difference learning."""
-    first_value: Annotated[float, Field(ge=-1, le=1)] = 0.0
-    """Value of an action that was just taught."""
-    highest_value: Annotated[float, Field(ge=-1, le=1)] = 0.0
-    """Praise lifts no value above this: what was praised a hundred times may be wrong elsewhere in its radius."""
     factors: Annotated[tuple[Annotated[float, Field(gt=0, le=1)], ...], Field(min_length=1, max_length=100)] = (
         0.9,
         0.95,
         0.97,
     )
     """Edge weights: by what praise multiplies, and blame divides, those of the last transitions, newest first."""
-    sunk_below: Annotated[float, Field(ge=-1, le=1)] = -0.1
-    """An RLA that was blamed and is worth less has sunk: its action is mended."""
-    blamed_share: _Share = 0.1
-    """Only an RLA with so much of the blame's trace is looked at."""
+    with_teacher: TaughtWorths = TaughtWorths()
+    """In phases 1 to 4."""
+    alone: LonelyWorths = LonelyWorths()
+    """In phase 5."""
     epsilon: _Share = 0.02
     """Share of the choices among competitors that are made by chance instead of by worth."""
     hold_s: Annotated[float, Field(ge=0, le=1000)] = 1.0

@@ -3,7 +3,8 @@
 Every step, with e the trace:   delta = gamma V(now) - V(before),   V_i += alpha delta e_i
 At a signal r about a tick t:   V_i += alpha r e_i(t)
 
-V begins at `first_value` and never rises above `highest_value`.
+V begins at `first_value`, and praise lifts it to `highest_value` at most. Both differ between a robot that has a
+teacher and one that is alone, so what is kept is how far V is from where it began.
 """
 
 import math
@@ -12,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.accounts import Accounts
 from kurt2rt.reinforcement.rule import Booking
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.trace import LEAST_SHARE, Trace
 from kurt2rt.rla.rla import Credit
 
@@ -23,9 +24,11 @@ class TdLambda:
     def __init__(self, settings: ReinforcementSettings, period_s: float) -> None:
         """`period_s` of a tick."""
         self._settings = settings
+        self._worths: WorthSettings = settings.with_teacher
         self._decay = math.exp(-period_s / settings.trace_s)
         self._step_ticks = max(1, round(settings.step_s / period_s))
         self._accounts = Accounts[float]()
+        """V less the first value."""
         self._trace: dict[int, float] = {}
         """Divided by the scale, so that a tick need not touch what only fades."""
         self._scale = 1.0
@@ -47,6 +50,10 @@ class TdLambda:
         if tick % self._step_ticks == 0:
             self._step(rla_id, tick)
 
+    def count_from(self, worths: WorthSettings) -> None:
+        """Where values begin from now on, and how high they may rise."""
+        self._worths = worths
+
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
         """Each RLA its share of the signal, as far as its value may rise."""
         alpha = self._settings.alpha
@@ -56,18 +63,16 @@ class TdLambda:
     def take(self, value: int, trace: Trace) -> None:
         """V_i += alpha r e_i(t)."""
         for rla_id, change in self.credits_of(value, trace):
-            self._accounts.present[rla_id] = self.worth(rla_id) + change
+            self._add(rla_id, change)
 
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
         """Add credits to values, or take them off."""
         for (rla_id, change), depth in bookings:
-            earned = self._accounts.at(rla_id, depth)
-            value = self._settings.first_value if earned is None else earned
-            self._accounts.put(rla_id, depth, value + sign * change)
+            self._accounts.put(rla_id, depth, (self._accounts.at(rla_id, depth) or 0.0) + sign * change)
 
     def worth(self, rla_id: int) -> float:
         """V."""
-        return self._accounts.present.get(rla_id, self._settings.first_value)
+        return self._worths.first_value + self._accounts.present.get(rla_id, 0.0)
 
     def depth(self, rla_id: int) -> int:
         """How many actions it has had before."""
@@ -87,8 +92,9 @@ class TdLambda:
 
     @property
     def values(self) -> Mapping[int, float]:
-        """V where it is not that of the beginning."""
-        return self._accounts.present
+        """V as it would be with a teacher, where it is not that of the beginning."""
+        first_value = self._settings.with_teacher.first_value
+        return {rla_id: first_value + change for rla_id, change in self._accounts.present.items()}
 
     @property
     def edge_weights(self) -> Mapping[tuple[int, int], float]:
@@ -97,18 +103,29 @@ class TdLambda:
 
     def restore(self, saved: Statistics) -> None:
         """Values as they were saved."""
-        self._accounts.present = dict(saved.values)
+        first_value = self._settings.with_teacher.first_value
+        self._accounts.present = {rla_id: value - first_value for rla_id, value in saved.values.items()}
 
     def _change(self, rla_id: int, change: float) -> float:
-        """What is left of a change below the highest value; an undone blame may have lifted V above it."""
-        return min(change, max(0.0, self._settings.highest_value - self.worth(rla_id)))
+        """What a signal changes: praise up to the highest value, blame down from there where V is above it."""
+        room = self._room_above(rla_id)
+        return min(change, max(0.0, room)) if change > 0.0 else change + min(0.0, room)
+
+    def _room_above(self, rla_id: int) -> float:
+        """How far V may rise; negative where it stands higher: it came from phase 5, or blame was undone."""
+        highest = self._worths.highest_value
+        return math.inf if highest is None else highest - self.worth(rla_id)
+
+    def _add(self, rla_id: int, change: float) -> None:
+        self._accounts.present[rla_id] = self._accounts.present.get(rla_id, 0.0) + change
 
     def _step(self, now: int | None, tick: int) -> None:
         alpha, gamma = self._settings.alpha, self._settings.gamma
         if now is not None and self._before is not None and tick - self._before_tick == self._step_ticks:
             delta = gamma * self.worth(now) - self.worth(self._before)
             for rla_id, share in self._trace_before.items():
-                self._accounts.present[rla_id] = self.worth(rla_id) + self._change(rla_id, alpha * delta * share)
+                change = alpha * delta * share
+                self._add(rla_id, min(change, max(0.0, self._room_above(rla_id))))
         self._before, self._before_tick = now, tick
         faded = {rla_id: share * self._scale for rla_id, share in self._trace.items()}
         self._trace = {rla_id: share for rla_id, share in faded.items() if share >= LEAST_SHARE}

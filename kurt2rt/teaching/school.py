@@ -174,6 +174,7 @@ class School:
         reinforcement, alone = self.reinforcement, self._self_teaching
         if reinforcement is None:
             return []
+        reinforcement.count_for(self.phase)
         if self.phase is not Phase.AUTONOMOUS or (alone is not None and not alone.trusted):
             alone = None
         learning = self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) or alone is not None

@@ -10,7 +10,7 @@ from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import LonelyWorths, ReinforcementSettings, TaughtWorths
 from kurt2rt.rla.rla import CRITIC, Appraised, Phase, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.teaching.authority import Authority
@@ -22,7 +22,11 @@ from tests.layers.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situati
 
 PERIOD_S = 0.01
 SIGNALS_ONLY = ReinforcementSettings(
-    step_s=100.0, first_value=0.5, highest_value=1.0, sunk_below=-0.2, blamed_share=0.001
+    step_s=100.0,
+    with_teacher=TaughtWorths(
+        first_value=0.5, highest_value=None, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001
+    ),
+    alone=LonelyWorths(first_value=0.5, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001),
 )
 """Values change by signals alone, so that they can be told in one's head; three blames sink an RLA."""
 

@@ -6,16 +6,15 @@ import pytest
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.rule import Booking
-from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings, TaughtWorths
 from kurt2rt.reinforcement.td_lambda import TdLambda
 from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
 ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
 D = math.exp(-0.01 / TRACE_S)
-SETTINGS = ReinforcementSettings(
-    alpha=ALPHA, gamma=GAMMA, first_value=V0, highest_value=1.0, trace_s=TRACE_S, step_s=0.1
-)
+WORTHS = TaughtWorths(first_value=V0, highest_value=None)
+SETTINGS = ReinforcementSettings(alpha=ALPHA, gamma=GAMMA, trace_s=TRACE_S, step_s=0.1, with_teacher=WORTHS)
 HALF_EACH = Trace({1: 0.5, 2: 0.25}, ())
 
 
@@ -114,3 +113,50 @@ def test_the_trace_does_not_grow_with_all_that_ever_drove() -> None:
     for tick in range(1, 20_001):
         learner.drove(tick // 10, tick)
     assert len(learner._trace) < 60
+
+
+CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
+"""As it is shipped: with a teacher values begin at 0 and praise only heals; alone they begin at 0.5."""
+
+
+def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
+    learner = TdLambda(CAPPED, 0.01)
+    assert learner.credits_of(1, HALF_EACH) == ()
+    learner.take(-1, Trace({1: 0.2}, ()))
+    assert learner.credits_of(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
+    learner.take(1, HALF_EACH)
+    assert (learner.worth(1), learner.worth(2)) == (0.0, 0.0)
+
+
+def test_alone_values_begin_higher_and_come_back_with_what_they_earned() -> None:
+    learner = TdLambda(CAPPED, 0.01)
+    learner.take(-1, Trace({1: 0.5}, ()))
+    learner.count_from(CAPPED.alone)
+    assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.35, 0.5))
+    learner.take(1, Trace({1: 0.5, 2: 1.0}, ()))
+    assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.5, 0.8))
+    assert learner.values == pytest.approx({1: 0.0, 2: 0.3})  # as with a teacher, whoever asks
+    again = TdLambda(CAPPED, 0.01)
+    again.restore(Statistics(values=dict(learner.values)))
+    again.count_from(CAPPED.alone)
+    assert again.worth(2) == pytest.approx(0.8)
+
+
+def test_blame_of_a_teacher_counts_from_the_highest_value_whatever_the_critic_thought() -> None:
+    learner = TdLambda(CAPPED, 0.01)
+    learner.restore(Statistics(values={1: 0.3}))
+    assert learner.credits_of(1, Trace({1: 1.0}, ())) == ()
+    (credit,) = learner.credits_of(-1, Trace({1: 1.0}, ()))
+    learner.take(-1, Trace({1: 1.0}, ()))
+    assert learner.worth(1) == pytest.approx(-ALPHA)
+    learner.book([Booking(credit, 0)], -1)
+    assert learner.worth(1) == pytest.approx(0.3)
+
+
+def test_steps_lift_no_value_above_the_highest_and_do_not_cut_one_that_is_there() -> None:
+    learner = TdLambda(CAPPED, 0.01)
+    learner.restore(Statistics(values={1: -0.2, 2: 0.4}))
+    for turn in range(20):
+        drive(learner, 1 + turn % 2, turn * 10 + 1, turn * 10 + 10)
+    assert learner.worth(1) <= 0.0
+    assert 0.0 < learner.worth(2) < 0.4
