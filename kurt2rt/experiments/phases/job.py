@@ -123,6 +123,8 @@ class StepJob:
 
     robot: Robot
     of: Step
+    before: "TaughtJob | StepJob"
+    """The job of the step that it goes on from."""
     first: TaughtJob
     """Holds the teacher's own drives."""
     made_of: MadeOf
@@ -151,7 +153,7 @@ class StepJob:
     def robot_time_s(self) -> float:
         """What is taught, and an exam in each world."""
         taught_s = self.of.plan.duration_s if self.of.plan else 0.0
-        return taught_s + len(self.of.worlds) * self.robot.task.exam.duration_s
+        return taught_s + (0.0 if self.of.aside else len(self.of.worlds) * self.robot.task.exam.duration_s)
 
     def run(self, tell: Tell) -> None:
         """Make the set, teach, examine, keep the result and the knowledge."""
@@ -183,8 +185,11 @@ class StepJob:
             with Journal.read_only(knowledge) as journal:
                 events, saved = [entry.event for entry in journal.entries()], journal.statistics()
                 system = fold_journal(journal, radius=robot.task.learning.radius)
-            teachers = results.read(self.first, JobOutcome).teachers
-            exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers)
+            if step.aside:  # what drives is as it was, and so are its exams
+                exams = results.read(self.before, JobOutcome).stages[-1].exams
+            else:
+                teachers = results.read(self.first, JobOutcome).teachers
+                exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers)
             results.keep(knowledge, robot.knowledge_of(step.name))
         stage = _stage(step.name, system, teaching, exams)
         results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=(stage,)))

@@ -78,8 +78,10 @@ def plan(
         of = Robot(stage, robot, task, seed, results)
         first = TaughtJob(of, made_first)
         waves[0].append(first)
+        jobs: dict[str, Job] = {PHASE_2: first}
         for step in steps:
-            waves[_depth(step, by_name)].append(StepJob(of, step, first, made[step.name]))
+            jobs[step.name] = job = StepJob(of, step, jobs[step.after], first, made[step.name])
+            waves[_depth(step, by_name)].append(job)
     return Programme(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
 
 

@@ -56,7 +56,7 @@ class Step:
     worlds: tuple[str, ...]
     """Of its exams."""
     aside: bool = False
-    """Whether only the critic is kept of what was taught, and all else is as it was before the step."""
+    """Whether only the critic is kept of what was taught, and all else, exams too, is as it was before the step."""
 
     @property
     def needs(self) -> tuple[str, ...]:

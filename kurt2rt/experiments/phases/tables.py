@@ -34,6 +34,7 @@ SUCCESS = (
     "least the share of the teacher's own progress that the task asks. A robot that is stuck is set down elsewhere and "
     "drives on, so that collisions are those of the whole time."
 )
+_PHASE_4 = "Phase 4 teaches the critic alone: what the robot drives by, and so its exams, are those of phase 3."
 _PAIRED = (
     "The same robots from the same starts. Means, and the mean change with its 95 % interval, bootstrapped over the "
     "robots; where hardly anything happens it is too narrow. Better, worse: robots."
@@ -43,7 +44,7 @@ _PAIRED = (
 def sheets(study: Study, reasons: Sequence[str]) -> Iterator[Sheet]:
     """All of them. `reasons` not to judge, if any."""
     yield asked_sheet(study, reasons)
-    yield exam_sheet("Phase by phase", PATH, study, SUCCESS)
+    yield exam_sheet("Phase by phase", PATH, study, f"{SUCCESS} {_PHASE_4}")
     yield load_sheet("What the teacher had to do", (PHASE_2, PHASE_3, PHASE_4), study)
     yield critic_sheet(study)
     yield exam_sheet(

@@ -8,19 +8,28 @@ from matplotlib.image import imread
 
 from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, LONG_RUN, PHASE_1, PHASE_2, PHASE_4, SHUFFLED
+from kurt2rt.experiments.phases.steps import (
+    CORRUPTED,
+    CRITIC_ALONE,
+    LONG_RUN,
+    PHASE_1,
+    PHASE_2,
+    PHASE_3,
+    PHASE_4,
+    SHUFFLED,
+)
 from kurt2rt.experiments.phases.study import conduct, read_study
 from kurt2rt.experiments.phases.tables import sheets
 from kurt2rt.experiments.pool import Standing
 from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.rla.rla import CRITIC, RlaCreated
+from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, RlaCreated, TeachingEvent
 from tests.experiments.helpers import ROBOT
 from tests.experiments.phases.outcomes import ALL
 from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_programme, tiny_task
 from tests.experiments.shown.page import Page
 
 
-def lessons(tiny: Tiny, step: str) -> list[object]:
+def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
     return list(
         read_lessons(tiny.results.folder / f"knowledge/{step}/wall_following-100.knowledge", ROBOT, tiny_task())
     )
@@ -61,6 +70,16 @@ def test_the_critic_of_phase_4_goes_along_to_the_branches(tiny: Tiny) -> None:
         (branch,) = tiny.study.stages[step]
         assert branch.appraisals == taught.appraisals
         assert any(isinstance(event, RlaCreated) and event.rla.level == CRITIC for event in lessons(tiny, step))
+
+
+def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
+    (before,), (after,) = tiny.study.stages[PHASE_3], tiny.study.stages[PHASE_4]
+    assert (after.rlas, after.exams) == (before.rlas, before.exams)
+    brought = lessons(tiny, PHASE_4)[len(lessons(tiny, PHASE_3)) :]
+    assert brought
+    made = [event.rla for event in brought if isinstance(event, RlaCreated)]
+    assert {rla.level for rla in made} == {CRITIC}
+    assert all(isinstance(event, RlaCreated | Appraised | ActionReplaced) for event in brought)
 
 
 def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same(tiny: Tiny, tmp_path: Path) -> None:
