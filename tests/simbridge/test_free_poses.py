@@ -15,10 +15,10 @@ ROBOT = load_robot()
 FARTHEST_SENSOR_M = max(math.hypot(sensor.x_m, sensor.y_m) for sensor in ROBOT.infrared.sensors)
 
 
-def poses(world: str, count: int = 12) -> list[Pose]:
+def poses(world: str, count: int = 12, *, close: bool = False) -> list[Pose]:
     free = FreePoses(World(load_world(world)), ROBOT)
     chance = random.Random(1)
-    return [free.draw(chance) for _ in range(count)]
+    return [free.draw(chance, close=close) for _ in range(count)]
 
 
 def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
@@ -30,6 +30,12 @@ def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
     assert all(away < post.radius_m + 0.45 + FARTHEST_SENSOR_M for away in away_m)
     assert len({int(2 * math.atan2(pose.y_m - post.y_m, pose.x_m - post.x_m)) for pose in found}) > 4
     assert len({round(pose.heading_rad) for pose in found}) > 3
+
+
+def test_close_to_something_it_still_touches_nothing() -> None:
+    clear_m = load_world("a").clearances_m(poses("a", 40, close=True), ROBOT.geometry)
+    assert min(clear_m) >= 0.015
+    assert sum(each < 0.1 for each in clear_m) > 10
 
 
 def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
