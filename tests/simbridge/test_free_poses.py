@@ -35,7 +35,7 @@ def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
 def test_close_to_something_it_still_touches_nothing() -> None:
     clear_m = load_world("a").clearances_m(poses("a", 40, close=True), ROBOT.geometry)
     assert min(clear_m) >= 0.015
-    assert sum(each < 0.1 for each in clear_m) > 10
+    assert sum(each < 0.1 for each in clear_m) > 5
 
 
 def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
