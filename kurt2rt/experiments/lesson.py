@@ -108,7 +108,8 @@ async def teach(
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     critics = runtime.school.agreement
     chance = random.Random(f"course of {session}")
-    drive = Drive(arena, task, no_way_s=task.teaching.rescue_after_s, period_s=period_s, chance=chance)
+    rescue_s = task.teaching.rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s
+    drive = Drive(arena, task, no_way_s=rescue_s, period_s=period_s, chance=chance)
     in_sight = task.teaching.reposition_to == "in_sight"
     reposition_s = task.teaching.reposition_every_s if plan.reposition_every_s is None else plan.reposition_every_s
     reposition_every = round(reposition_s / period_s)

@@ -39,6 +39,8 @@ class LessonPlan:
     times: SignalTimes = SignalTimes()
     reposition_every_s: float | None = None
     """The robot is set down at some start so often; 0: never; None: as the task says."""
+    rescue_after_s: float | None = None
+    """A robot that makes no way for so long is set down elsewhere by hand; None: as the task says."""
     set_down_every_s: float = 0.0
     """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
     shown_s: float = 0.0

@@ -90,6 +90,10 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
         return LessonPlan(((phase, lasts_s),), purpose, **more)  # type: ignore[arg-type]
 
+    def alone(lasts_s: float, purpose: str) -> LessonPlan:
+        # Who is not there to teach does not look so often, either.
+        return taught(Phase.AUTONOMOUS, lasts_s, purpose, rescue_after_s=task.exam.stuck_after_s)
+
     rewarded = taught(
         Phase.REINFORCEMENT,
         phases.reinforcement_s,
@@ -111,22 +115,22 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, worlds)
     errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
     yield Step(PHASE_4, PHASE_3, errs, "own", critic, worlds, aside=True)
-    yield Step(PHASE_5, PHASE_4, 0.0, "own", taught(Phase.AUTONOMOUS, phases.autonomy_s, "phase 5"), worlds)
-    yield Step(LONG_RUN, PHASE_5, 0.0, "own", taught(Phase.AUTONOMOUS, phases.long_run_s, "long run"), ())
+    yield Step(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
+    yield Step(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
 
     repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
+    by_itself = alone(alone_s, "repair")
     asks = taught(Phase.SUPERVISED, repair_s, "repair", reposition_every_s=moved)
     chance = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="chance", times=by_chance, reposition_every_s=moved)
     unknown = taught(
         Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards, reposition_every_s=moved
     )
     rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards, reposition_every_s=moved)
-    alone = taught(Phase.AUTONOMOUS, alone_s, "repair")
     yield Step(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
     yield Step(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
     yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
     yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds)
     yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
-    yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, repair_worlds)
-    yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", alone, repair_worlds)
-    yield Step(INTACT, PHASE_2, 0.0, "taught", alone, worlds)
+    yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
+    yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
+    yield Step(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)
