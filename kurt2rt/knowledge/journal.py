@@ -29,6 +29,8 @@ class Journal:
         self._connection = connection
         self._lock = lock
         self._files = journal_file.identities(path)
+        self._written: Statistics | None = None
+        """The statistics as they stand in the file, where this journal wrote them last: it is their only writer."""
 
     @classmethod
     def open(cls, path: Path, binding: KnowledgeBinding) -> Self:
@@ -85,8 +87,8 @@ class Journal:
 
     def append_and_checkpoint(self, entries: Sequence[JournalEntry], statistics: Statistics) -> list[Receipt]:
         """Write lessons, and what the statistics become by them, in one transaction."""
-        differences = changes(self.statistics(), statistics)
-        with self._transaction():
+        differences = self._differences(statistics)
+        with self._writing(statistics):
             receipts = [self._append(entry) for entry in entries]
             self._carry_out(differences)
         return receipts
@@ -107,6 +109,17 @@ class Journal:
         if cursor.lastrowid is None:
             raise KnowledgeError(f"{self.path}: SQLite gave no row for command {command_id!r}; teach it again")
         return Receipt(command_id, cursor.lastrowid, entry.stamped_at, new=True, agrees=True)
+
+    def _differences(self, statistics: Statistics) -> list[Change]:
+        return changes(self._written or self.statistics(), statistics)
+
+    @contextmanager
+    def _writing(self, statistics: Statistics) -> Iterator[None]:
+        """A transaction after which these statistics stand in the file; what stands there after an error is read."""
+        self._written = None
+        with self._transaction():
+            yield
+        self._written = statistics
 
     def _carry_out(self, differences: list[Change]) -> None:
         for statement, rows in differences:
@@ -137,9 +150,9 @@ class Journal:
 
     def checkpoint(self, statistics: Statistics) -> None:
         """Replace the statistics, in one transaction, in which nothing is written that did not change."""
-        differences = changes(self.statistics(), statistics)
+        differences = self._differences(statistics)
         if differences:
-            with self._transaction():
+            with self._writing(statistics):
                 self._carry_out(differences)
 
     def statistics(self) -> Statistics:

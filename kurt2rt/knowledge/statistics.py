@@ -3,6 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+VALUES_INCLUDE = "rows that the values include"
+EDGE_WEIGHTS_INCLUDE = "rows that the edge weights include"
+"""How many rows the journal had when that table was saved; what lessons behind them are worth is booked later."""
+FIRST_VALUE = "first value"
+"""What an action that was just taught is worth in the table of values."""
+BEST_SCORE = "best score"
+BEST_INCLUDES = "rows that the best knowledge includes"
+"""Phase 5: the score of the best window, and how many rows the journal had when its knowledge stood."""
+
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
@@ -16,6 +25,8 @@ class Statistics:
     """RLA id -> what rewards made its value."""
     edge_weights: Mapping[tuple[int, int], float] = field(default_factory=dict)
     """(RLA id, follow-up RLA id) -> weight of the edge, where rewards changed it; the smaller the better."""
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    """Single numbers by their names, those above."""
 
 
 def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:

@@ -11,6 +11,7 @@ LATER_TABLES = {
     "edge_weight": """CREATE TABLE edge_weight (
         from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
     ) STRICT, WITHOUT ROWID""",
+    "number": "CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID",
 }
 """Tables that files of an earlier kurt2rt lack: there they are read as empty. An earlier one leaves them alone."""
 
@@ -19,7 +20,7 @@ class Change(NamedTuple):
     """A statement, and the rows that it is carried out for."""
 
     statement: str
-    rows: Sequence[tuple[float, ...]]
+    rows: Sequence[tuple[float | str, ...]]
 
 
 class _Table(NamedTuple):
@@ -28,7 +29,7 @@ class _Table(NamedTuple):
     """Its key, the value behind it."""
 
     def read(self, connection: sqlite3.Connection) -> dict[Any, Any]:
-        """Its content, by an RLA's id or a pair of two; empty where a file lacks it that may."""
+        """Its content, by an RLA's id, a pair of two or a name; empty where a file lacks it that may."""
         if self.name in LATER_TABLES and not has_table(connection, self.name):
             return {}
         columns, keys = ", ".join(self.columns), ", ".join(self.columns[:-1])
@@ -52,11 +53,12 @@ _USES = _Table("uses", ("rla_id", "count"))
 _TRANSITIONS = _Table("transition", ("from_rla", "to_rla", "count"))
 _VALUES = _Table("value", ("rla_id", "value"))
 _EDGE_WEIGHTS = _Table("edge_weight", ("from_rla", "to_rla", "weight"))
+_NUMBERS = _Table("number", ("name", "value"))
 
 
 def read_statistics(connection: sqlite3.Connection) -> Statistics:
     """The statistics as they stand in the file. Raises sqlite3.Error."""
-    tables = (_USES, _TRANSITIONS, _VALUES, _EDGE_WEIGHTS)
+    tables = (_USES, _TRANSITIONS, _VALUES, _EDGE_WEIGHTS, _NUMBERS)
     return Statistics(*(table.read(connection) for table in tables))
 
 
@@ -67,6 +69,7 @@ def changes(before: Statistics, after: Statistics) -> list[Change]:
         *_TRANSITIONS.changes(before.transitions, after.transitions),
         *_VALUES.changes(before.values, after.values),
         *_EDGE_WEIGHTS.changes(before.edge_weights, after.edge_weights),
+        *_NUMBERS.changes(before.numbers, after.numbers),
     ]
 
 
@@ -76,5 +79,5 @@ def has_table(connection: sqlite3.Connection, name: str) -> bool:
     return found.fetchone() is not None
 
 
-def _key(key: int | tuple[int, int]) -> tuple[int, ...]:
+def _key(key: int | str | tuple[int, int]) -> tuple[int | str, ...]:
     return key if isinstance(key, tuple) else (key,)

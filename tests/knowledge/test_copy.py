@@ -28,12 +28,12 @@ def names(folder: Path) -> list[str]:
 def test_a_copy_holds_all_that_was_acknowledged_and_stands_by_itself(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     with Journal.open(path, BINDING) as journal:
-        journal.append([entry(number) for number in range(1, 41)])
+        journal.append([entry(number) for number in range(1, 61)])
         journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}))
         assert journal_file.log_of(path).stat().st_size > path.stat().st_size  # most of it stands in the log
 
         saved = save_copy(path, folder, "First try", STAMP)
-        journal.append([entry(41)])
+        journal.append([entry(61)])
 
     assert saved.name == "wall-following-20040426T100000-first-try.knowledge"
     assert names(folder) == [saved.name]
@@ -42,11 +42,11 @@ def test_a_copy_holds_all_that_was_acknowledged_and_stands_by_itself(path: Path,
     with Journal.read_only(folder / saved.name) as look:
         assert check_knowledge(look) == []
         assert look.binding == BINDING
-        assert look.events() == [created(number) for number in range(1, 41)]
+        assert look.events() == [created(number) for number in range(1, 61)]
         assert look.statistics() == Statistics({1: 5}, {(1, 2): 3})
     assert names(folder) == [saved.name]  # a look needs no second file
     with Journal.open(folder / saved.name, BINDING) as taught_on:
-        taught_on.append([entry(41)])
+        taught_on.append([entry(61)])
         assert taught_on.check() == []
 
 

@@ -11,7 +11,8 @@ from kurt2rt.knowledge.entry import JournalEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics import BEST_SCORE, Statistics
+from kurt2rt.knowledge.statistics_tables import LATER_TABLES
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
 from tests.knowledge.lessons import (
     BINDING,
@@ -148,6 +149,27 @@ def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
         assert journal.statistics() == second
 
 
+def test_the_tables_are_not_read_again_for_each_checkpoint(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(Statistics({1: 5}, numbers={BEST_SCORE: 0.25}))
+        statements: list[str] = []
+        journal._connection.set_trace_callback(statements.append)
+        journal.checkpoint(Statistics({1: 6}, numbers={BEST_SCORE: 0.25}))
+        journal.checkpoint(Statistics({1: 6}, numbers={BEST_SCORE: 0.25}))
+        assert statements == ["BEGIN IMMEDIATE", "INSERT OR REPLACE INTO uses VALUES (1, 6)", "COMMIT"]
+
+
+def test_what_a_checkpoint_could_not_write_is_written_by_the_next_one(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(Statistics({1: 5}))
+        journal._connection.execute("PRAGMA query_only = ON")
+        with pytest.raises(KnowledgeError):
+            journal.checkpoint(Statistics({1: 6}))
+        journal._connection.execute("PRAGMA query_only = OFF")
+        journal.checkpoint(Statistics({1: 6}))
+        assert journal.statistics() == Statistics({1: 6})
+
+
 def test_lessons_and_what_the_statistics_become_by_them_are_written_together(path: Path) -> None:
     unwritable = replace(created(2).rla, condition=(float("nan"),))
     with Journal.open(path, BINDING) as journal:
@@ -162,7 +184,7 @@ def test_lessons_and_what_the_statistics_become_by_them_are_written_together(pat
 
 def before_phase_3(path: Path) -> Path:
     """A knowledge file as a kurt2rt wrote it that learnt nothing from rewards and had no critic."""
-    tamper(begun(path), "DROP TABLE value", "DROP TABLE edge_weight", "INSERT INTO uses VALUES (1, 5)")
+    tamper(begun(path), *(f"DROP TABLE {name}" for name in LATER_TABLES), "INSERT INTO uses VALUES (1, 5)")
     return path
 
 
@@ -171,7 +193,7 @@ def test_a_file_from_before_values_is_read_as_having_none_and_gets_them_when_it_
         assert look.statistics() == Statistics({1: 5})
         assert check_knowledge(look) == []
         assert look.binding == BINDING
-    learnt = Statistics({1: 5}, {}, {1: 0.75}, {(1, 2): 95.0})
+    learnt = Statistics({1: 5}, {}, {1: 0.75}, {(1, 2): 95.0}, {BEST_SCORE: 0.5})
     with Journal.open(path, WITH_CRITIC) as journal:
         assert journal.binding == WITH_CRITIC
         journal.checkpoint(learnt)
