@@ -1,5 +1,6 @@
 """What the actions of an RLA have earned: that of the present one, and, for an undo, that of those before it."""
 
+from collections.abc import Collection, Mapping
 from typing import Generic, TypeVar
 
 EarnedT = TypeVar("EarnedT")
@@ -28,6 +29,16 @@ class Accounts(Generic[EarnedT]):
         self.present.pop(rla_id, None)
         if earned is not None:
             self.present[rla_id] = earned
+
+    def restore(self, saved: Mapping[int, EarnedT], only: Collection[int] | None) -> None:
+        """The present accounts as they were saved: of all RLAs, or of some only."""
+        if only is None:
+            self.present = dict(saved)
+            return
+        for rla_id in only:
+            self.present.pop(rla_id, None)
+            if rla_id in saved:
+                self.present[rla_id] = saved[rla_id]
 
     def at(self, rla_id: int, depth: int) -> EarnedT | None:
         """What lies at a depth; None where nothing was earned."""

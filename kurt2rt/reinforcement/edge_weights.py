@@ -5,12 +5,12 @@ is meant by 0.9, 0.95 and 0.97, newest first; blame divides by them. An RLA is w
 fallen: (100 - their mean) / 100.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.accounts import Accounts
 from kurt2rt.reinforcement.rule import Booking
-from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
@@ -35,9 +35,6 @@ class EdgeWeights:
         if rla_id is not None and self._before is not None:
             self._accounts.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
         self._before = rla_id
-
-    def count_from(self, worths: WorthSettings) -> None:
-        """All the same: an edge begins at 100."""
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
         """What the change of the weights does to the worths."""
@@ -87,11 +84,12 @@ class EdgeWeights:
             for before, weight in edges.items()
         }
 
-    def restore(self, saved: Statistics) -> None:
-        """Weights as they were saved."""
-        self._accounts.present = {}
+    def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
+        """Weights as they were saved: of the edges into each RLA."""
+        edges_into: dict[int, _Edges] = {}
         for (before, after), weight in saved.edge_weights.items():
-            self._accounts.present.setdefault(after, {})[before] = weight
+            edges_into.setdefault(after, {})[before] = weight
+        self._accounts.restore(edges_into, only)
 
     def _changed(self, value: int, trace: Trace) -> dict[int, _Edges]:
         """Edges into each RLA that the signal means, after it."""

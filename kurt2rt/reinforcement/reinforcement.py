@@ -1,6 +1,11 @@
-"""Reinforcement, put together: signals change what RLAs are worth, and one that has sunk is mended (paper, phase 3)."""
+"""Reinforcement, put together: signals change what RLAs are worth, and one that has sunk is mended (paper, phase 3).
 
-from collections.abc import Iterator, Sequence
+What RLAs are worth stands in two accounts. The teacher's is that of phases 1 to 4: it is saved, and it is what credits
+and undo are about. That of phase 5 begins anew whenever phase 5 begins and is dropped when it ends: a critic's praise
+and blame stand on another scale. What a teacher says in phase 5 is booked in both.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from kurt2rt.knowledge.statistics import Statistics
@@ -48,34 +53,38 @@ class Reinforcement:
         self._period_s = period_s
         self._settings = settings
         self._worths: WorthSettings = settings.with_teacher
-        self.rule: ReinforcementRule = (
-            TdLambda(settings, period_s) if settings.rule == "td_lambda" else EdgeWeights(settings)
-        )
+        self.rule = self._account(settings.with_teacher)
+        """The teacher's account."""
+        self._alone: ReinforcementRule | None = None
+        """That of phase 5, while it lasts."""
         self.choice = Choice(
-            self.rule.worth,
+            self.worth,
             epsilon=settings.epsilon,
             hold_ticks=round(settings.hold_s / period_s),
             seed=settings.seed,
         )
-        self._repair = Repair(system, self.rule.worth, settings)
+        self._repair = Repair(system, self.worth, settings)
         self._repair.count_from(self._worths)
         self._bookings: dict[str, tuple[Booking, ...]] = {}
-        """Of each reward in the journal, by its command id: what an undo takes off."""
+        """Of each reward in the journal, by its command id: what an undo takes off the teacher's account."""
+        self._alone_bookings: dict[str, tuple[Booking, ...]] = {}
+        """Of each reward that a teacher gave in this phase 5: what an undo takes off its account."""
         self._since: dict[int, int] = {}
         """RLA id -> tick of this run in which it got the action it has."""
         self._blames: list[_Blame] = []
 
     def worth(self, rla_id: int) -> float:
-        """What the action is worth that an RLA has now."""
-        return self.rule.worth(rla_id)
+        """What the action is worth that an RLA has now, in the account that counts in this phase."""
+        return self._counting.worth(rla_id)
 
     def recall(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> None:
         """Take in what was taught before this run, as it is applied to the system; then what was counted."""
         for event in events:
             self._system.apply(event)
             if isinstance(event, RlaRewarded):
-                self._enter(event)
-                self.rule.book(self._bookings[event.origin.command_id], 1)
+                bookings = _booked(self.rule, event.credits)
+                self._bookings[event.origin.command_id] = bookings
+                self.rule.book(bookings, 1)
             else:
                 self.hear(event)
         self._since.clear()  # ticks of other runs
@@ -88,8 +97,22 @@ class Reinforcement:
         worths = self._settings.alone if phase is Phase.AUTONOMOUS else self._settings.with_teacher
         if worths is not self._worths:
             self._worths = worths
-            self.rule.count_from(worths)
+            self._alone = self._account(worths) if phase is Phase.AUTONOMOUS else None
+            self._alone_bookings.clear()
             self._repair.count_from(worths)
+            self.choice.forget()
+
+    def worths_alone(self) -> Statistics:
+        """What RLAs are worth in the account of phase 5; empty in any other phase."""
+        if self._alone is None:
+            return Statistics()
+        return Statistics(values=dict(self._alone.values), edge_weights=dict(self._alone.edge_weights))
+
+    def come_back(self, worths: Statistics, rla_ids: Collection[int]) -> None:
+        """In the account of phase 5 these RLAs are worth again what `worths_alone` told of them."""
+        if self._alone is not None:
+            self._alone.restore(worths, rla_ids)
+            self.choice.forget()
 
     def credits_of(self, value: int, tick: int) -> tuple[Credit, ...]:
         """What a teacher's signal about a tick that is remembered would change."""
@@ -99,10 +122,17 @@ class Reinforcement:
         """Follow an event that was applied to the system just now."""
         match event:
             case RlaRewarded(_, value, decided_at_tick, origin):
-                self._enter(event)
-                self._take(value, self._trace(decided_at_tick, None), origin.command_id, origin.teacher)
+                trace = self._trace(decided_at_tick, None)
+                self._bookings[origin.command_id] = _booked(self.rule, event.credits)
+                self.rule.take(value, trace)
+                if self._alone is not None:
+                    credits_alone = self._alone.credits_of(value, trace)
+                    self._alone_bookings[origin.command_id] = _booked(self._alone, credits_alone)
+                    self._alone.take(value, trace)
+                self._blame(value, trace, origin.command_id, origin.teacher)
             case ActionReplaced(rla_id, _, _, origin):
-                self.rule.renew(rla_id)
+                for account in self._accounts:
+                    account.renew(rla_id)
                 self._since[rla_id] = origin.tick
             case RlaCreated(rla):
                 self._repair.hear(rla)
@@ -110,15 +140,17 @@ class Reinforcement:
                 self._hear_undone(lesson, origin.tick)
 
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
-        """Learn from a signal that is no event: one of the critic's, which changes statistics only.
+        """Learn from a signal that is no event: one of the critic's, which changes the account of phase 5 only.
 
         `signal`: what its changes are called after.
         """
-        self._take(value, self._trace(tick, trace_s), signal, teacher)
+        trace = self._trace(tick, trace_s)
+        self._counting.take(value, trace)
+        self._blame(value, trace, signal, teacher)
 
     def drove(self, rla_id: int | None, tick: int) -> None:
         """Learn from a tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
-        self.rule.drove(rla_id, tick)
+        self._counting.drove(rla_id, tick)
 
     def repairs(self, tick: int, phase: Phase) -> Iterator[Lesson]:
         """What is to be changed after blame, one by one: apply each before the next is asked for."""
@@ -130,6 +162,21 @@ class Reinforcement:
             for rla_id in blame.rlas:
                 if self._repair.sunk(rla_id):
                     yield from mend(rla_id, self._origins(blame, phase, tick))
+
+    @property
+    def _counting(self) -> ReinforcementRule:
+        """The account of this phase."""
+        return self.rule if self._alone is None else self._alone
+
+    @property
+    def _accounts(self) -> tuple[ReinforcementRule, ...]:
+        return (self.rule,) if self._alone is None else (self.rule, self._alone)
+
+    def _account(self, worths: WorthSettings) -> ReinforcementRule:
+        settings = self._settings
+        if settings.rule == "td_lambda":
+            return TdLambda(settings, worths, self._period_s)
+        return EdgeWeights(settings)
 
     def _origins(self, blame: _Blame, phase: Phase, tick: int) -> OriginOf:
         def origin_of(word: str) -> Origin:
@@ -149,13 +196,7 @@ class Reinforcement:
             since=self._since,
         )
 
-    def _enter(self, event: RlaRewarded) -> None:
-        self._bookings[event.origin.command_id] = tuple(
-            Booking(credit, self.rule.depth(credit.rla_id)) for credit in event.credits
-        )
-
-    def _take(self, value: int, trace: Trace, signal: str, teacher: str) -> None:
-        self.rule.take(value, trace)
+    def _blame(self, value: int, trace: Trace, signal: str, teacher: str) -> None:
         if value < 0:
             self.choice.forget()
             least = self._worths.blamed_share
@@ -168,9 +209,17 @@ class Reinforcement:
         match record.event:
             case RlaRewarded():
                 self.rule.book(self._bookings.pop(lesson), -1)
+                if self._alone is not None:
+                    self._alone.book(self._alone_bookings.pop(lesson, ()), -1)
                 self.choice.forget()
             case ActionReplaced(rla_id):
-                self.rule.go_back(rla_id)
+                for account in self._accounts:
+                    account.go_back(rla_id)
                 self._since[rla_id] = tick
             case RlaCreated(rla):
                 self._repair.hear(rla, undone=True)
+
+
+def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[Booking, ...]:
+    """Credits as they belong to the actions that their RLAs have now."""
+    return tuple(Booking(credit, account.depth(credit.rla_id)) for credit in credits_)

@@ -1,10 +1,9 @@
 """The contract of a reinforcement rule: what a signal changes, and what an RLA is worth by it."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple, Protocol
 
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.reinforcement.settings import WorthSettings
 from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
@@ -22,10 +21,6 @@ class ReinforcementRule(Protocol):
 
     def drove(self, rla_id: int | None, tick: int) -> None:
         """Take in one tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
-        ...
-
-    def count_from(self, worths: WorthSettings) -> None:
-        """Where values begin from now on, and how high they may rise: with a teacher, or alone."""
         ...
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
@@ -66,6 +61,6 @@ class ReinforcementRule(Protocol):
         """For the checkpoint: weights by transition; empty for a rule without."""
         ...
 
-    def restore(self, saved: Statistics) -> None:
-        """Go on from what was saved."""
+    def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
+        """Go on from what was saved, of all RLAs or of some only."""
         ...

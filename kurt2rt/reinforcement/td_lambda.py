@@ -4,11 +4,11 @@ Every step, with e the trace:   delta = gamma V(now) - V(before),   V_i += alpha
 At a signal r about a tick t:   V_i += alpha r e_i(t)
 
 V begins at `first_value`, and praise lifts it to `highest_value` at most. Both differ between a robot that has a
-teacher and one that is alone, so what is kept is how far V is from where it began.
+teacher and one that is alone, and each of them has an account of its own.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.accounts import Accounts
@@ -21,10 +21,10 @@ from kurt2rt.rla.rla import Credit
 class TdLambda:
     """Values of RLAs, and an eligibility trace of those that drive."""
 
-    def __init__(self, settings: ReinforcementSettings, period_s: float) -> None:
-        """`period_s` of a tick."""
+    def __init__(self, settings: ReinforcementSettings, worths: WorthSettings, period_s: float) -> None:
+        """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
         self._settings = settings
-        self._worths: WorthSettings = settings.with_teacher
+        self._worths = worths
         self._decay = math.exp(-period_s / settings.trace_s)
         self._step_ticks = max(1, round(settings.step_s / period_s))
         self._accounts = Accounts[float]()
@@ -49,10 +49,6 @@ class TdLambda:
             self._trace[rla_id] = self._trace.get(rla_id, 0.0) + (1.0 - self._decay) / self._scale
         if tick % self._step_ticks == 0:
             self._step(rla_id, tick)
-
-    def count_from(self, worths: WorthSettings) -> None:
-        """Where values begin from now on, and how high they may rise."""
-        self._worths = worths
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
         """Each RLA its share of the signal, as far as its value may rise."""
@@ -92,8 +88,8 @@ class TdLambda:
 
     @property
     def values(self) -> Mapping[int, float]:
-        """V as it would be with a teacher, where it is not that of the beginning."""
-        first_value = self._settings.with_teacher.first_value
+        """V, where it is not that of the beginning."""
+        first_value = self._worths.first_value
         return {rla_id: first_value + change for rla_id, change in self._accounts.present.items()}
 
     @property
@@ -101,10 +97,11 @@ class TdLambda:
         """None."""
         return {}
 
-    def restore(self, saved: Statistics) -> None:
+    def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
         """Values as they were saved."""
-        first_value = self._settings.with_teacher.first_value
-        self._accounts.present = {rla_id: value - first_value for rla_id, value in saved.values.items()}
+        first_value = self._worths.first_value
+        changes = {rla_id: value - first_value for rla_id, value in saved.values.items()}
+        self._accounts.restore(changes, only)
 
     def _change(self, rla_id: int, change: float) -> float:
         """What a signal changes: praise up to the highest value, blame down from there where V is above it."""
@@ -112,7 +109,7 @@ class TdLambda:
         return min(change, max(0.0, room)) if change > 0.0 else change + min(0.0, room)
 
     def _room_above(self, rla_id: int) -> float:
-        """How far V may rise; negative where it stands higher: it came from phase 5, or blame was undone."""
+        """How far V may rise; negative where it stands higher: blame was undone that praise had healed."""
         highest = self._worths.highest_value
         return math.inf if highest is None else highest - self.worth(rla_id)
 

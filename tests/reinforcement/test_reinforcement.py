@@ -16,7 +16,7 @@ from kurt2rt.rla.rla import (
 )
 from kurt2rt.teaching.commands import Reward, Teach, Undo
 from tests.layers.helpers import MINIMUM_TICKS, RADIUS
-from tests.reinforcement.helpers import SHARE, SIGNALS_ONLY, Track, deleted_ids
+from tests.reinforcement.helpers import CALM, SHARE, SIGNALS_ONLY, Track, deleted_ids, knows_good_from_bad
 from tests.rla.helpers import created
 from tests.teaching.helpers import correct, teach
 
@@ -353,6 +353,44 @@ def test_the_other_rule_withdraws_as_well() -> None:
     robot.go(LEFT)
     assert 1 in {event.rla_id for event in robot.learnt if isinstance(event, ActionWithdrawn)}
     assert robot.go(LEFT).asking
+
+
+STEPS = SIGNALS_ONLY.model_copy(update={"step_s": 0.1})
+NEUTRAL = CALM._replace(front_m=0.30, speed_m_s=5.0)
+
+
+def test_what_an_rla_was_worth_alone_is_not_held_against_it_when_the_teacher_is_back() -> None:
+    robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=STEPS, phase=Phase.AUTONOMOUS)
+    while robot.worth(1) > 0.3:  # unpraised, values sink
+        robot.go(LEFT, 100, NEUTRAL)
+    assert robot.reinforcement.rule.values == {}
+    robot.school.phase = Phase.REINFORCEMENT
+    robot.go(LEFT)
+    assert robot.worth(1) == 0.5
+    robot.school.phase = Phase.AUTONOMOUS
+    robot.go(LEFT)
+    assert robot.worth(1) == 0.5  # and each phase 5 begins anew
+
+
+def test_a_teachers_reward_in_phase_5_is_booked_in_both_accounts_and_an_undo_takes_it_off_both() -> None:
+    robot = track(phase=Phase.AUTONOMOUS)
+    robot.go(LEFT, 400)
+    blame = robot.signal(-1)
+    assert dict(blame.credits)[1] == pytest.approx(-0.3, abs=0.002)
+    assert robot.worth(1) == robot.reinforcement.rule.worth(1) == pytest.approx(0.2, abs=0.002)
+    then = robot.reinforcement.worths_alone()
+    robot.go(LEFT, 400)
+    robot.signal(1)
+    robot.reinforcement.come_back(then, {1})
+    assert robot.worth(1) == pytest.approx(0.2, abs=0.002)
+    assert robot.reinforcement.rule.worth(1) == pytest.approx(0.5, abs=0.002)  # the teacher's stays
+    assert robot.say(Undo("u-1", "Ann", robot.events[-1].origin.command_id)).accepted
+    assert robot.say(Undo("u-2", "Ann", blame.origin.command_id)).accepted
+    assert robot.reinforcement.rule.worth(1) == pytest.approx(0.5)
+    robot.school.phase = Phase.REINFORCEMENT
+    robot.go(LEFT)
+    assert robot.worth(1) == pytest.approx(0.5)
+    assert robot.reinforcement.worths_alone() == Statistics()
 
 
 def test_an_undone_correction_is_heard_as_one() -> None:

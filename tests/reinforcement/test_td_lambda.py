@@ -19,7 +19,7 @@ HALF_EACH = Trace({1: 0.5, 2: 0.25}, ())
 
 
 def rule() -> TdLambda:
-    return TdLambda(SETTINGS, 0.01)
+    return TdLambda(SETTINGS, WORTHS, 0.01)
 
 
 def drive(learner: TdLambda, rla_id: int | None, first: int, last: int) -> None:
@@ -120,7 +120,7 @@ CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
 
 
 def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
-    learner = TdLambda(CAPPED, 0.01)
+    learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     assert learner.credits_of(1, HALF_EACH) == ()
     learner.take(-1, Trace({1: 0.2}, ()))
     assert learner.credits_of(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
@@ -128,22 +128,25 @@ def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
     assert (learner.worth(1), learner.worth(2)) == (0.0, 0.0)
 
 
-def test_alone_values_begin_higher_and_come_back_with_what_they_earned() -> None:
-    learner = TdLambda(CAPPED, 0.01)
+def test_alone_values_begin_higher_and_praise_lifts_them() -> None:
+    learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
     learner.take(-1, Trace({1: 0.5}, ()))
-    learner.count_from(CAPPED.alone)
     assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.35, 0.5))
     learner.take(1, Trace({1: 0.5, 2: 1.0}, ()))
-    assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.5, 0.8))
-    assert learner.values == pytest.approx({1: 0.0, 2: 0.3})  # as with a teacher, whoever asks
-    again = TdLambda(CAPPED, 0.01)
-    again.restore(Statistics(values=dict(learner.values)))
-    again.count_from(CAPPED.alone)
-    assert again.worth(2) == pytest.approx(0.8)
+    assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
 
 
-def test_blame_of_a_teacher_counts_from_the_highest_value_whatever_the_critic_thought() -> None:
-    learner = TdLambda(CAPPED, 0.01)
+def test_some_values_come_back_and_the_others_stay() -> None:
+    learner = rule()
+    learner.take(-1, Trace({1: 1.0, 2: 1.0}, ()))
+    then = Statistics(values=dict(learner.values))
+    learner.take(-1, Trace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
+    learner.restore(then, {1, 3, 5})
+    assert [learner.worth(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
+
+
+def test_blame_of_a_teacher_counts_from_the_highest_value_wherever_it_stood() -> None:
+    learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: 0.3}))
     assert learner.credits_of(1, Trace({1: 1.0}, ())) == ()
     (credit,) = learner.credits_of(-1, Trace({1: 1.0}, ()))
@@ -154,7 +157,7 @@ def test_blame_of_a_teacher_counts_from_the_highest_value_whatever_the_critic_th
 
 
 def test_steps_lift_no_value_above_the_highest_and_do_not_cut_one_that_is_there() -> None:
-    learner = TdLambda(CAPPED, 0.01)
+    learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: -0.2, 2: 0.4}))
     for turn in range(20):
         drive(learner, 1 + turn % 2, turn * 10 + 1, turn * 10 + 10)
