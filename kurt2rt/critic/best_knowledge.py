@@ -1,5 +1,7 @@
 """The guard over what the critic changes: the best knowledge so far is kept, and come back to."""
 
+from typing import NamedTuple
+
 from kurt2rt.critic.settings import BestSettings
 from kurt2rt.rla.lesson_book import rla_of
 from kurt2rt.rla.rla import (
@@ -14,11 +16,22 @@ from kurt2rt.rla.rla import (
 )
 
 
+class _Change(NamedTuple):
+    """A standing change of the critic's own."""
+
+    lesson: str
+    """Its command id."""
+    rla_id: int
+    number: int
+    """Among all teaching events, from 1."""
+
+
 class BestKnowledge:
     """Scores each window of driving, and of not knowing the way, and tells which of its changes are to be undone.
 
-    Scores come with chance. After a roll-back the best score is that of the next window, with the knowledge that was
-    come back to: else one lucky window would have everything undone that is ever learnt after it.
+    Scores come with chance, so knowledge is measured while nothing changes it: in the first window of phase 5, and in
+    the one after a roll-back, whose score is the best from then on: else one lucky window would have everything undone
+    that is ever learnt after it. A window that is won proves what was changed before it began, and no more.
     """
 
     def __init__(self, settings: BestSettings, period_s: float) -> None:
@@ -26,58 +39,75 @@ class BestKnowledge:
         self._window_ticks = max(1, round(settings.window_s / period_s))
         self._margin = settings.margin
         self.best: float | None = None
-        """Score of the best window; None before the first one has ended."""
+        """Score of the best window; None before the first one has ended, and after a roll-back."""
         self.score: float | None = None
         """Score of the last window."""
-        self._sum = self._driven = 0
-        self._since_best: list[tuple[str, int]] = []
-        """Command id and RLA of the critic's own standing changes since the best window ended, oldest first."""
-        self._measure_anew = False
+        self.proofs = 0
+        """How many windows were won."""
+        self.measures = True
+        """Whether knowledge is measured as it is: in this window the critic changes nothing."""
+        self._sum = self._counted = 0
+        self._events = 0
+        """How many teaching events there were."""
+        self._window_from = 0
+        """How many there were when the window began."""
+        self._unproven: list[_Change] = []
+        """Oldest first."""
+
+    def begin(self) -> None:
+        """The robot is alone from now on: what counted before may have been elsewhere, so it is measured first."""
+        self.measures = True
+        self._sum = self._counted = 0
 
     def changed(self, event: TeachingEvent) -> None:
-        """An event that was applied while the robot drove on its own, whoever made it."""
+        """An event that was applied, whoever made it, and in whichever phase."""
+        self._events += 1
         match event:
             case LessonUndone(lesson, _):
-                self._since_best = [each for each in self._since_best if each[0] != lesson]
+                self._unproven = [each for each in self._unproven if each.lesson != lesson]
             case Appraised() | SessionBegun() | SessionEnded():
                 pass
             case _ if event.origin.teacher == CRITIC:
-                self._since_best.append((event.origin.command_id, rla_of(event)))
+                self._unproven.append(_Change(event.origin.command_id, rla_of(event), self._events))
             case _:  # a teacher went on from there: what stands below a lesson of his stays
                 taught = rla_of(event)
-                self._since_best = [each for each in self._since_best if each[1] != taught]
+                self._unproven = [each for each in self._unproven if each.rla_id != taught]
 
     def look(
-        self, tick: int, opinion_value: int | None, driving: bool, *, asking: bool = False
+        self, tick: int, opinion_value: int | None, answers: bool, *, asking: bool = False
     ) -> tuple[LessonUndone, ...]:
         """Count one tick; at the end of a window that was too bad: what to undo, in this order, newest first.
 
-        `opinion_value`: of the critic's opinion, None where it has none, which counts as neutral. `asking`: it stands
-        because it does not know the situation, which is bad, for nobody is there to be asked; to stand else is nothing.
+        `opinion_value`: of the critic's opinion, None where it has none, which counts as neutral. `answers`: whether an
+        RLA answers that knows the situation; what a teacher's hand does is not the merit of the knowledge. `asking`: it
+        stands because it does not know the situation, which is bad, for nobody is there to be asked; to stand else is
+        nothing.
         """
-        if not driving and not asking:
+        if not answers and not asking:
             return ()
-        self._sum += (opinion_value or 0) if driving else -1
-        self._driven += 1
-        if self._driven < self._window_ticks:
+        if self._counted == 0:
+            self._window_from = self._events
+        self._sum += (opinion_value or 0) if answers else -1
+        self._counted += 1
+        if self._counted < self._window_ticks:
             return ()
-        self.score = self._sum / self._driven
-        self._sum = self._driven = 0
+        self.score = self._sum / self._counted
+        self._sum = self._counted = 0
         return self._judge_window(self.score, tick)
 
     def _judge_window(self, score: float, tick: int) -> tuple[LessonUndone, ...]:
-        if self._measure_anew:
-            self._measure_anew = False
+        measured, self.measures = self.measures, False
+        nothing_to_prove = measured and not self._unproven
+        if self.best is None or score >= self.best or nothing_to_prove:
             self.best = score
+            self.proofs += 1
+            self._unproven = [each for each in self._unproven if each.number > self._window_from]
             return ()
-        if self.best is None or score >= self.best:
-            self.best = score
-            self._since_best.clear()
+        if score >= self.best - self._margin or not self._unproven:
             return ()
-        if score >= self.best - self._margin or not self._since_best:
-            return ()
-        self._measure_anew = True
+        undone, self._unproven = self._unproven, []
+        self.best, self.measures = None, True
         return tuple(
-            LessonUndone(lesson, Origin(f"{lesson}/rolled-back", CRITIC, Phase.AUTONOMOUS, tick))
-            for lesson, _ in reversed(self._since_best)
+            LessonUndone(each.lesson, Origin(f"{each.lesson}/rolled-back", CRITIC, Phase.AUTONOMOUS, tick))
+            for each in reversed(undone)
         )

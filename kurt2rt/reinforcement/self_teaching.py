@@ -31,7 +31,7 @@ class SelfTeaching:
         self._agreement = agreement
         self._autonomy = Autonomy(settings, agreement, period_s)
         self.best = BestKnowledge(settings.best, period_s)
-        self._best_score: float | None = None
+        self._proofs = 0
         self._best_statistics = self._statistics()
         self.trusted = agreement.trusted
         """Whether the critic may act; kept, because it changes only with what is heard."""
@@ -41,8 +41,17 @@ class SelfTeaching:
         self.trusted = self._agreement.trusted
         self.best.changed(event)
 
+    def begin(self) -> None:
+        """From now on the robot is alone with a critic that is trusted."""
+        self.best.begin()
+
+    @property
+    def measures(self) -> bool:
+        """Whether it is measured how good the knowledge is: nothing is learnt meanwhile."""
+        return self.best.measures
+
     def signal(self, tick: int, decision: Decision, opinion: Opinion | None) -> None:
-        """Learn from what the critic thinks of this tick, as from a teacher's signal."""
+        """Learn from what the critic thinks of this tick, as from a teacher's signal; not while it measures."""
         signal = self._autonomy.signal(tick, opinion, driving=decision.answers)
         if signal is not None:
             self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)
@@ -52,8 +61,8 @@ class SelfTeaching:
         best = self.best
         said = None if opinion is None else opinion.said
         undone = best.look(tick, said, decision.driving, asking=decision.asking)
-        if best.best != self._best_score:
-            self._best_score = best.best
+        if best.proofs != self._proofs:
+            self._proofs = best.proofs
             self._best_statistics = self._statistics()
         if undone:
             for event in undone:

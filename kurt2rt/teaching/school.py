@@ -63,6 +63,8 @@ class School:
         self.agreement = agreement
         self.reinforcement = reinforcement
         self._self_teaching = self_teaching
+        self._teaches_itself = False
+        """Whether it did in the last tick."""
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._tuition = Tuition(
             level,
@@ -177,11 +179,15 @@ class School:
         reinforcement.count_for(self.phase)
         if self.phase is not Phase.AUTONOMOUS or (alone is not None and not alone.trusted):
             alone = None
-        learning = self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) or alone is not None
+        if alone is not None and not self._teaches_itself:
+            alone.begin()
+        self._teaches_itself = alone is not None
+        changes_itself = alone is not None and not alone.measures
+        learning = self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
         reinforcement.choice.explores = learning
         if learning:
             reinforcement.drove(decision.rla_id if decision.answers else None, tick)
-        if alone is not None:
+        if alone is not None and changes_itself:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []
         for lesson in reinforcement.repairs(tick, self.phase):

@@ -125,6 +125,80 @@ def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
     assert kept.best == 0.6
 
 
+def test_while_it_is_measured_nothing_is_to_be_changed() -> None:
+    kept = best()
+    assert kept.measures
+    window(kept, good=8)
+    assert not kept.measures
+    kept.changed(created(1, "first"))
+    window(kept, good=5)  # rolled back
+    assert kept.measures
+    window(kept, good=5)
+    assert not kept.measures
+    kept.begin()
+    assert kept.measures
+
+
+def test_what_was_changed_during_a_window_that_is_won_is_not_proven_by_it() -> None:
+    kept = best()
+    window(kept, good=5)
+    kept.changed(created(1, "before"))
+    for tick in range(8):
+        kept.look(tick, 1, True)
+    kept.changed(created(2, "late"))
+    for tick in range(2):
+        kept.look(tick, None, True)
+    assert kept.best == 0.8
+    assert [each.lesson for each in window(kept, good=3)] == ["late"]
+
+
+def test_what_is_left_to_be_proven_is_proven_by_the_next_window_that_is_won() -> None:
+    kept = best()
+    window(kept, good=5)
+    for tick in range(5):
+        kept.look(tick, 1, True)
+    kept.changed(created(1, "late"))
+    for tick in range(5):
+        kept.look(tick, None, True)
+    window(kept, good=6)
+    assert window(kept, good=0) == ()
+
+
+def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
+    """Each window a little worse than the one before: none of them becomes what the next is held against."""
+    kept = best(margin=0.1)
+    window(kept, good=6)
+    scores: list[int] = []
+    for number in range(1, 20):
+        kept.changed(created(number, f"change-{number}"))
+        scores.append(6 - len(scores))
+        undone = window(kept, good=scores[-1])
+        if undone:
+            break
+    assert scores == [6, 5, 4]
+    assert [each.lesson for each in undone] == ["change-3", "change-2"]
+
+
+def test_the_time_before_it_was_alone_does_not_count() -> None:
+    kept = best()
+    for tick in range(9):
+        kept.look(tick, -1, True)
+    kept.begin()
+    window(kept, good=7)
+    assert kept.best == 0.7
+
+
+def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be_proven() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.begin()
+    window(kept, good=3)
+    assert kept.best == 0.3
+    kept.changed(created(1, "first"))
+    kept.begin()
+    assert [each.lesson for each in window(kept, good=0)] == ["first"]
+
+
 Act = tuple[str, int]
 
 

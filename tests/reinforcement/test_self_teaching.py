@@ -2,6 +2,7 @@
 
 import pytest
 
+from behaviors.judges.judge import Circumstances
 from kurt2rt.critic.settings import BestSettings
 from kurt2rt.rla.rla import CRITIC, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.teaching.commands import Correct, Undo
@@ -17,6 +18,14 @@ def alone(phase: Phase = Phase.AUTONOMOUS) -> Track:
     """A robot that knows a little, with a critic that is trusted."""
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=phase)
     assert robot.agreement.trusted
+    return robot
+
+
+def at_work() -> Track:
+    """The same one after its first window, in which it only looked."""
+    robot = alone()
+    robot.go(THERE, 50, CALM)
+    robot.go(HERE, 50, CALM)
     return robot
 
 
@@ -46,7 +55,7 @@ def test_what_the_critic_finds_bad_is_mended_without_a_teacher() -> None:
 
 
 def test_what_it_finds_good_is_worth_more() -> None:
-    robot = alone()
+    robot = at_work()
     robot.go(HERE, 100, CALM)
     assert robot.worth(1) > 0.5
     assert changes(robot) == []
@@ -71,7 +80,7 @@ def test_a_critic_that_is_not_trusted_changes_nothing() -> None:
 
 
 def test_when_trust_is_lost_it_goes_back_to_listening() -> None:
-    robot = alone()
+    robot = at_work()
     robot.go(HERE, 10, CRASHED)
     assert robot.worth(1) < 0.5
     lose_trust(robot)
@@ -81,7 +90,7 @@ def test_when_trust_is_lost_it_goes_back_to_listening() -> None:
 
 
 def test_it_says_nothing_of_a_robot_that_stands_or_asks() -> None:
-    robot = alone()
+    robot = at_work()
     robot.go(25.0, 300, CRASHED)
     assert changes(robot) == []
     assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
@@ -162,11 +171,45 @@ def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
     robot = story.robot
     while not changes(robot):
         robot.go(HERE, 1, CRASHED)
-    tried = robot.go(HERE, 1, CRASHED).rla_id or 0
-    assert tried > 1
-    assert robot.say(Correct("c-1", "Ann", "c"), HERE).text == f"RLA {tried} corrected: c instead of b"
-    robot.go(THERE, 100, CRASHED)
+    (event,) = changes(robot)
+    assert isinstance(event, RlaCreated)
+    tried, (place,) = event.rla.rla_id, event.rla.condition
+    assert robot.go(place, 1, CRASHED).rla_id == tried
+    assert robot.say(Correct("c-1", "Ann", "c"), place).text == f"RLA {tried} corrected: c instead of a"
+    robot.go(HERE, 100, CRASHED)
     assert robot.actions[tried] == "c"
+
+
+@pytest.mark.parametrize("seen", [CALM, CRASHED])
+def test_in_its_first_window_it_only_looks(seen: Circumstances) -> None:
+    robot = alone()
+    known = robot.hash
+    robot.go(HERE, 100, seen)
+    assert (robot.hash, robot.worth(1), changes(robot)) == (known, 0.5, [])
+    robot.go(HERE, 1, seen)
+    assert robot.worth(1) != 0.5
+
+
+def test_after_a_roll_back_it_only_looks_for_a_window() -> None:
+    story = Judged()
+    story.bad_window()
+    robot, known, told = story.robot, story.robot.hash, len(changes(story.robot))
+    assert isinstance(changes(robot)[-1], LessonUndone)
+    robot.go(HERE, 100, CRASHED)
+    assert (robot.hash, len(changes(robot))) == (known, told)
+    robot.go(HERE, 400, CRASHED)
+    assert len(changes(robot)) > told
+
+
+def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
+    robot = at_work()
+    robot.school.phase = Phase.SUPERVISED
+    robot.go(HERE, 10, CRASHED)
+    robot.school.phase = Phase.AUTONOMOUS
+    robot.go(HERE, 100, CRASHED)
+    assert changes(robot) == []
+    robot.go(HERE, 100, CRASHED)
+    assert changes(robot) != []
 
 
 def test_a_score_that_falls_a_little_is_chance() -> None:
