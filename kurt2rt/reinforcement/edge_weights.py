@@ -3,6 +3,9 @@
 Each edge that was used begins at 100. Praise multiplies the weights of the last three transitions before the tick that
 is meant by 0.9, 0.95 and 0.97, newest first; blame divides by them. An RLA is worth by how much the edges into it have
 fallen: (100 - their mean) / 100.
+
+A weight stays between 10 and 1000, as many praises from 100 as blames: what was blamed for an hour is healed by no more
+praise than it took blame to get there.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -15,6 +18,7 @@ from kurt2rt.reinforcement.trace import Trace
 from kurt2rt.rla.rla import Credit
 
 FIRST_WEIGHT = 100.0
+_LEAST_WEIGHT, _MOST_WEIGHT = 10.0, 1000.0
 
 _Edges = dict[int, float]
 """Weights of the used edges into one RLA, by the RLA before it."""
@@ -51,7 +55,7 @@ class EdgeWeights:
         """Shift all edges into an RLA, so that its worth changes by the credit: which edge it was is not kept."""
         for (rla_id, change), depth in bookings:
             edges = self._accounts.at(rla_id, depth) or {}
-            shifted = {before: weight - sign * change * FIRST_WEIGHT for before, weight in edges.items()}
+            shifted = {before: _bounded(weight - sign * change * FIRST_WEIGHT) for before, weight in edges.items()}
             self._accounts.put(rla_id, depth, shifted)
 
     def worth(self, rla_id: int) -> float:
@@ -88,7 +92,7 @@ class EdgeWeights:
         """Weights as they were saved: of the edges into each RLA."""
         edges_into: dict[int, _Edges] = {}
         for (before, after), weight in saved.edge_weights.items():
-            edges_into.setdefault(after, {})[before] = weight
+            edges_into.setdefault(after, {})[before] = _bounded(weight)
         self._accounts.restore(edges_into, only)
 
     def _changed(self, value: int, trace: Trace) -> dict[int, _Edges]:
@@ -97,8 +101,12 @@ class EdgeWeights:
         for (before, after), factor in zip(trace.transitions, self._factors, strict=False):
             edges = changed.setdefault(after, dict(self._accounts.present.get(after, {})))
             weight = edges.get(before, FIRST_WEIGHT)
-            edges[before] = weight * factor if value > 0 else weight / factor
+            edges[before] = _bounded(weight * factor if value > 0 else weight / factor)
         return changed
+
+
+def _bounded(weight: float) -> float:
+    return max(_LEAST_WEIGHT, min(_MOST_WEIGHT, weight))
 
 
 def _worth(edges: _Edges | None) -> float:

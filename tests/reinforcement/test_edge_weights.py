@@ -47,6 +47,34 @@ def test_a_worth_stays_between_minus_one_and_one() -> None:
     assert learner.worth(4) == -1.0
 
 
+def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
+    learner = rule(3, 4)
+    last = Trace({}, ((3, 4),))
+    hurt = 0
+    for _ in range(10_000):
+        before = learner.edge_weights
+        learner.take(-1, last)
+        hurt += learner.edge_weights != before
+    assert learner.edge_weights == {(3, 4): 1000.0}
+    healed = 0
+    while learner.worth(4) < 0.0:
+        learner.take(1, last)
+        healed += 1
+    assert healed == hurt == 22
+    for _ in range(10_000):
+        learner.take(1, last)
+    assert learner.edge_weights == {(3, 4): 10.0}
+    assert learner.credits_of(1, last) == (Credit(4, 0.0),)
+
+
+def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
+    learner = rule()
+    learner.restore(Statistics(edge_weights={(3, 4): 1e300, (2, 5): 20.0}))
+    assert learner.edge_weights == {(3, 4): 1000.0, (2, 5): 20.0}
+    learner.book([Booking(Credit(5, 0.5), 0)], 1)
+    assert learner.edge_weights[2, 5] == 10.0
+
+
 def test_standing_is_no_way_from_one_to_the_other() -> None:
     assert rule(1, None, 2, 2, 3).edge_weights == {(2, 3): 100.0}
 
