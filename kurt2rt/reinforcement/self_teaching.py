@@ -60,7 +60,7 @@ class SelfTeaching:
         """Count the tick; after a window that was too bad, what to undo, one by one: apply each before the next."""
         best = self.best
         said = None if opinion is None else opinion.said
-        undone = best.look(tick, said, decision.driving, asking=decision.asking)
+        undone = best.look(tick, said, decision.answers, asking=decision.asking)
         if best.proofs != self._proofs:
             self._proofs = best.proofs
             self._best_statistics = self._statistics()

@@ -4,8 +4,10 @@ import pytest
 
 from behaviors.judges.judge import Circumstances
 from kurt2rt.critic.settings import BestSettings
+from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.teaching.commands import Correct, Undo
+from tests.layers.helpers import sensed, situation
 from tests.reinforcement.helpers import CALM, CRASHED, QUICK, SIGNALS_ONLY, Track, knows_good_from_bad
 from tests.rla.helpers import created
 from tests.teaching.helpers import teach
@@ -199,6 +201,19 @@ def test_after_a_roll_back_it_only_looks_for_a_window() -> None:
     assert (robot.hash, len(changes(robot))) == (known, told)
     robot.go(HERE, 400, CRASHED)
     assert len(changes(robot)) > told
+
+
+def test_what_a_hand_does_neither_proves_nor_disproves_the_knowledge() -> None:
+    robot = alone()
+    for _ in range(300):
+        robot.tick += 1
+        stands = robot.level.decide(situation(HERE), sensed(), Cause.TEACHER)
+        by_hand = stands._replace(action="b")
+        robot.school.learn(robot.tick, by_hand, robot.critic.think(robot.tick, CRASHED))
+    robot.go(HERE, 100, CRASHED)  # its first window, in which it only looks
+    assert robot.worth(1) == 0.5
+    robot.go(HERE, 1, CRASHED)
+    assert robot.worth(1) < 0.5
 
 
 def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
