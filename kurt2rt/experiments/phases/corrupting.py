@@ -19,13 +19,18 @@ from kurt2rt.rla.rla import (
 _NAME = "corruption"
 
 
-def corrupt(rlas: Sequence[Rla], actions: Sequence[str], share: float, seed: int) -> Iterator[ActionReplaced]:
-    """Give this share of the RLAs, at least one, another one of these actions."""
-    chance = random.Random(f"corruption, seed {seed}")
+def corrupt(
+    rlas: Sequence[Rla], actions: Sequence[str], share: float, seed: int, purpose: str
+) -> Iterator[ActionReplaced]:
+    """Give this share of the RLAs, at least one, another one of these actions.
+
+    Each purpose has wrong actions of its own: a critic is not examined on those that it was taught on.
+    """
+    chance = random.Random(f"corruption for {purpose}, seed {seed}")
     chosen = chance.sample(rlas, max(1, round(share * len(rlas)))) if rlas else []
     for number, rla in enumerate(chosen, start=1):
         action = chance.choice([each for each in actions if each != rla.action])
-        origin = Origin(f"corruption-{seed}-{number}", _NAME, Phase.CORRECTIONS, rla.origin.tick)
+        origin = Origin(f"corruption-{purpose}-{seed}-{number}", _NAME, Phase.CORRECTIONS, rla.origin.tick)
         yield ActionReplaced(rla.rla_id, action, rla.action, origin)
 
 

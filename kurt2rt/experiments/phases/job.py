@@ -201,7 +201,9 @@ class StepJob:
             system = fold_journal(journal, radius=robot.task.learning.radius)
         lessons: list[TeachingEvent] = []
         if self.of.corrupted:
-            lessons += corrupt(system.rlas, primitives(robot.task.repertoire), self.of.corrupted, robot.seed)
+            lessons += corrupt(
+                system.rlas, primitives(robot.task.repertoire), self.of.corrupted, robot.seed, self.of.mistakes
+            )
         if self.of.critic != "own":
             lessons += self._critics()
         self._add(knowledge, lessons)

@@ -55,6 +55,8 @@ class Step:
     """None: nothing is taught."""
     worlds: tuple[str, ...]
     """Of its exams."""
+    mistakes: str = "repair"
+    """What the wrong actions are for: another purpose has others."""
     aside: bool = False
     """Whether only the critic is kept of what was taught, and all else, exams too, is as it was before the step."""
 
@@ -114,7 +116,7 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     )
     yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, worlds)
     errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
-    yield Step(PHASE_4, PHASE_3, errs, "own", critic, worlds, aside=True)
+    yield Step(PHASE_4, PHASE_3, errs, "own", critic, worlds, mistakes="critic", aside=True)
     yield Step(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
     yield Step(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
 

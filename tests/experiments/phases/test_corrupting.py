@@ -7,9 +7,11 @@ import pytest
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.settings import NAMES, load_critic
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
 from kurt2rt.experiments.primitives import primitives
 from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Phase, Rla, RlaCreated, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.tasks.settings import load_task
 
 ACTIONS = ("forward", "back", "stand")
 SETTINGS = load_critic()
@@ -38,7 +40,7 @@ CRITICS = [
 
 
 def test_the_share_that_was_asked_for_gets_another_action() -> None:
-    wrong = list(corrupt(system(*SET).rlas, ACTIONS, 0.18, seed=7))
+    wrong = list(corrupt(system(*SET).rlas, ACTIONS, 0.18, seed=7, purpose="repair"))
     assert len({each.rla_id for each in wrong}) == 9
     assert all(each.action in ("back", "stand") and each.instead_of == "forward" for each in wrong)
     system(*SET, *wrong)
@@ -46,13 +48,32 @@ def test_the_share_that_was_asked_for_gets_another_action() -> None:
 
 def test_the_same_seed_spoils_the_same_and_another_one_others() -> None:
     rlas = system(*SET).rlas
-    assert list(corrupt(rlas, ACTIONS, 0.18, 7)) == list(corrupt(rlas, ACTIONS, 0.18, 7))
-    assert list(corrupt(rlas, ACTIONS, 0.18, 7)) != list(corrupt(rlas, ACTIONS, 0.18, 8))
+    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) == list(
+        corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")
+    )
+    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) != list(
+        corrupt(rlas, ACTIONS, 0.18, 8, purpose="repair")
+    )
+
+
+def test_what_the_critic_was_shown_is_not_what_it_is_examined_on() -> None:
+    rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
+
+    def wrong_at(name: str, seed: int) -> set[tuple[int, str]]:
+        step = steps[name]
+        wrong = corrupt(rlas, primitives("basic"), step.corrupted, seed, step.mistakes)
+        return {(each.rla_id, each.action) for each in wrong}
+
+    for seed in range(20):
+        shown, examined = wrong_at(PHASE_4, seed), wrong_at(CRITIC_ALONE, seed)
+        assert len(shown) == len(examined) == 9
+        assert len(shown & examined) <= 1  # what little is alike is so by chance
+        assert examined == wrong_at(SHUFFLED, seed) == wrong_at(REWARDS, seed)
 
 
 @pytest.mark.parametrize(("rlas", "wrong"), [(0, 0), (1, 1), (2, 1), (11, 2)])
 def test_of_a_small_set_at_least_one_is_wrong(rlas: int, wrong: int) -> None:
-    assert len(list(corrupt(system(*SET[:rlas]).rlas, ACTIONS, 0.18, 1))) == wrong
+    assert len(list(corrupt(system(*SET[:rlas]).rlas, ACTIONS, 0.18, 1, purpose="repair"))) == wrong
 
 
 def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
