@@ -93,8 +93,10 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
         return LessonPlan(((phase, lasts_s),), purpose, **more)  # type: ignore[arg-type]
 
     def alone(lasts_s: float, purpose: str) -> LessonPlan:
-        # Who is not there to teach does not look so often, either.
-        return taught(Phase.AUTONOMOUS, lasts_s, purpose, rescue_after_s=task.exam.stuck_after_s)
+        # Who is not there to teach does not look so often, either, and sets nothing down that he was not called for.
+        return taught(
+            Phase.AUTONOMOUS, lasts_s, purpose, rescue_after_s=task.exam.stuck_after_s, reposition_every_s=0.0
+        )
 
     rewarded = taught(
         Phase.REINFORCEMENT,

@@ -14,6 +14,7 @@ from kurt2rt.experiments.phases.steps import (
     PATH,
     PHASE_2,
     PHASE_4,
+    PHASE_5,
     REWARDS,
     SHUFFLED,
     TITLES,
@@ -54,10 +55,19 @@ def test_a_critic_is_taken_from_this_robot_s_phase_4() -> None:
 
 
 def test_nobody_teaches_where_the_robot_is_alone() -> None:
-    for name in (CRITIC_ALONE, SHUFFLED, INTACT, LONG_RUN):
+    for name in (PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT, LONG_RUN):
         plan = STEPS[name].plan
         assert plan is not None
         assert [phase for phase, _ in plan.phases] == [Phase.AUTONOMOUS]
+
+
+@pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])
+def test_where_the_robot_is_alone_no_hand_sets_it_down_unless_it_is_stuck(name: str) -> None:
+    task = load_task(name)
+    plans = [step.plan for step in steps_of(task) if step.plan and step.plan.phases[0][0] is Phase.AUTONOMOUS]
+    assert len(plans) == 5
+    assert {plan.reposition_every_s for plan in plans} == {0.0}  # what the task says of lessons does not count
+    assert {plan.rescue_after_s for plan in plans} == {task.exam.stuck_after_s}
 
 
 @pytest.mark.parametrize("key", ["phases", "judge"])
