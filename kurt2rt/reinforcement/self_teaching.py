@@ -1,6 +1,6 @@
 """The critic in its teacher's place: its signals, and the guard that takes back what made things worse (phase 5)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.autonomy import Autonomy
@@ -10,7 +10,8 @@ from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
-from kurt2rt.rla.rla import CRITIC, LessonUndone, TeachingEvent
+from kurt2rt.rla.lesson_book import rla_of
+from kurt2rt.rla.rla import CRITIC, LessonUndone, Rla, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 
 
@@ -32,7 +33,8 @@ class SelfTeaching:
         self._autonomy = Autonomy(settings, agreement, period_s)
         self.best = BestKnowledge(settings.best, period_s)
         self._proofs = 0
-        self._best_statistics = self._statistics()
+        self._best_worths = Statistics()
+        """Of the account of phase 5, when the best window ended."""
         self.trusted = agreement.trusted
         """Whether the critic may act; kept, because it changes only with what is heard."""
 
@@ -44,6 +46,7 @@ class SelfTeaching:
     def begin(self) -> None:
         """From now on the robot is alone with a critic that is trusted."""
         self.best.begin()
+        self._best_worths = self._reinforcement.worths_alone()
 
     @property
     def measures(self) -> bool:
@@ -63,15 +66,24 @@ class SelfTeaching:
         undone = best.look(tick, said, decision.answers, asking=decision.asking)
         if best.proofs != self._proofs:
             self._proofs = best.proofs
-            self._best_statistics = self._statistics()
+            self._best_worths = self._reinforcement.worths_alone()
         if undone:
-            for event in undone:
-                if self._system.why_not_undo(event.lesson) is None:  # a teacher went on from there: his lesson stays
-                    yield event
-            # What is come back to is as it was worth then: else the same RLAs would sink again at once.
-            self._reinforcement.rule.restore(self._best_statistics)
-            self._reinforcement.choice.forget()
+            yield from self._undo(undone)
 
-    def _statistics(self) -> Statistics:
-        rule = self._reinforcement.rule
-        return Statistics(values=dict(rule.values), edge_weights=dict(rule.edge_weights))
+    def _undo(self, events: Iterable[LessonUndone]) -> Iterator[LessonUndone]:
+        system, meant = self._system, list[Rla]()
+        for event in events:
+            if system.why_not_undo(event.lesson) is not None:  # a teacher went on from there: his lesson stays
+                continue
+            record = system.lesson(event.lesson)
+            assert record is not None
+            rla_id = rla_of(record.event)
+            was = system.get(rla_id)
+            yield event
+            rla = system.get(rla_id) or was
+            if rla is not None:
+                meant.append(rla)
+        # What is come back to is as it was worth then: else the same RLAs would sink again at once. Others keep what
+        # they have earned since.
+        ids = {each.rla_id for rla in meant for each in system.competitors(rla)}
+        self._reinforcement.come_back(self._best_worths, ids)
