@@ -1,7 +1,7 @@
 """The runtime, assembled: everything between the robot and the scheduler, built in one place."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from behaviors.judges.judge import Circumstances
 from behaviors.repertoire import load_repertoire
@@ -53,8 +53,8 @@ class Runtime:
 
     def to_save(self) -> Statistics:
         """What was counted, and what the RLAs are worth, as it is now."""
-        counted, rule = self.statistics, self.reinforcement.rule
-        return Statistics(dict(counted.uses), dict(counted.transitions), dict(rule.values), dict(rule.edge_weights))
+        counted = self.statistics
+        return replace(self.reinforcement.to_save(), uses=dict(counted.uses), transitions=dict(counted.transitions))
 
 
 def build_runtime(

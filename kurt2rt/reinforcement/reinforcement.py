@@ -6,9 +6,10 @@ and blame stand on another scale. What a teacher says in phase 5 is booked in bo
 """
 
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics import EDGE_WEIGHTS_INCLUDE, FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.reinforcement.edge_weights import EdgeWeights
 from kurt2rt.reinforcement.repair import OriginOf, Repair
@@ -72,25 +73,41 @@ class Reinforcement:
         self._since: dict[int, int] = {}
         """RLA id -> tick of this run in which it got the action it has."""
         self._blames: list[_Blame] = []
+        self._saved = Statistics()
+        """What was saved before this run: the other rule's table stays as it is there."""
+        self.rows = 0
+        """How many teaching events there were, which is how many rows the journal has when all of them are written."""
 
     def worth(self, rla_id: int) -> float:
         """What the action is worth that an RLA has now, in the account that counts in this phase."""
         return self._counting.worth(rla_id)
 
     def recall(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> None:
-        """Take in what was taught before this run, as it is applied to the system; then what was counted."""
-        for event in events:
-            self._system.apply(event)
-            if isinstance(event, RlaRewarded):
-                bookings = _booked(self.rule, event.credits)
-                self._bookings[event.origin.command_id] = bookings
-                self.rule.book(bookings, 1)
-            else:
-                self.hear(event)
+        """Take in what was taught before this run, as it is applied to the system.
+
+        What was saved tells how many of the events it includes; those behind it are booked on top of it.
+        """
+        saved = saved or Statistics()
+        included = len(events)
+        if self._is_in(saved):
+            included = round(saved.numbers.get(self._include, included))
+            self._recall(events[:included])
+            self.rule.restore(saved)
+        self._recall(events[self.rows :])
         self._since.clear()  # ticks of other runs
         self._blames.clear()
-        if saved is not None and (saved.values or saved.edge_weights):
-            self.rule.restore(saved)
+        # An earlier kurt2rt did not say how many rows a table includes: all there are.
+        tables = {VALUES_INCLUDE: saved.values, EDGE_WEIGHTS_INCLUDE: saved.edge_weights}
+        includes = {name: float(self.rows) for name, table in tables.items() if table}
+        self._saved = replace(saved, numbers={**includes, **saved.numbers})
+
+    def to_save(self) -> Statistics:
+        """The teacher's account for the checkpoint; what the other rule had saved there stays as it is."""
+        numbers = {**self._saved.numbers, self._include: float(self.rows)}
+        if self._settings.rule == "td_lambda":
+            numbers[FIRST_VALUE] = self._settings.with_teacher.first_value
+            return replace(self._saved, values=dict(self.rule.values), numbers=numbers)
+        return replace(self._saved, edge_weights=dict(self.rule.edge_weights), numbers=numbers)
 
     def count_for(self, phase: Phase) -> None:
         """Values of a robot that has a teacher begin elsewhere, and sink elsewhere, than those of one that is alone."""
@@ -120,6 +137,7 @@ class Reinforcement:
 
     def hear(self, event: TeachingEvent) -> None:
         """Follow an event that was applied to the system just now."""
+        self.rows += 1
         match event:
             case RlaRewarded(_, value, decided_at_tick, origin):
                 trace = self._trace(decided_at_tick, None)
@@ -162,6 +180,26 @@ class Reinforcement:
             for rla_id in blame.rlas:
                 if self._repair.sunk(rla_id):
                     yield from mend(rla_id, self._origins(blame, phase, tick))
+
+    def _recall(self, events: Sequence[TeachingEvent]) -> None:
+        for event in events:
+            self._system.apply(event)
+            if isinstance(event, RlaRewarded):
+                self.rows += 1
+                bookings = _booked(self.rule, event.credits)
+                self._bookings[event.origin.command_id] = bookings
+                self.rule.book(bookings, 1)
+            else:
+                self.hear(event)
+
+    @property
+    def _include(self) -> str:
+        return VALUES_INCLUDE if self._settings.rule == "td_lambda" else EDGE_WEIGHTS_INCLUDE
+
+    def _is_in(self, saved: Statistics) -> bool:
+        """Whether this rule has saved anything there."""
+        table = saved.values if self._settings.rule == "td_lambda" else saved.edge_weights
+        return self._include in saved.numbers or bool(table)
 
     @property
     def _counting(self) -> ReinforcementRule:

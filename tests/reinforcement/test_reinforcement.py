@@ -334,6 +334,54 @@ def test_saved_values_go_before_credits_and_an_undo_still_takes_them_off() -> No
     assert again.worth(1) == pytest.approx(0.1 - blame.credits[0].change)
 
 
+def test_what_came_after_the_last_checkpoint_is_booked_behind_it_at_the_next_start() -> None:
+    robot = track()
+    robot.go(LEFT, 400)
+    robot.signal(-1)
+    saved = robot.reinforcement.to_save()
+    robot.go(LEFT, 400)
+    robot.signal(-1)
+    robot.go(RIGHT, 400)
+    robot.signal(-1)
+    robot.say(correct("c", "c-1"), RIGHT)
+    again = track_with(robot, saved)  # nothing was saved after that
+    assert [again.worth(n) for n in (1, 2)] == pytest.approx([robot.worth(n) for n in (1, 2)])
+    assert again.reinforcement.to_save() == robot.reinforcement.to_save()
+    for run in (robot, again):
+        for lesson in ("c-1", "signal-3", "signal-2", "signal-1"):
+            assert run.say(Undo(f"u-{lesson}", "Ann", lesson)).accepted
+    assert [again.worth(n) for n in (1, 2)] == pytest.approx([0.5, 0.5])
+
+
+def test_an_answer_after_the_last_checkpoint_does_not_begin_with_what_its_forerunner_was_worth() -> None:
+    robot = track()
+    sink(robot, LEFT)
+    robot.go(LEFT, 2)
+    saved = robot.reinforcement.to_save()
+    assert robot.say(teach("b", "again"), LEFT).accepted
+    again = track_with(robot, saved)
+    assert again.worth(1) == robot.worth(1) == 0.5
+
+
+def test_a_run_with_the_other_rule_leaves_what_was_learnt_as_it_is() -> None:
+    robot = track()
+    robot.go(LEFT, 400)
+    robot.signal(-1)
+    robot.go(RIGHT, 400)
+    robot.signal(-1)
+    saved = robot.reinforcement.to_save()
+    other = Track(*robot.events, reinforcement=ReinforcementSettings(rule="edge_weights"), saved=saved)
+    other.go(RIGHT, 20)
+    other.go(LEFT, 20)
+    other.say(correct("c", "c-1"), RIGHT)
+    then = other.reinforcement.to_save()
+    assert then.values == saved.values
+    assert then.edge_weights == {(2, 1): 100.0}
+    back = Track(*other.events, reinforcement=SIGNALS_ONLY, saved=then)
+    assert (back.worth(1), back.worth(2)) == pytest.approx((robot.worth(1), 0.5))  # the second one was corrected
+    assert back.reinforcement.to_save().edge_weights == then.edge_weights
+
+
 def track_with(robot: Track, saved: Statistics) -> Track:
     return Track(*robot.events, reinforcement=SIGNALS_ONLY, saved=saved)
 
