@@ -47,11 +47,8 @@ class LessonPlan:
     """Then some action of the repertoire, whatever it leads to, drives it for so long."""
     shown_share: float = 1.0
     """So often of the times that it is set down."""
-
-    @property
-    def rescues_who_asks(self) -> bool:
-        """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
-        return self.phases[0][0] >= Phase.REINFORCEMENT
+    rescues_who_asks: bool = False
+    """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
 
     @property
     def duration_s(self) -> float:

@@ -90,7 +90,8 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     )
 
     def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
-        return LessonPlan(((phase, lasts_s),), purpose, **more)  # type: ignore[arg-type]
+        # Whoever is compared with others is rescued by the same rule, whatever phase he is in.
+        return LessonPlan(((phase, lasts_s),), purpose, rescues_who_asks=True, **more)  # type: ignore[arg-type]
 
     def alone(lasts_s: float, purpose: str) -> LessonPlan:
         # Who is not there to teach does not look so often, either, and sets nothing down that he was not called for.

@@ -46,6 +46,7 @@ def test_every_repair_begins_with_the_same_wrong_set_at_the_same_place_for_the_s
     assert {(plan.duration_s, plan.purpose, plan.reposition_every_s) for plan in plans} == {
         (plans[0].duration_s, "repair", 15.0)
     }
+    assert {(plan.rescues_who_asks, plan.rescue_after_s) for plan in plans} == {(True, None)}
     assert STEPS[CRITIC_ALONE].plan == STEPS[SHUFFLED].plan == STEPS[INTACT].plan
 
 
