@@ -20,6 +20,7 @@ from typing import Any
 from kurt2rt.channel.context_folder import SECRET, SEQUENCE
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.durable import sync_folder
+from kurt2rt.rla.rla import CRITIC
 
 LOCAL = "local"
 """Name of whoever teaches at the robot's own machine, with the page or a program of his own."""
@@ -29,6 +30,8 @@ TERMINAL = "terminal"
 """Name of whoever teaches from a terminal of the robot's own machine, so that the page can be open beside it."""
 OF_THIS_MACHINE = frozenset({LOCAL, AUTO, TERMINAL})
 """Made on demand, by programs that can read both folders; nobody paired them."""
+RESERVED = frozenset({CRITIC})
+"""In the journal these are no people; whoever had such a name would pass for the robot itself."""
 
 USED = "used"
 """File on the robot's side; its time says when the device was last heard."""
@@ -89,7 +92,7 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
 
     Raises CredentialsError for a name that is taken, reserved, or no name.
     """
-    _require_name(name)
+    _require_free_name(name)
     if name in OF_THIS_MACHINE:
         raise CredentialsError(f"{name}: is the name of this machine's own teacher; choose another one")
     with _changing(teachers, devices):
@@ -102,9 +105,9 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
 def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
     """Give a pairing new secrets, ids and token; the old ones are refused from now on.
 
-    Raises CredentialsError when neither side of it is there.
+    Raises CredentialsError when neither side of it is there, or for a name that is reserved.
     """
-    _require_name(name)
+    _require_free_name(name)
     with _changing(teachers, devices):
         _remove(teachers, devices, name)
         return _make(teachers, devices, name, host, port)
@@ -180,6 +183,12 @@ def pairing_names(teachers: Path) -> tuple[str, ...]:
 def _require_name(name: str) -> None:
     if not _NAME.fullmatch(name):
         raise CredentialsError(f"{name!r}: is no name for a device; give 1 to 24 of a-z, 0-9 and -, such as anna-phone")
+
+
+def _require_free_name(name: str) -> None:
+    _require_name(name)
+    if name in RESERVED:
+        raise CredentialsError(f"{name}: is the name of the robot's own critic; choose another one")
 
 
 @contextmanager

@@ -9,7 +9,7 @@ import anyio.to_thread
 from aiocoap import oscore
 
 from kurt2rt.channel.context_folder import SECRET
-from kurt2rt.channel.credentials import OF_THIS_MACHINE, USED, pairing_names
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, RESERVED, USED, pairing_names
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 
@@ -118,6 +118,12 @@ class Teachers:
         came: list[str] = []
         still: dict[str, _Held] = {}
         for name in names:
+            if name in RESERVED:
+                trouble.append(
+                    f"{self._folder / name}: is not let in, for {name} is the name of the robot's own critic; "
+                    f"kurt2rt pair {name} --revoke, then pair the device under another one"
+                )
+                continue
             mine = held.get(name)
             try:
                 identity = _identity(self._folder / name)

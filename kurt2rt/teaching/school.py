@@ -9,7 +9,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.rla.rla import Origin, Phase, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, Origin, Phase, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
@@ -128,7 +128,9 @@ class School:
     def follow(self, command: Watch | Drive, tick: int) -> str | None:
         """Take in a message of a stream, of which only the newest counts; a refusal in words."""
         authority = self.authority
-        refusal = authority.held_by_another(command.teacher) or self.why_not_by_hand(command)
+        refusal = (
+            _no_person(command.teacher) or authority.held_by_another(command.teacher) or self.why_not_by_hand(command)
+        )
         if refusal is not None:
             return refusal
         if isinstance(command, Watch):
@@ -214,6 +216,7 @@ class School:
         authority = self.authority
         if isinstance(command, Stop):
             return self._stop(command, tick), None
+        refuse(_no_person(command.teacher))
         if isinstance(command, Take):
             before = authority.teacher
             refuse(authority.take(command.teacher, tick))
@@ -223,6 +226,7 @@ class School:
         authority.claim(command.teacher)
         match command:
             case HandOver(to=to):
+                refuse(None if to is None else _no_person(to))
                 authority.hand_over(to)
                 self._pass_on(command.teacher)
                 return "nobody teaches now" if to is None else f"{to} teaches now", None
@@ -314,6 +318,11 @@ class School:
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
+
+
+def _no_person(name: str) -> str | None:
+    """Why nobody of this name teaches: the journal would take what he says for what the critic does."""
+    return f"{name} is the name of the robot's own critic; teach under another one" if name == CRITIC else None
 
 
 def _let_go(teacher: str) -> str:

@@ -92,6 +92,17 @@ def test_the_names_of_this_machine_are_not_paired(teachers: Path, devices: Path,
         pair(teachers, devices, name)
 
 
+def test_the_critics_name_is_neither_paired_nor_renewed_but_revoked(teachers: Path, devices: Path) -> None:
+    for change in (pair, renew):
+        with pytest.raises(CredentialsError, match="critic: is the name of the robot's own critic; choose another one"):
+            change(teachers, devices, "critic")
+    assert not teachers.exists()
+    pairing = pair(teachers, devices, "phone")
+    pairing.teacher.rename(teachers / "critic")
+    revoke(teachers, devices, "critic")
+    assert not (teachers / "critic").exists()
+
+
 def test_paired_twice_is_refused_and_changes_nothing(teachers: Path, devices: Path) -> None:
     pairing = pair(teachers, devices, "phone")
     with pytest.raises(CredentialsError, match="kurt2rt pair phone --renew"):

@@ -56,6 +56,17 @@ def test_a_request_finds_the_keys_of_its_device(house: House) -> None:
         assert teachers.find(header_of(house.device(name))).authenticated_claims == [name]
 
 
+async def test_a_folder_with_the_critics_name_lets_nobody_in_and_is_told_of(house: House) -> None:
+    house.pair("phone")
+    (house.teachers / "phone").rename(house.teachers / "critic")
+    house.pair("tablet")
+    teachers = house.start()
+    await teachers.refresh()
+    assert teachers.names == ("tablet",)
+    (line,) = teachers.trouble
+    assert "critic is the name of the robot's own critic; kurt2rt pair critic --revoke" in line
+
+
 def test_strangers_find_nothing(house: House) -> None:
     house.pair("phone")
     teachers = house.start()

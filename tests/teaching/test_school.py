@@ -665,3 +665,31 @@ def test_a_correction_of_an_old_picture_corrects_an_rla_of_what_was_wanted_then(
     assert lesson.say(Undo("u-1", "Ann", "c-1")).text == ("undone: RLA 1 of straight_on corrected: c instead of a")
     assert lesson.say(delete(1)).text == "RLA 1 of straight_on deleted"  # by its id, whatever is wanted
     assert lesson.actions == {2: "b"}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        Teach("x", "critic", "a"),
+        Correct("x", "critic", "a"),
+        Reward("x", "critic", 1),
+        Undo("x", "critic"),
+        SetPhase("x", "critic", Phase.AUTONOMOUS),
+        Resume("x", "critic"),
+        Take("x", "critic"),
+        HandOver("x", "Ann", "critic"),
+    ],
+)
+def test_nobody_teaches_in_the_critics_name(command: Command) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    lesson.go_on(0.0)
+    result = lesson.say(command)
+    assert not result.accepted
+    assert result.text == "critic is the name of the robot's own critic; teach under another one"
+    assert lesson.school.authority.teacher != "critic"
+
+
+def test_the_critic_drives_nothing_by_hand_but_whoever_says_stop_is_heard() -> None:
+    lesson = Lesson()
+    assert lesson.drive("critic") == "critic is the name of the robot's own critic; teach under another one"
+    assert lesson.say(Stop("s", "critic")).accepted
