@@ -234,7 +234,11 @@ def _teacher_of(
     if plan.signs == "unknown":
         signs = UnknownIsBad()
     elif plan.signs == "chance":
-        signs = BlamedByChance(round(times.bad_every_s / period_s), seed)
+        # What is meant in the last second would be said when the lesson is over.
+        last_s = plan.duration_s - task.teaching.teacher.reaction_s
+        signs = BlamedByChance(
+            plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed
+        )
     elif plan.signs == "judge":
         if task.judge is None:
             raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")

@@ -8,7 +8,7 @@ from kurt2rt.tasks.settings import TaskSettings
 
 Signs = Literal["none", "judge", "unknown", "chance"]
 """What the teacher goes by when he praises and blames: nothing, the task's judge, that the robot knew no answer, or
-chance, which blames as often as a judge that is asked to."""
+chance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +37,8 @@ class LessonPlan:
     """Another one begins at another place, with other noise."""
     signs: Signs = "none"
     times: SignalTimes = SignalTimes()
+    blame_by_chance: int = 0
+    """Who goes by chance blames so many times in all."""
     reposition_every_s: float | None = None
     """The robot is set down at some start so often; 0: never; None: as the task says."""
     rescue_after_s: float | None = None

@@ -69,16 +69,23 @@ class UnknownIsBad:
 
 
 class BlamedByChance:
-    """Blames whatever drives, now and then: what a teacher does to whom it does not matter what he sees."""
+    """Blames whatever drives, so many times: what a teacher does to whom it does not matter what he sees."""
 
-    def __init__(self, every: int, seed: int) -> None:
-        """`every`: ticks from one blame to the next, on the mean."""
-        self._every = every
-        self._chance = random.Random(f"blame by chance, seed {seed}")
+    def __init__(self, times: int, ticks: int, gap: int, seed: int) -> None:
+        """`times` in so many ticks, spread by chance; a blame waits until an RLA drives, and for `gap` ticks."""
+        chance = random.Random(f"blame by chance, seed {seed}")
+        self._due = deque(sorted(chance.randrange(1, max(ticks, 1) + 1) for _ in range(times)))
+        self._gap = gap
+        self._next_tick = 0
 
     def look(self, record: TickRecord) -> tuple[int, int] | None:
         """Of this tick."""
-        return (-1, record.tick) if self._chance.random() * self._every < 1.0 and record.decision.driving else None
+        due = bool(self._due) and self._due[0] <= record.tick >= self._next_tick
+        if not due or not record.decision.driving or record.decision.rla_id is None:
+            return None
+        self._due.popleft()
+        self._next_tick = record.tick + self._gap
+        return -1, record.tick
 
 
 class _Said(NamedTuple):

@@ -81,9 +81,9 @@ def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_el
 
 def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp_path: Path) -> None:
     blind = taught.task.model_copy(update={"judge": None})
-    plan = of_phase(Phase.REINFORCEMENT, signs="chance", times=SignalTimes(bad_every_s=2.0))
+    plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=4)
     result, _ = go_on(taught, tmp_path, plan, blind)
-    assert result.blame > 0
+    assert result.blame == 4
     assert result.praise == 0
     with pytest.raises(SettingsError, match="there is no judge, so nobody can praise or blame; add `judge:`"):
         go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)

@@ -153,14 +153,27 @@ def test_where_only_the_unknown_is_bad_what_led_there_is_blamed_once() -> None:
     assert signals(said(person, seen)) == [(13, -1, 2)]
 
 
-def test_blame_by_chance_is_the_same_for_the_same_seed_and_as_often_as_was_said() -> None:
+def test_blame_by_chance_is_the_same_for_the_same_seed_and_exactly_as_often_as_was_said() -> None:
     def told(seed: int) -> list[tuple[int, int, int | None]]:
-        person = appraiser(Phase.REINFORCEMENT, BlamedByChance(100, seed), replace(HABITS, every={-1: 1, 0: 1, 1: 1}))
-        return signals(said(person, [record(tick, GOOD) for tick in range(1, 5001)]))
+        person = appraiser(Phase.REINFORCEMENT, BlamedByChance(50, 5000, 20, seed))
+        return signals(said(person, [record(tick, GOOD) for tick in range(1, 5111)]))
 
     assert told(1) == told(1) != told(2)
     assert {value for _, value, _ in told(1)} == {-1}
-    assert 30 < len(told(1)) < 70
+    assert len(told(1)) == len(told(2)) == 50
+    meant = [about or 0 for _, _, about in told(1)]
+    assert min(later - earlier for earlier, later in pairwise(meant)) >= 20
+    assert [sum(begins < tick <= begins + 2500 for tick in meant) > 10 for begins in (0, 2500)] == [True, True]
+
+
+def test_blame_by_chance_that_finds_nobody_driving_waits() -> None:
+    person = appraiser(Phase.REINFORCEMENT, BlamedByChance(3, 100, 20, 1))
+    stands = [record(tick, GOOD, Cause.STOPPED) for tick in range(1, 101)]
+    assert signals(said(person, [*stands, *(record(tick, GOOD) for tick in range(101, 200))])) == [
+        (111, -1, 101),
+        (131, -1, 121),
+        (151, -1, 141),
+    ]
 
 
 def test_in_phases_1_and_2_he_is_the_teacher_that_he_was() -> None:

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.examining import Examiner
 from kurt2rt.experiments.phases.folding import folded
@@ -127,6 +128,8 @@ class StepJob:
     """The job of the step that it goes on from."""
     first: TaughtJob
     """Holds the teacher's own drives."""
+    alike: "TaughtJob | StepJob | None"
+    """The job whose robot was blamed as often as this one shall be by chance."""
     made_of: MadeOf
 
     @property
@@ -167,8 +170,8 @@ class StepJob:
             shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
             self._prepare(knowledge)
             before = len(read_lessons(knowledge, robot.settings, robot.task))
-            teaching = None
-            if step.plan is not None:
+            teaching, plan = None, self.plan()
+            if plan is not None:
                 lesson, events = await run_lesson(
                     robot.stage,
                     robot.settings,
@@ -176,7 +179,7 @@ class StepJob:
                     knowledge,
                     seed=robot.seed,
                     report=time.report,
-                    plan=step.plan,
+                    plan=plan,
                 )
                 teaching = told(lesson, events[before:])
                 if step.aside:
@@ -193,6 +196,18 @@ class StepJob:
             results.keep(knowledge, robot.knowledge_of(step.name))
         stage = _stage(step.name, system, teaching, exams)
         results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=(stage,)))
+
+    def plan(self) -> LessonPlan | None:
+        """What is taught; who blames by chance does so as often as this robot was blamed with good reason.
+
+        Raises StudyError where that is not done yet.
+        """
+        plan = self.of.plan
+        if plan is None or self.alike is None:
+            return plan
+        (stage,) = self.robot.results.read(self.alike, JobOutcome).stages
+        assert stage.teaching is not None
+        return replace(plan, blame_by_chance=stage.teaching.blame)
 
     def _prepare(self, knowledge: Path) -> None:
         """Wrong actions and the critic of phase 4, where the step begins with them."""

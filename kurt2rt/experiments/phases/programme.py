@@ -80,7 +80,9 @@ def plan(
         waves[0].append(first)
         jobs: dict[str, Job] = {PHASE_2: first}
         for step in steps:
-            jobs[step.name] = job = StepJob(of, step, jobs[step.after], first, made[step.name])
+            jobs[step.name] = job = StepJob(
+                of, step, jobs[step.after], first, jobs.get(step.blames_like), made[step.name]
+            )
             waves[_depth(step, by_name)].append(job)
     return Programme(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
 

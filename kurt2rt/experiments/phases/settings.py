@@ -21,8 +21,6 @@ class SignalsSettings(Settings):
     good_every_s: Annotated[float, Field(gt=0, le=1000)] = 2.0
     patience_s: Annotated[float, Field(ge=0, le=10)] = 0.2
     """He blames what has been bad for so long without a break."""
-    by_chance_every_s: Annotated[float, Field(gt=0, le=100_000)] = 60.0
-    """The control that blames by chance does so so often."""
     most_blame: Annotated[int, Field(ge=0, le=100_000)] = 100
     """He blames no more often than this; 0: as often as he likes."""
 

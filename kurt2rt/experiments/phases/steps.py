@@ -57,13 +57,16 @@ class Step:
     """Of its exams."""
     mistakes: str = "repair"
     """What the wrong actions are for: another purpose has others."""
+    blames_like: str = ""
+    """The step in which this robot was blamed as often as it shall be by chance; empty where nobody goes by chance."""
     aside: bool = False
     """Whether only the critic is kept of what was taught, and all else, exams too, is as it was before the step."""
 
     @property
     def needs(self) -> tuple[str, ...]:
         """Steps that have to be done before it."""
-        return (self.after,) if self.critic == "own" else (self.after, PHASE_4)
+        critic = () if self.critic == "own" else (PHASE_4,)
+        return (self.after, *critic, *([self.blames_like] if self.blames_like else []))
 
 
 def phases_of(task: TaskSettings) -> PhasesSettings:
@@ -83,7 +86,6 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     of_rewards = SignalTimes(
         signals.bad_every_s, signals.good_every_s, patience_s=signals.patience_s, most_blame=signals.most_blame
     )
-    by_chance = SignalTimes(signals.by_chance_every_s)
     moved = phases.reposition_every_s
     of_appraisals = SignalTimes(
         appraisals.bad_every_s, appraisals.good_every_s, appraisals.neutral_every_s, gap_s=appraisals.gap_s
@@ -126,7 +128,7 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
     by_itself = alone(alone_s, "repair")
     asks = taught(Phase.SUPERVISED, repair_s, "repair", reposition_every_s=moved)
-    chance = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="chance", times=by_chance, reposition_every_s=moved)
+    chance = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="chance", times=of_rewards, reposition_every_s=moved)
     unknown = taught(
         Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards, reposition_every_s=moved
     )
@@ -134,8 +136,8 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     yield Step(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
     yield Step(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
     yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
-    yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds)
     yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
+    yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds, blames_like=REWARDS)
     yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
     yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
     yield Step(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)

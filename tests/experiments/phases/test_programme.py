@@ -4,10 +4,13 @@ from pathlib import Path
 
 from kurt2rt.experiments.kept.made_of import sources
 from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.phases.job import StepJob
+from kurt2rt.experiments.phases.outcome import JobOutcome
 from kurt2rt.experiments.phases.programme import OWN, Programme, plan
-from kurt2rt.experiments.phases.steps import CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
+from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.phases.outcomes import stage, teaching
 
 TASK = load_task("wall_following")
 
@@ -33,6 +36,18 @@ def test_jobs_come_in_waves_of_which_each_needs_only_those_before() -> None:
 def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
     jobs = planned().jobs
     assert len({job.file for job in jobs}) == len(jobs) == 2 * 13
+
+
+def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    jobs = {(job.step, job.file): job for job in plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
+    by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
+    for job, seed, blame in zip(by_step[REWARDS], (100, 101), (37, 5), strict=True):
+        (tmp_path / job.file).parent.mkdir(parents=True, exist_ok=True)
+        stages = (stage(REWARDS, taught=teaching(blame=blame)),)
+        results.write(job, JobOutcome(made_of=job.made_of, seed=seed, stages=stages))
+    told = [job.plan() for job in by_step[BLAME_BY_CHANCE] if isinstance(job, StepJob)]
+    assert [each.blame_by_chance for each in told if each] == [37, 5]
 
 
 def test_another_time_of_one_step_makes_only_what_follows_from_it_anew() -> None:

@@ -55,6 +55,15 @@ def test_a_critic_is_taken_from_this_robot_s_phase_4() -> None:
     assert all(PHASE_4 in STEPS[name].needs for name in (CRITIC_ALONE, SHUFFLED, INTACT))
 
 
+def test_blame_by_chance_waits_for_what_it_is_to_be_as_often_as() -> None:
+    chance, rewards = STEPS[BLAME_BY_CHANCE], STEPS[REWARDS]
+    assert chance.needs == (PHASE_2, REWARDS)
+    assert chance.plan is not None
+    assert rewards.plan is not None
+    assert chance.plan.times == rewards.plan.times  # the most that he may blame, too
+    assert chance.plan.signs == "chance"
+
+
 def test_nobody_teaches_where_the_robot_is_alone() -> None:
     for name in (PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT, LONG_RUN):
         plan = STEPS[name].plan
