@@ -52,6 +52,10 @@ class AskedOfPhases(Settings):
     collisions_fall_by: Annotated[float, Field(ge=0, le=1)] = 0.0
     """By the critic alone, of those of the corrupted sets; 0: not asked for."""
     intact_not_worse: bool = False
+    """By phase 5: no robot that was clean collides or fails after it, and no measure of driving is worse by the margin,
+    as sure as 95 % of the bootstrapped means."""
+    not_worse_margin: Annotated[float, Field(ge=0, le=1)] = 0.02
+    """As a share of the mean before."""
     interventions_below_per_hour: Annotated[float, Field(ge=0, le=1000)] = 0.0
     """In the long run after phase 5; 0: not asked for."""
 

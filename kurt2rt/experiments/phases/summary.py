@@ -1,5 +1,6 @@
 """What the robots come to together at one stage."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -82,11 +83,13 @@ class Measure:
     of: Callable[[ExamOutcome], float | None]
     better: int
     """+1: more is better, -1: less is."""
+    clean: float | None = None
+    """The value of an exam without fault, where such are counted; None where they are measured."""
 
 
 MEASURES = (
-    Measure("success", lambda exam: float(exam.succeeded), +1),
-    Measure("collisions in 10 min", lambda exam: exam.collisions * TEN_MIN_S / exam.duration_s, -1),
+    Measure("success", lambda exam: float(exam.succeeded), +1, clean=1.0),
+    Measure("collisions in 10 min", lambda exam: exam.collisions * TEN_MIN_S / exam.duration_s, -1, clean=0.0),
     Measure("progress", lambda exam: exam.progress, +1),
     Measure(DISTANCE_ERROR, lambda exam: exam.findings.get(DISTANCE_ERROR), -1),
     Measure("action changes per s", lambda exam: exam.action_changes_per_s, -1),
@@ -106,6 +109,18 @@ class Paired:
     better: int
     """Robots."""
     worse: int
+    no_longer_clean: int
+    """Robots that were clean before and are not after; 0 of what is measured."""
+
+    @property
+    def worst_change(self) -> float:
+        """The bad end of the interval, as a share of the mean before; above 0: worse."""
+        worst = -self.difference.low if self.measure.better > 0 else self.difference.high
+        return worst / abs(self.before) if self.before else math.copysign(math.inf, worst) if worst else 0.0
+
+    def not_worse(self, margin: float) -> bool:
+        """Whether no robot lost what is counted, or what is measured is surely not worse by this share of before."""
+        return not self.no_longer_clean if self.measure.clean is not None else self.worst_change <= margin
 
     @property
     def surely_worse(self) -> bool:
@@ -141,6 +156,7 @@ def _paired(world: str, measure: Measure, values: Sequence[tuple[float, float]])
         difference=difference_of(changes),
         better=sum(change * measure.better > 0 for change in changes),
         worse=sum(change * measure.better < 0 for change in changes),
+        no_longer_clean=sum(one == measure.clean != other for one, other in values),
     )
 
 

@@ -37,7 +37,8 @@ SUCCESS = (
 _PHASE_4 = "Phase 4 teaches the critic alone: what the robot drives by, and so its exams, are those of phase 3."
 _PAIRED = (
     "The same robots from the same starts. Means, and the mean change with its 95 % interval, bootstrapped over the "
-    "robots; where hardly anything happens it is too narrow. Better, worse: robots."
+    "robots; where hardly anything happens it is too narrow. Better, worse, no longer clean: robots; what "
+    "is not surely worse may be worse all the same."
 )
 
 
@@ -244,10 +245,11 @@ def paired_sheet(title: str, pairs: Sequence[Paired], note: str) -> Sheet:
                 f"{change.low:+.3f} to {change.high:+.3f}",
                 f"{each.better}",
                 f"{each.worse}",
+                "" if each.measure.clean is None else f"{each.no_longer_clean}",
                 sure,
             )
         )
-    columns = ("world", "measure", "before", "after", "change", "95 %", "better", "worse", "surely")
+    columns = ("world", "measure", "before", "after", "change", "95 %", "better", "worse", "no longer clean", "surely")
     return Sheet(title, columns, tuple(rows), words=2, note=note)
 
 

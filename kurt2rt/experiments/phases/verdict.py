@@ -7,7 +7,7 @@ from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
 from kurt2rt.experiments.phases.settings import AskedShare
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS, phases_of
 from kurt2rt.experiments.phases.study import Study
-from kurt2rt.experiments.phases.summary import collisions_of, paired, worlds_of
+from kurt2rt.experiments.phases.summary import Paired, collisions_of, paired, worlds_of
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.shown.intervals import Rate, rate_of
 from kurt2rt.experiments.shown.verdict import Verdict
@@ -36,9 +36,8 @@ def verdicts(study: Study) -> Iterator[Verdict]:
             fall >= asked.collisions_fall_by,
         )
     if asked.intact_not_worse:
-        worse = [each for each in paired(study.stages[PHASE_2], study.stages[INTACT]) if each.surely_worse]
-        came = "; ".join(f"{each.measure.name} in {label_of(each.world)}" for each in worse) or "nothing surely worse"
-        yield Verdict("an intact set in phase 5", "not worse", came, not worse)
+        for each in paired(study.stages[PHASE_2], study.stages[INTACT]):
+            yield _not_worse(each, asked.not_worse_margin)
     if asked.interventions_below_per_hour:
         rate, limit_h = interventions(study), asked.interventions_below_per_hour
         yield Verdict(
@@ -67,6 +66,18 @@ def _repaired(what: str, stages: tuple[StageOutcome, ...], asked: tuple[AskedSha
                 f"{world.succeeded} of {world.robots}",
                 world.succeeded >= needed,
             )
+
+
+def _not_worse(pair: Paired, margin: float) -> Verdict:
+    what = f"an intact set in phase 5, {label_of(pair.world)}: {pair.measure.name}"
+    came = f"{pair.before:.3f} -> {pair.after:.3f}"
+    if pair.measure.clean is None:
+        asked = f"worse by at most {margin:.0%}, at the bad end of 95 %"
+        came += f", at worst {abs(pair.worst_change):.1%} {'worse' if pair.worst_change > 0 else 'better'}"
+    else:
+        asked = "no robot that was clean is not after"
+        came += f"; robots no longer clean: {pair.no_longer_clean}"
+    return Verdict(what, asked, came, pair.not_worse(margin))
 
 
 def _exams(stages: tuple[StageOutcome, ...]) -> list[ExamOutcome]:

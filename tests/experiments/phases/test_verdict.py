@@ -2,6 +2,7 @@
 
 import pytest
 
+from kurt2rt.experiments.phases.outcome import ExamOutcome
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS
 from kurt2rt.experiments.phases.verdict import interventions, verdicts
 from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
@@ -42,14 +43,39 @@ def test_collisions_fall_by_those_that_are_no_more(left: int, word: str) -> None
     assert told == (f"by {1 - left / 20:.0%}, 2.00 to {left / 10:.2f} in 10 min", word)
 
 
-def test_an_intact_set_is_worse_where_the_interval_says_so() -> None:
+INTACT_IN_A = "an intact set in phase 5, A: "
+
+
+def intact(*after: ExamOutcome) -> dict[str, tuple[str, str]]:
+    """The verdicts on 20 robots that were clean and alike before."""
     before = [stage(PHASE_2, taught=teaching()) for _ in range(20)]
-    same = [stage(INTACT, taught=teaching()) for _ in range(20)]
-    told = words(phase_2=before, intact_autonomous=same)
-    assert told["an intact set in phase 5"] == ("nothing surely worse", "met")
-    slower = [stage(INTACT, exam(progress=7.0 + 0.01 * n), taught=teaching()) for n in range(20)]
-    told = words(phase_2=before, intact_autonomous=slower)
-    assert told["an intact set in phase 5"] == ("progress in A", "MISSED")
+    robots = [stage(INTACT, each, taught=teaching()) for each in after]
+    told = words(phase_2=before, intact_autonomous=robots)
+    return {what.removeprefix(INTACT_IN_A): came for what, came in told.items() if what.startswith(INTACT_IN_A)}
+
+
+def test_an_intact_set_that_stays_as_it_is_is_not_worse_by_any_measure() -> None:
+    told = intact(*[exam()] * 20)
+    assert told["success"] == ("1.000 -> 1.000; robots no longer clean: 0", "met")
+    assert told["progress"] == ("8.000 -> 8.000, at worst 0.0% better", "met")
+    assert {word for _, word in told.values()} == {"met"}
+    assert len(told) == 5
+
+
+def test_one_robot_that_is_clean_no_more_is_worse_however_many_are() -> None:
+    told = intact(exam(succeeded=False, collisions=1), *[exam()] * 19)
+    assert told["success"] == ("1.000 -> 0.950; robots no longer clean: 1", "MISSED")
+    assert told["collisions in 10 min"] == ("0.000 -> 0.100; robots no longer clean: 1", "MISSED")
+    assert told["progress"][1] == "met"
+
+
+def test_what_is_measured_may_be_worse_by_the_margin_at_the_bad_end_of_its_interval() -> None:
+    assert intact(*[exam(progress=7.85)] * 20)["progress"] == ("8.000 -> 7.850, at worst 1.9% worse", "met")
+    assert intact(*[exam(progress=7.83)] * 20)["progress"] == ("8.000 -> 7.830, at worst 2.1% worse", "MISSED")
+    # On the mean it is better; what it may be is not known well enough.
+    unsure = intact(*(exam(progress=8.1 + (n % 2 - 0.5) * 4) for n in range(20)))
+    assert unsure["progress"][0].startswith("8.000 -> 8.100, at worst ")
+    assert unsure["progress"][1] == "MISSED"
 
 
 def test_whoever_has_to_come_is_an_intervention() -> None:
