@@ -83,7 +83,7 @@ class Telling:
             session=school.session,
             clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
             guard=record.grant.reasons,
-            trouble=self._safekeeping.trouble() or self._bus_trouble(),
+            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.trouble,
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),

@@ -32,6 +32,9 @@ from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.refused import RefusedError, refuse
 from kurt2rt.teaching.tuition import Tuition, require_action
 
+DERIVED = "/"
+"""In the ids of what comes of a signal; a teacher's id with it might be one that the robot gives later."""
+
 _Answer = tuple[CommandResult, TeachingEvent | None]
 
 
@@ -82,6 +85,9 @@ class School:
         """What the teacher had seen when he said what is wanted now."""
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
+        self.trouble = ""
+        """What the robot wanted to learn by itself and could not, in one line; empty while there is nothing."""
+        self._skipped = 0
         self.session: str | None = None
         """Name of the session that is on."""
         self._session_from = 0
@@ -158,6 +164,9 @@ class School:
         stops_again = isinstance(command, Stop) and command.hold is None
         if self.has_taken(command.command_id) and not stops_again:
             return CommandResult(command.command_id, True, "had been taken already; counted once"), None
+        if DERIVED in command.command_id and not isinstance(command, Stop):
+            why = f"the id {command.command_id!r} has a {DERIVED}, which only ids of the robot's own have; leave it out"
+            return CommandResult(command.command_id, False, why), None
         nobody_taught = self.authority.teacher is None
         try:
             text, event = self._carry_out(command, situation, tick)
@@ -193,13 +202,21 @@ class School:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []
         for lesson in reinforcement.repairs(tick, self.phase):
-            self._apply(lesson)
-            events.append(lesson)
+            self._take_in(lesson, events)
         if alone is not None:
             for undone in alone.roll_back(tick, decision, opinion):
-                self._apply(undone)
-                events.append(undone)
+                self._take_in(undone, events)
         return events
+
+    def _take_in(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
+        """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
+        try:
+            self._apply(event)
+        except UnfitEventError as error:
+            self._skipped += 1
+            self.trouble = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
+        else:
+            events.append(event)
 
     def _apply(self, event: TeachingEvent) -> None:
         """Change the knowledge, and tell all that follow it. Raises UnfitEventError, and then nothing has changed."""

@@ -157,6 +157,11 @@ def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> N
     assert picture(desk).trouble == "the disk is full"
 
 
+def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
+    desk.runtime.school.trouble = "1 change was skipped"
+    assert picture(desk).trouble == "1 change was skipped"
+
+
 def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
     desk.robot.infrared_age_s = math.inf
     desk.robot.bumpers = 5

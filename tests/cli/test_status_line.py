@@ -58,6 +58,12 @@ def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> No
     )
 
 
+def test_what_the_robot_could_not_learn_is_told() -> None:
+    desk = Desk()
+    desk.runtime.school.trouble = "1 change was skipped"
+    assert status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
+
+
 def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: Status) -> None:
     assert status_line(status, PASSIVE).endswith(" | bus can0: error-passive, 130 errors")
 

@@ -42,6 +42,7 @@ from kurt2rt.teaching.commands import (
 )
 from kurt2rt.teaching.school import School
 from tests.layers.helpers import RADIUS, SmallLevel, situation
+from tests.reinforcement.helpers import Track
 from tests.rla.helpers import created
 from tests.teaching.helpers import correct, delete, pursue, replace_action, resume, set_phase, stop, teach
 
@@ -693,3 +694,28 @@ def test_the_critic_drives_nothing_by_hand_but_whoever_says_stop_is_heard() -> N
     lesson = Lesson()
     assert lesson.drive("critic") == "critic is the name of the robot's own critic; teach under another one"
     assert lesson.say(Stop("s", "critic")).accepted
+
+
+def test_a_change_of_the_robots_own_that_does_not_fit_is_skipped_and_told_and_the_robot_drives_on() -> None:
+    taken = Origin("signal-3/withdraw-1", "Ann", Phase.SUPERVISED, 1)  # an earlier kurt2rt took such ids
+    first = RlaCreated(Rla(1, (0.0,), "a", None, taken))
+    robot = Track(first, created(2, (50.0,), "b"), phase=Phase.REINFORCEMENT)
+    for _ in range(3):
+        robot.go(0.0, 200)
+        robot.signal(-1)
+    assert robot.school.trouble == ""
+    assert robot.go(0.0).driving
+    assert robot.learnt == []
+    assert robot.school.trouble == (
+        "changes that did not fit the knowledge were skipped: 1, the last: "
+        "command 'signal-3/withdraw-1' has taught a lesson already"
+    )
+    assert robot.go(0.0).action == "a"
+
+
+def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
+    lesson = Lesson()
+    result = lesson.say(teach("a", "t/withdraw-1"))
+    assert (result.accepted, lesson.actions) == (False, {})
+    assert result.text == "the id 't/withdraw-1' has a /, which only ids of the robot's own have; leave it out"
+    assert lesson.say(Stop("s/1", "Ann")).accepted
