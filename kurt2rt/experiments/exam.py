@@ -2,7 +2,7 @@
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from behaviors.repertoire import load_repertoire
 from hal.robot_settings import RobotSettings
@@ -15,7 +15,7 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import Rla, TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import SuccessSettings, TaskSettings
 from kurt2rt.teaching.commands import Pursue
@@ -95,12 +95,15 @@ async def examine(
     on_progress: Callable[[float], None],
     by_teacher: bool = False,
     saved: Statistics | None = None,
+    alone: Statistics | None = None,
     stuck_ends: bool = True,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
 
-    `saved`: what rewards had made of that. `stuck_ends`: else a robot that is stuck is set down at the nearest start
-    pose and goes on, so that collisions are those of the whole time; it has got stuck all the same.
+    `saved`: what rewards had made of that. `alone`: what phase 5 held RLAs to be worth, where the exam follows it: of
+    several on the very same condition the best by this one answers, as it would there.
+    `stuck_ends`: else a robot that is stuck is set down at the nearest start pose and goes on, so that collisions are
+    those of the whole time; it has got stuck all the same.
     Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
     names an action which the repertoire lacks.
     """
@@ -127,6 +130,8 @@ async def examine(
         saved=saved,
         asked=False,
     )
+    if alone is not None:
+        runtime.reinforcement.rule.restore(_worths_in_phase_5(alone, runtime.level.system.rlas, task))
     # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")
     drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
@@ -200,3 +205,9 @@ async def examine(
         findings=drive.course.findings,
         collision_positions=tuple(collision_positions),
     )
+
+
+def _worths_in_phase_5(alone: Statistics, rlas: Sequence[Rla], task: TaskSettings) -> Statistics:
+    """Of every RLA: those that phase 5 has said nothing of are worth there what they began with."""
+    began_with = task.reinforcement.alone.first_value
+    return replace(alone, values={rla.rla_id: alone.values.get(rla.rla_id, began_with) for rla in rlas})

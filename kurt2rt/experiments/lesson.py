@@ -79,6 +79,8 @@ class LessonResult:
     """Share of ticks in which the critic was trusted."""
     saved: Statistics = field(default_factory=Statistics, compare=False, repr=False)
     """All that was counted and valued, as it is saved."""
+    alone: Statistics | None = field(default=None, compare=False, repr=False)
+    """What phase 5 held RLAs to be worth at its end; None where the lesson ended in another phase."""
 
 
 async def teach(
@@ -211,6 +213,7 @@ async def teach(
         agreement=tuple(agreement),
         share_trusted=trusted / max(ticks, 1),
         saved=runtime.to_save(),
+        alone=runtime.reinforcement.worths_alone() if teacher.phase is Phase.AUTONOMOUS else None,
     )
 
 

@@ -1,5 +1,6 @@
 """Lessons of phases 3 to 5, and exams that go on where a robot is stuck, on the simulated robot."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -11,6 +12,7 @@ from kurt2rt.experiments.exam import examine
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.experiments.lesson_plan import LessonPlan, SignalTimes, plan_of
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import CRITIC, Appraised, Phase, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
@@ -97,6 +99,49 @@ def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path:
     (one, events), (two, again) = (go_on(taught, folder, plan) for folder in folders)
     assert events == again
     assert (one.knowledge_hash, one.saved, one.trail, one.load) == (two.knowledge_hash, two.saved, two.trail, two.load)
+
+
+def rival(action: str) -> RlaCreated:
+    """Another RLA on the condition of `knows_only`."""
+    first = knows_only("stand").rla
+    return RlaCreated(replace(first, rla_id=2, action=action, origin=replace(first.origin, command_id="rival")))
+
+
+@pytest.mark.parametrize(
+    ("alone", "drives"),
+    [
+        (None, False),  # of equals the oldest
+        (Statistics(), False),
+        (Statistics(values={1: -0.3}), True),  # of the other one phase 5 had nothing to say yet
+        (Statistics(values={1: 0.4, 2: 0.6}), True),
+        (Statistics(values={2: 0.4}), False),
+    ],
+)
+def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
+    alone: Statistics | None, drives: bool
+) -> None:
+    task = short_task(exam_s=3.0, radius=1e5)
+
+    async def drive() -> float:
+        arena = STAGE.open("a", 1, "exam")
+        events = [knows_only("stand"), rival("forward")]
+        # What a teacher had said of them does not count there.
+        saved = Statistics(values={2: -0.05})
+        try:
+            exam = await examine(
+                arena, ROBOT, task, "a", events, seed=1, on_progress=lambda _: None, saved=saved, alone=alone
+            )
+        finally:
+            arena.close()
+        return exam.way_m
+
+    assert (anyio.run(drive) > 0.3) is drives
+
+
+def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
+    assert taught.result.alone is None
+    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS))
+    assert result.alone == Statistics()  # nobody was trusted
 
 
 @pytest.mark.parametrize("stuck_ends", [True, False])

@@ -25,7 +25,7 @@ class Examiner:
 
     async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
         """Drives of the teacher's own policy."""
-        drives = [await self._drive(world, (), None, by_teacher=True) for world in worlds]
+        drives = [await self._drive(world, (), None, None, by_teacher=True) for world in worlds]
         return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
 
     async def robots(
@@ -34,17 +34,27 @@ class Examiner:
         saved: Statistics | None,
         worlds: Sequence[str],
         teachers: Sequence[ExamOutcome],
+        alone: Statistics | None = None,
     ) -> tuple[ExamOutcome, ...]:
-        """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds."""
+        """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds.
+
+        `saved`, `alone`: what rewards had made of it, and phase 5.
+        """
         progress = {each.world: each.progress for each in teachers}
         outcomes = []
         for world in worlds:
-            drive = await self._drive(world, events, saved, by_teacher=False)
+            drive = await self._drive(world, events, saved, alone, by_teacher=False)
             outcomes.append(_outcome(drive, succeeded=drive.succeeded(progress[world], self.task.exam.success)))
         return tuple(outcomes)
 
     async def _drive(
-        self, world: str, events: Sequence[TeachingEvent], saved: Statistics | None, *, by_teacher: bool
+        self,
+        world: str,
+        events: Sequence[TeachingEvent],
+        saved: Statistics | None,
+        alone: Statistics | None,
+        *,
+        by_teacher: bool,
     ) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
         arena = self.stage.open(world, self.seed, "exam")
@@ -59,6 +69,7 @@ class Examiner:
                 on_progress=lambda done_s: self.report(f"{who}, world {world}", done_s, self.task.exam.duration_s),
                 by_teacher=by_teacher,
                 saved=saved,
+                alone=alone,
                 # A robot that knows nothing only stands, and that is soon seen.
                 stuck_ends=not events and not by_teacher,
             )

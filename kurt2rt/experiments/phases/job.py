@@ -170,7 +170,7 @@ class StepJob:
             shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
             self._prepare(knowledge)
             before = len(read_lessons(knowledge, robot.settings, robot.task))
-            teaching, plan = None, self.plan()
+            teaching, alone, plan = None, None, self.plan()
             if plan is not None:
                 lesson, events = await run_lesson(
                     robot.stage,
@@ -181,7 +181,7 @@ class StepJob:
                     report=time.report,
                     plan=plan,
                 )
-                teaching = told(lesson, events[before:])
+                teaching, alone = told(lesson, events[before:]), lesson.alone
                 if step.aside:
                     shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
                     self._add(knowledge, list(critics_lessons(events[before:])))
@@ -192,7 +192,7 @@ class StepJob:
                 exams = results.read(self.before, JobOutcome).stages[-1].exams
             else:
                 teachers = results.read(self.first, JobOutcome).teachers
-                exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers)
+                exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers, alone)
             results.keep(knowledge, robot.knowledge_of(step.name))
         stage = _stage(step.name, system, teaching, exams)
         results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=(stage,)))
