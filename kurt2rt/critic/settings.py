@@ -113,6 +113,11 @@ class AgreementSettings(Settings):
     """The last signals of each value that count."""
     least: Annotated[int, Field(ge=1, le=10_000)]
     """Of these so many must have been heard."""
+    apart_s: Annotated[float, Field(ge=0, le=1000)]
+    """An appraisal RLA that agrees counts only where it was neither taught nor counted for so long.
+
+    Else what was just taught would be measured, or one place many times.
+    """
 
     @model_validator(mode="after")
     def _window_holds_the_least(self) -> Self:
@@ -178,6 +183,11 @@ class CriticSettings(Settings):
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def load_critic(name_or_path: str = "basic") -> CriticSettings:
-    """Settings of a shipped critic by name, or of a file by path. Raises hal.settings.SettingsError."""
+def load_critic(name_or_path: str | CriticSettings = "basic") -> CriticSettings:
+    """Settings of a shipped critic by name, or of a file by path; settings are taken as they are.
+
+    Raises hal.settings.SettingsError.
+    """
+    if isinstance(name_or_path, CriticSettings):
+        return name_or_path
     return load_settings(Path(find_config("critics", name_or_path)), CriticSettings)

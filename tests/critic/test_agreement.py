@@ -22,7 +22,7 @@ NAMES = {-1: "bad", 0: "neutral", 1: "good"}
 
 
 def agreement(bound: float = 0.8, window: int = 5, least: int = 2) -> Agreement:
-    return Agreement(AgreementSettings(bound=bound, window=window, least=least), SETTINGS.values)
+    return Agreement(AgreementSettings(bound=bound, window=window, least=least, apart_s=0.0), SETTINGS.values)
 
 
 def rewarded(value: int, said: int | None, said_by: Origin | None = None) -> RlaRewarded:

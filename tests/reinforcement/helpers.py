@@ -40,7 +40,7 @@ QUICK = SETTINGS.model_copy(
     update={
         "think_every_ticks": 1,
         "patience_s": 0.0,
-        "agreement": AgreementSettings(bound=0.8, window=5, least=2),
+        "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=5.0),
         "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
         "best": BestSettings(window_s=1.0, margin=0.1),
     }
