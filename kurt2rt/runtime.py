@@ -52,8 +52,9 @@ class Runtime:
     scheduler: Scheduler
 
     def to_save(self) -> Statistics:
-        """What was counted, and what the RLAs are worth, as it is now."""
-        counted = self.statistics
+        """What was counted of the RLAs that live, and what they are worth, as it is now."""
+        counted, system = self.statistics, self.level.system
+        counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
         return replace(self.reinforcement.to_save(), uses=dict(counted.uses), transitions=dict(counted.transitions))
 
 

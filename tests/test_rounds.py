@@ -11,7 +11,7 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
-from kurt2rt.rla.rla import RlaDeleted
+from kurt2rt.rla.rla import RlaCreated, RlaDeleted
 from kurt2rt.rounds import Rounds, Screen, Status
 from kurt2rt.runtime import build_runtime
 from kurt2rt.service_settings import load_service
@@ -20,7 +20,7 @@ from kurt2rt.teaching.question import Question
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
-from tests.rla.helpers import origin
+from tests.rla.helpers import created, origin
 from tests.test_tick import Notebook
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
@@ -116,7 +116,16 @@ def test_a_status_comes_once_per_period(shift: Shift) -> None:
     assert (shift.rounds.last.unsaved_lessons, shift.rounds.last.trouble) == (0, None)
 
 
+def knows(shift: Shift, rla_id: int) -> RlaCreated:
+    """One RLA, far from where the robot is."""
+    runtime = shift.desk.runtime
+    event = created(rla_id, (1e6,) * runtime.level.system.dimensions)
+    runtime.school._apply(event)
+    return event
+
+
 def test_counts_are_saved_once_per_checkpoint(shift: Shift) -> None:
+    knows(shift, 7)
     shift.desk.runtime.statistics.uses[7] = 3
     shift.run(CHECKPOINT - 1)
     shift.write()
@@ -131,14 +140,27 @@ def test_counts_are_saved_once_per_checkpoint(shift: Shift) -> None:
 
 
 def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift: Shift) -> None:
+    taught = knows(shift, 7)
     shift.desk.runtime.reinforcement.rule.restore(Statistics(values={7: -0.25}))
     shift.run(CHECKPOINT)
     shift.write()
     with Journal.read_only(shift.path) as journal:
         saved = journal.statistics()
     assert saved.values == {7: -0.25}
-    again = build_runtime(WideRobot(), ROBOT, TASK, (), Notebook(), LockstepClock(lambda: None), saved=saved)
+    again = build_runtime(WideRobot(), ROBOT, TASK, (taught,), Notebook(), LockstepClock(lambda: None), saved=saved)
     assert again.reinforcement.worth(7) == -0.25
+
+
+def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:
+    knows(shift, 7)
+    counted = shift.desk.runtime.statistics
+    counted.uses.update({7: 3, 8: 2})
+    counted.transitions.update({(7, 7): 1, (7, 8): 1, (8, 7): 1})
+    shift.run(CHECKPOINT)
+    shift.write()
+    with Journal.read_only(shift.path) as journal:
+        saved = journal.statistics()
+    assert (saved.uses, saved.transitions) == ({7: 3}, {(7, 7): 1})
 
 
 def test_the_robot_asks_when_it_begins_to_ask_and_not_in_each_tick(shift: Shift) -> None:

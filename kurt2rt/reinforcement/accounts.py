@@ -7,7 +7,10 @@ EarnedT = TypeVar("EarnedT")
 
 
 class Accounts(Generic[EarnedT]):
-    """By RLA id; an RLA that gets another action begins anew, and its former account waits until that is undone."""
+    """By RLA id; an RLA that gets another action begins anew, and its former account waits until that is undone.
+
+    So does the account of one that is deleted; nothing is kept of one that can never come back.
+    """
 
     def __init__(self) -> None:
         self.present: dict[int, EarnedT] = {}
@@ -29,6 +32,11 @@ class Accounts(Generic[EarnedT]):
         self.present.pop(rla_id, None)
         if earned is not None:
             self.present[rla_id] = earned
+
+    def forget(self, rla_id: int) -> None:
+        """The RLA never comes back."""
+        self.present.pop(rla_id, None)
+        self._former.pop(rla_id, None)
 
     def restore(self, saved: Mapping[int, EarnedT], only: Collection[int] | None) -> None:
         """The present accounts as they were saved: of all RLAs, or of some only."""

@@ -54,7 +54,9 @@ class EdgeWeights:
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
         """Shift all edges into an RLA, so that its worth changes by the credit: which edge it was is not kept."""
         for (rla_id, change), depth in bookings:
-            edges = self._accounts.at(rla_id, depth) or {}
+            edges = self._accounts.at(rla_id, depth)
+            if edges is None:
+                continue
             shifted = {before: _bounded(weight - sign * change * FIRST_WEIGHT) for before, weight in edges.items()}
             self._accounts.put(rla_id, depth, shifted)
 
@@ -73,6 +75,16 @@ class EdgeWeights:
     def go_back(self, rla_id: int) -> None:
         """The edges into it as they were."""
         self._accounts.go_back(rla_id)
+
+    def leave(self, rla_id: int) -> None:
+        """The edges into it wait; those out of it are gone, for nothing could ever heal them."""
+        self._accounts.renew(rla_id)
+        self._drop_edges_from(rla_id)
+
+    def forget(self, rla_id: int) -> None:
+        """All its edges are gone."""
+        self._accounts.forget(rla_id)
+        self._drop_edges_from(rla_id)
 
     @property
     def values(self) -> Mapping[int, float]:
@@ -94,6 +106,12 @@ class EdgeWeights:
         for (before, after), weight in saved.edge_weights.items():
             edges_into.setdefault(after, {})[before] = _bounded(weight)
         self._accounts.restore(edges_into, only)
+
+    def _drop_edges_from(self, rla_id: int) -> None:
+        for edges in self._accounts.present.values():
+            edges.pop(rla_id, None)
+        if self._before == rla_id:
+            self._before = None
 
     def _changed(self, value: int, trace: Trace) -> dict[int, _Edges]:
         """Edges into each RLA that the signal means, after it."""

@@ -26,6 +26,7 @@ from kurt2rt.rla.rla import (
     Origin,
     Phase,
     RlaCreated,
+    RlaDeleted,
     RlaRewarded,
     TeachingEvent,
 )
@@ -92,10 +93,11 @@ class Reinforcement:
         if self._is_in(saved):
             included = round(saved.numbers.get(self._include, included))
             self._recall(events[:included])
-            self.rule.restore(saved)
+            self.rule.restore(self._of_the_living(saved))
         self._recall(events[self.rows :])
         self._since.clear()  # ticks of other runs
         self._blames.clear()
+        self._repair.begin_run()
         # An earlier kurt2rt did not say how many rows a table includes: all there are.
         tables = {VALUES_INCLUDE: saved.values, EDGE_WEIGHTS_INCLUDE: saved.edge_weights}
         includes = {name: float(self.rows) for name, table in tables.items() if table}
@@ -128,7 +130,7 @@ class Reinforcement:
     def come_back(self, worths: Statistics, rla_ids: Collection[int]) -> None:
         """In the account of phase 5 these RLAs are worth again what `worths_alone` told of them."""
         if self._alone is not None:
-            self._alone.restore(worths, rla_ids)
+            self._alone.restore(worths, [rla_id for rla_id in rla_ids if self._lives(rla_id)])
             self.choice.forget()
 
     def credits_of(self, value: int, tick: int) -> tuple[Credit, ...]:
@@ -152,10 +154,15 @@ class Reinforcement:
                 for account in self._accounts:
                     account.renew(rla_id)
                 self._since[rla_id] = origin.tick
+            case RlaDeleted(rla_id):
+                for account in self._accounts:
+                    account.leave(rla_id)
+                self._since.pop(rla_id, None)
+                self._repair.gone(rla_id)
             case RlaCreated(rla):
-                self._repair.hear(rla)
+                self._repair.there(rla)
             case LessonUndone(lesson, origin):
-                self._hear_undone(lesson, origin.tick)
+                self._hear_undone(lesson, origin)
 
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
         """Learn from a signal that is no event: one of the critic's, which changes the account of phase 5 only.
@@ -225,13 +232,26 @@ class Reinforcement:
         return origin_of
 
     def _trace(self, tick: int, trace_s: float | None) -> Trace:
+        """Of those that live: what was deleted since has no part in it."""
         seconds = self._settings.trace_s if trace_s is None else trace_s
-        return trace_of(
+        trace = trace_of(
             self.recent,
             tick,
             trace_ticks=seconds / self._period_s,
             most_transitions=len(self._settings.factors),
             since=self._since,
+        )
+        shares = {rla_id: share for rla_id, share in trace.shares.items() if self._lives(rla_id)}
+        return Trace(shares, tuple(each for each in trace.transitions if all(map(self._lives, each))))
+
+    def _lives(self, rla_id: int) -> bool:
+        return self._system.get(rla_id) is not None
+
+    def _of_the_living(self, saved: Statistics) -> Statistics:
+        return replace(
+            saved,
+            values={rla_id: value for rla_id, value in saved.values.items() if self._lives(rla_id)},
+            edge_weights={edge: weight for edge, weight in saved.edge_weights.items() if all(map(self._lives, edge))},
         )
 
     def _blame(self, value: int, trace: Trace, signal: str, teacher: str) -> None:
@@ -241,7 +261,7 @@ class Reinforcement:
             blamed = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
             self._blames.append(_Blame(blamed, signal, teacher))
 
-    def _hear_undone(self, lesson: str, tick: int) -> None:
+    def _hear_undone(self, lesson: str, origin: Origin) -> None:
         record = self._system.lesson(lesson)
         assert record is not None
         match record.event:
@@ -253,9 +273,18 @@ class Reinforcement:
             case ActionReplaced(rla_id):
                 for account in self._accounts:
                     account.go_back(rla_id)
-                self._since[rla_id] = tick
+                self._since[rla_id] = origin.tick
+            case RlaDeleted(rla_id):
+                for account in self._accounts:
+                    account.go_back(rla_id)
+                rla = self._system.get(rla_id)
+                assert rla is not None
+                self._repair.there(rla)
             case RlaCreated(rla):
-                self._repair.hear(rla, undone=True)
+                for account in self._accounts:
+                    account.forget(rla.rla_id)
+                self._since.pop(rla.rla_id, None)
+                self._repair.undone(rla, rolled_back=origin.teacher == CRITIC)
 
 
 def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[Booking, ...]:

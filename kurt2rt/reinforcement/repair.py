@@ -31,7 +31,11 @@ class Repair:
         self._settings = settings
         self._worths: WorthSettings = settings.with_teacher
         self._tried: dict[tuple[str, Condition], list[str]] = {}
-        """Actions tried on a condition, by behaviour and condition, where there were competitors."""
+        """Actions tried on a condition, by behaviour and condition, where there were competitors and any RLA lives."""
+        self._place_of: dict[int, tuple[str, Condition]] = {}
+        """Of the RLAs that live on those conditions."""
+        self._rolled_back: dict[tuple[str, Condition], list[str]] = {}
+        """Actions whose try made things worse: they are not tried there again in this run."""
 
     def count_from(self, worths: WorthSettings) -> None:
         """What counts as sunk and as well from now on."""
@@ -45,17 +49,34 @@ class Repair:
     def _well(self, rla: Rla) -> bool:
         return not rla.asks and self._worth(rla.rla_id) > self._worths.well_above
 
-    def hear(self, created: Rla, *, undone: bool = False) -> None:
-        """An RLA was created, or its creation undone: where others stand on its condition, it was a try."""
-        if undone:
-            tried = self._tried.get(_place(created), [])
-            if created.action in tried:
-                tried.remove(created.action)
-            return
-        group = self._system.competitors(created)
+    def begin_run(self) -> None:
+        """All that was heard up to now was of earlier runs."""
+        self._rolled_back.clear()
+
+    def there(self, rla: Rla) -> None:
+        """An RLA was created, or its deletion undone: where others stand on its condition, it was a try."""
+        group = self._system.competitors(rla)
         if len(group) > 1:
-            tried = self._tried.setdefault(_place(created), [])
-            tried.extend(rla.action for rla in group if rla.action not in tried)
+            place = _place(rla)
+            tried = self._tried.setdefault(place, [])
+            tried.extend(each.action for each in group if each.action not in tried)
+            self._place_of.update((each.rla_id, place) for each in group)
+
+    def gone(self, rla_id: int) -> None:
+        """An RLA was deleted: what was tried on its condition counts as long as another one lives there."""
+        place = self._place_of.pop(rla_id, None)
+        if place is not None and place not in self._place_of.values():
+            del self._tried[place]
+
+    def undone(self, created: Rla, *, rolled_back: bool) -> None:
+        """The creation of an RLA was undone, `rolled_back`: because things had become worse."""
+        place = _place(created)
+        tried = self._tried.get(place, [])
+        if created.action in tried:
+            tried.remove(created.action)
+            if rolled_back:
+                self._rolled_back.setdefault(place, []).append(created.action)
+        self.gone(created.rla_id)
 
     def ask_again(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
         """Withdraw the action of an RLA that has sunk, so that its teacher is asked; a competitor is not needed."""
@@ -79,7 +100,8 @@ class Repair:
         if any(self._well(each) for each in group):
             yield RlaDeleted(rla_id, origin_of(f"delete-{rla_id}"))
             return
-        tried = self._tried.get(_place(rla), [rla.action])
+        place = _place(rla)
+        tried = [*self._tried.get(place, [rla.action]), *self._rolled_back.get(place, ())]
         action = self._action_to_try(rla, tried) if len(tried) <= self._settings.most_competitors else None
         if action is None:
             for each in group if self._neighbours_answer(rla) else ():

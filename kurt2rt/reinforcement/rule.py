@@ -32,7 +32,7 @@ class ReinforcementRule(Protocol):
         ...
 
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
-        """Add credits from the journal (+1), or take them off again (-1)."""
+        """Add credits from the journal (+1), or take them off again (-1), where there is anything to take them off."""
         ...
 
     def worth(self, rla_id: int) -> float:
@@ -48,7 +48,15 @@ class ReinforcementRule(Protocol):
         ...
 
     def go_back(self, rla_id: int) -> None:
-        """The RLA has got back the action that it had before, with what it had earned."""
+        """The RLA has got back the action that it had before, or has come back itself, with what it had earned."""
+        ...
+
+    def leave(self, rla_id: int) -> None:
+        """The RLA was deleted; it may come back."""
+        ...
+
+    def forget(self, rla_id: int) -> None:
+        """The RLA is no more, and never comes back."""
         ...
 
     @property

@@ -64,7 +64,9 @@ class TdLambda:
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
         """Add credits to values, or take them off."""
         for (rla_id, change), depth in bookings:
-            self._accounts.put(rla_id, depth, (self._accounts.at(rla_id, depth) or 0.0) + sign * change)
+            earned = self._accounts.at(rla_id, depth)
+            if earned is not None or sign > 0:
+                self._accounts.put(rla_id, depth, (earned or 0.0) + sign * change)
 
     def worth(self, rla_id: int) -> float:
         """V."""
@@ -77,14 +79,24 @@ class TdLambda:
     def renew(self, rla_id: int) -> None:
         """V of the new action is that of the beginning, and what the old one did is not its merit."""
         self._accounts.renew(rla_id)
-        self._trace.pop(rla_id, None)
-        self._trace_before.pop(rla_id, None)
+        self._drop_trace(rla_id)
 
     def go_back(self, rla_id: int) -> None:
         """V as it was."""
         self._accounts.go_back(rla_id)
-        self._trace.pop(rla_id, None)
-        self._trace_before.pop(rla_id, None)
+        self._drop_trace(rla_id)
+
+    def leave(self, rla_id: int) -> None:
+        """Its V waits."""
+        self._accounts.renew(rla_id)
+        self._drop_trace(rla_id)
+        self._end_step_from(rla_id)
+
+    def forget(self, rla_id: int) -> None:
+        """Nothing is left of it."""
+        self._accounts.forget(rla_id)
+        self._drop_trace(rla_id)
+        self._end_step_from(rla_id)
 
     @property
     def values(self) -> Mapping[int, float]:
@@ -115,6 +127,14 @@ class TdLambda:
 
     def _add(self, rla_id: int, change: float) -> None:
         self._accounts.present[rla_id] = self._accounts.present.get(rla_id, 0.0) + change
+
+    def _drop_trace(self, rla_id: int) -> None:
+        self._trace.pop(rla_id, None)
+        self._trace_before.pop(rla_id, None)
+
+    def _end_step_from(self, rla_id: int) -> None:
+        if self._before == rla_id:
+            self._before = None
 
     def _step(self, now: int | None, tick: int) -> None:
         alpha, gamma = self._settings.alpha, self._settings.gamma

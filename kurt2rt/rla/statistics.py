@@ -1,6 +1,7 @@
 """How often each RLA was used and what followed it: the counts behind the RLA network (paper, III.B)."""
 
 from collections import Counter
+from collections.abc import Callable
 
 
 class StatisticsCounter:
@@ -25,3 +26,15 @@ class StatisticsCounter:
             if self._previous is not None:
                 self.transitions[self._previous, current] += 1
         self._previous = current
+
+    def drop_dead(self, lives: Callable[[int], bool]) -> None:
+        """Forget the RLAs of which `lives` says no: in a day on its own a robot tries, and deletes, a great many."""
+        dead = {rla_id for rla_id in self.uses if not lives(rla_id)}
+        if not dead:
+            return
+        for rla_id in dead:
+            del self.uses[rla_id]
+        for edge in [edge for edge in self.transitions if not dead.isdisjoint(edge)]:
+            del self.transitions[edge]
+        if self._previous in dead:
+            self._previous = None

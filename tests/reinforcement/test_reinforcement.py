@@ -14,7 +14,7 @@ from kurt2rt.rla.rla import (
     RlaDeleted,
     RlaRewarded,
 )
-from kurt2rt.teaching.commands import Reward, Teach, Undo
+from kurt2rt.teaching.commands import DeleteRla, Reward, Teach, Undo
 from tests.layers.helpers import MINIMUM_TICKS, RADIUS
 from tests.reinforcement.helpers import CALM, SHARE, SIGNALS_ONLY, Track, deleted_ids, knows_good_from_bad
 from tests.rla.helpers import created
@@ -439,6 +439,47 @@ def test_a_teachers_reward_in_phase_5_is_booked_in_both_accounts_and_an_undo_tak
     robot.go(LEFT)
     assert robot.worth(1) == pytest.approx(0.5)
     assert robot.reinforcement.worths_alone() == Statistics()
+
+
+@pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
+def test_nothing_is_kept_of_what_is_gone_for_good_and_what_comes_back_has_what_it_had_earned(rule: str) -> None:
+    robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"rule": rule}))
+
+    def kept() -> set[int]:
+        saved = robot.reinforcement.to_save()
+        return {*saved.values, *(rla_id for edge in saved.edge_weights for rla_id in edge)}
+
+    assert robot.say(teach("c", "t-1"), 20.0).accepted
+    for place in (LEFT, RIGHT, 20.0):
+        robot.go(place, 20)
+    robot.signal(-1)
+    worth = robot.worth(3)
+    assert 3 in kept()
+    assert robot.say(DeleteRla("d-1", "Ann", 3)).accepted
+    assert 3 not in kept()
+    robot.signal(-1, robot.tick - 21)  # the tick before; and one about a tick in which it drove finds nobody
+    assert 3 not in kept()
+    assert robot.say(Undo("u-1", "Ann", "d-1")).accepted
+    assert robot.worth(3) == pytest.approx(worth)
+    assert robot.say(Undo("u-2", "Ann", "signal-1")).accepted
+    assert robot.say(Undo("u-3", "Ann", "t-1")).accepted
+    assert 3 not in kept()
+    assert robot.say(Undo("u-4", "Ann", "signal-2")).accepted  # its credits are not put on what is no more
+    assert 3 not in kept()
+
+
+def test_what_was_tried_on_a_condition_is_kept_as_long_as_an_rla_lives_there() -> None:
+    robot = whole_story(1)
+    repair = robot.reinforcement._repair
+    living = {(rla.behaviour, rla.condition) for rla in robot.system.rlas}
+    assert deleted_ids(robot.events)
+    assert repair._tried.keys() <= living
+    assert set(repair._place_of) <= set(robot.actions)
+
+
+def test_what_an_earlier_kurt2rt_saved_of_the_dead_is_let_go() -> None:
+    robot = track(saved=Statistics(values={1: 0.25, 77: -0.5}))
+    assert robot.reinforcement.to_save().values == {1: 0.25}
 
 
 def test_an_undone_correction_is_heard_as_one() -> None:

@@ -8,7 +8,7 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.teaching.commands import Correct, Undo
 from tests.layers.helpers import sensed, situation
-from tests.reinforcement.helpers import CALM, CRASHED, QUICK, SIGNALS_ONLY, Track, knows_good_from_bad
+from tests.reinforcement.helpers import CALM, CRASHED, QUICK, SIGNALS_ONLY, Track, deleted_ids, knows_good_from_bad
 from tests.rla.helpers import created
 from tests.teaching.helpers import teach
 
@@ -188,7 +188,7 @@ def test_what_others_have_earned_meanwhile_and_what_a_teacher_said_outlasts_a_ro
     assert {event.rla.condition for event in changes(robot) if isinstance(event, RlaCreated)} == {(HERE,)}
     assert robot.hash == story.known
     assert dict(robot.reinforcement.rule.values) == of_teacher
-    assert worths[0] < -0.2
+    assert deleted_ids(changes(robot)) == [1]  # it had sunk
     assert worths[1] != 0.5
     assert [robot.worth(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
 
@@ -272,3 +272,15 @@ def test_the_same_senses_give_the_same_changes() -> None:
     assert changes(one)
     assert changes(one) == changes(again)
     assert one.hash == again.hash
+
+
+def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
+    known = (created(1, (HERE,), "a"), created(2, (THERE,), "b"), created(3, (-THERE,), "c"))
+    robot = Track(*known, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
+    for _ in range(20):
+        robot.go(THERE, 100, CALM)
+        robot.go(HERE, 100, CRASHED)
+    rolled_back = [event.lesson for event in robot.events if isinstance(event, LessonUndone)]
+    tries = [(event.rla.condition, event.rla.action) for event in changes(robot) if isinstance(event, RlaCreated)]
+    assert rolled_back
+    assert len(tries) == len(set(tries)), tries

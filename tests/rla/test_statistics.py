@@ -27,3 +27,13 @@ def test_counting_goes_on_from_what_was_kept() -> None:
     drive(statistics, [1, 2])
     assert statistics.uses == {1: 11, 2: 1}
     assert statistics.transitions == {(1, 2): 5}
+
+
+def test_the_dead_are_dropped_and_what_drove_last_is_no_way_to_what_comes() -> None:
+    statistics = StatisticsCounter()
+    drive(statistics, [1, 2, 3, 1, 2])
+    statistics.drop_dead({1, 3}.__contains__)
+    assert statistics.uses == {1: 2, 3: 1}
+    assert statistics.transitions == {(3, 1): 1}
+    drive(statistics, [3])
+    assert statistics.transitions == {(3, 1): 1}
