@@ -2,25 +2,29 @@
 
 import math
 import uuid
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
+from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.reinforcement.settings import ReinforcementSettings, TaughtWorths
 from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import LessonUndone, Origin, Phase, RlaRewarded
+from kurt2rt.rla.rla import LessonUndone, Origin, Phase, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.teaching.recent import RecentDecisions
 
 
 def undo_lesson(path: Path, lesson: str | None, *, teacher: str, stamp: str) -> LessonRecord:
     """Undo the lesson of that command id, None: the last that stands; durable on return. Returns what was undone.
 
-    Of a reward, the values of RLAs lose its credits; weights of edges stay as they are. Raises KnowledgeError, and
-    changes nothing, where there is no such lesson, a newer one stands in its way, or a robot runs on the file.
+    Values become what a robot would make of it: those whom a reward was given lose its credits, and an RLA that gets
+    its former action back is worth what that one had earned, as far as the journal tells. Weights of edges follow when
+    a robot starts next. Raises KnowledgeError, and changes nothing, where there is no such lesson, a newer one stands
+    in its way, or a robot runs on the file.
     """
     with _open_again(path) as journal:
         system = fold_journal(journal, radius=math.inf)
@@ -55,6 +59,7 @@ def _undo(
     journal: Journal, system: RlaSystem, command_ids: Iterable[str], teacher: str, stamp: str
 ) -> tuple[LessonRecord, ...]:
     """Undo lessons in this order, all or none."""
+    events, statistics = journal.events(), journal.statistics()
     undone, entries = [], []
     for command_id in command_ids:
         problem = system.why_not_undo(command_id)
@@ -68,17 +73,26 @@ def _undo(
         assert record is not None
         undone.append(record)
         entries.append(JournalEntry(event, stamp))
-    journal.append_and_checkpoint(entries, _without_credits(journal.statistics(), undone))
+    undos = [entry.event for entry in entries]
+    journal.append_and_checkpoint(entries, _after(events, undos, statistics, len(journal.binding.feature_names)))
     return tuple(undone)
 
 
-def _without_credits(statistics: Statistics, undone: Iterable[LessonRecord]) -> Statistics:
-    values = dict(statistics.values)
-    for record in undone:
-        for credit in record.event.credits if isinstance(record.event, RlaRewarded) else ():
-            if credit.rla_id in values:
-                values[credit.rla_id] -= credit.change
-    return replace(statistics, values=values)
+def _after(
+    events: Sequence[TeachingEvent], undos: Iterable[TeachingEvent], saved: Statistics, dimensions: int
+) -> Statistics:
+    """What the statistics become, by the same account as a robot keeps."""
+    if not saved.values and VALUES_INCLUDE not in saved.numbers:
+        return saved  # credits of another rule
+    first_value = saved.numbers.get(FIRST_VALUE, TaughtWorths().first_value)
+    settings = ReinforcementSettings(with_teacher=TaughtWorths(first_value=first_value, highest_value=None))
+    system = RlaSystem(dimensions, math.inf)
+    account = Reinforcement(system, RecentDecisions(dimensions), settings, period_s=0.01)
+    account.recall(events, saved)
+    for event in undos:
+        system.apply(event)
+        account.hear(event)
+    return account.to_save()
 
 
 def _open_again(path: Path) -> Journal:

@@ -5,15 +5,21 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
 from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
+from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.teaching.commands import Undo
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
+from tests.reinforcement.helpers import SIGNALS_ONLY, Track
+from tests.rla.helpers import created as known_at
+from tests.teaching.helpers import teach
 
 
 def rlas(path: Path) -> tuple[Rla, ...]:
@@ -82,7 +88,7 @@ def with_a_critics_work(path: Path) -> Path:
     with Journal.open(begun(path), BINDING) as journal:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
         journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
-        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 2: 0.375, 3: 0.5}, {(1, 2): 95.0}))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, {(1, 2): 95.0}, {FIRST_VALUE: 0.5}))
     return path
 
 
@@ -103,7 +109,59 @@ def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays
 def test_an_undone_reward_takes_its_credits_off_the_values(path: Path) -> None:
     undo_lessons_of(with_a_critics_work(path), CRITIC, teacher="command line", stamp=STAMP)
     with Journal.read_only(path) as journal:
-        assert journal.statistics() == Statistics({1: 5}, {(1, 2): 3}, {1: 0.5, 2: 0.5, 3: 0.5}, {(1, 2): 95.0})
+        statistics = journal.statistics()
+    assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
+    assert replace(statistics, values={}, numbers={}) == Statistics({1: 5}, {(1, 2): 3}, {}, {(1, 2): 95.0})
+
+
+LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
+
+
+@pytest.mark.parametrize("saved_late", [True, False])
+def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) -> None:
+    """Blamed until it asks, answered anew, and the answer blamed as well: then all of it is taken back."""
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
+    saved = robot.reinforcement.to_save()
+    for _ in range(3):
+        robot.go(0.0, 400)
+        robot.signal(-1)
+    robot.go(0.0)
+    assert robot.say(teach("c", "again")).accepted
+    robot.go(0.0, 400)
+    robot.signal(-1)
+    robot.go(0.0)
+    if saved_late:
+        saved = robot.reinforcement.to_save()
+    with Journal.open(path, LINE) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in robot.events])
+        journal.checkpoint(saved)
+
+    for number, lesson in enumerate(("signal-4", "again", "signal-3/withdraw-1", "signal-3", "signal-2")):
+        assert robot.say(Undo(f"u-{number}", "Ann", lesson)).accepted
+        assert undo(path, lesson).undone
+        with Journal.read_only(path) as journal:
+            statistics, events = journal.statistics(), journal.events()
+        assert statistics.values == pytest.approx(robot.reinforcement.to_save().values)
+        again = Track(*events, reinforcement=SIGNALS_ONLY, saved=statistics)
+        assert again.worth(1) == pytest.approx(robot.worth(1))
+    assert robot.worth(1) == pytest.approx(0.2, abs=0.01)
+
+
+def test_where_only_weights_of_edges_were_saved_they_follow_at_the_next_start(path: Path) -> None:
+    settings = ReinforcementSettings(rule="edge_weights")
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
+    robot.go(50.0, 20)
+    robot.go(0.0, 20)
+    praise = robot.signal(1)
+    saved = robot.reinforcement.to_save()
+    with Journal.open(path, LINE) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in robot.events])
+        journal.checkpoint(saved)
+    undo(path, praise.origin.command_id)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == saved
+        again = Track(*journal.events(), reinforcement=settings, saved=journal.statistics())
+    assert (robot.worth(1), again.worth(1)) == pytest.approx((0.1, 0.0))
 
 
 def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(path: Path) -> None:
