@@ -12,7 +12,7 @@ from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import Changes, changes_of
 from kurt2rt.cli.progress import one_bar
 
-_SEEDS, _QUICK_SEEDS = "100-119", "100-101"
+_SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _WIDTH = 160
 _FOLDER = Path("results/phases")
 
@@ -47,7 +47,8 @@ def phases(
     The path: untaught, answers (1), corrections (2), rewards (3), a critic is taught (4),
     the robot goes on alone (5); an exam after each, and a long run at the end. Branches
     from the set of phase 2 with wrong actions: untouched, answers only, unknown is -1,
-    rewards, the critic alone, a shuffled critic; and the intact set with the critic.
+    blame by chance, rewards, the critic alone, a shuffled critic; and the intact set
+    with the critic.
 
     Leaves report.html, which holds everything, the figures as PNG, and each robot's
     results and knowledge files after each step in the output folder.

@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Field, ValidationInfo, field_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
 from behaviors.judges.finding import AnyJudgeSettings
 from behaviors.policies.finding import AnyPolicySettings
 from behaviors.policies.policy import PolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
+from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
 from kurt2rt.experiments.phases.settings import PhasesSettings
 from kurt2rt.reinforcement.settings import ReinforcementSettings
@@ -16,6 +17,10 @@ from kurt2rt.reinforcement.settings import ReinforcementSettings
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
+AnyCritic = Annotated[
+    Annotated[Name, Tag("name")] | Annotated[CriticSettings, Tag("settings")],
+    Discriminator(lambda critic: "settings" if isinstance(critic, dict | CriticSettings) else "name"),
+]
 
 
 Place = Literal["starts", "in_sight"]
@@ -146,8 +151,8 @@ class TaskSettings(Settings):
     plain: PlainSettings
     """What to take instead of `learning` for the plain reading of the paper."""
     reinforcement: ReinforcementSettings = ReinforcementSettings()
-    critic: Name = "basic"
-    """The internal critic of `config/critics`, which is taught in phase 4."""
+    critic: AnyCritic = "basic"
+    """The internal critic, which is taught in phase 4: of `config/critics` by name, or its settings."""
     judge: AnyJudgeSettings | None = None
     """What the scripted teacher praises and blames; None: nothing."""
     phases: PhasesSettings | None = None

@@ -4,13 +4,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.settings import load_critic
+from kurt2rt.critic.settings import CriticSettings, load_critic
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, MadeOf, source_hash
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.phases.job import Job, Robot, StepJob, TaughtJob
 from kurt2rt.experiments.phases.steps import PHASE_2, Step, phases_of, steps_of
+from kurt2rt.reinforcement.settings import LonelyWorths
 from kurt2rt.tasks.settings import TaskSettings
 
 OWN = {
@@ -18,7 +19,9 @@ OWN = {
     for name in ("corrupting", "examining", "folding", "job", "outcome", "settings", "steps", "told")
 }
 """Modules that say what is done to robots here, and what of it is kept."""
-_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S = 40.0, 6.0, 10.0
+_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
+_QUICK_SHARE = 0.2
+"""What is done every so often in a whole run is done after this share of the time in a quick one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +111,35 @@ def _shortened(task: TaskSettings) -> TaskSettings:
         update={
             "teaching": task.teaching.model_copy(update=times),
             "exam": task.exam.model_copy(update=exam),
-            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds),
+            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
+            "critic": _hastened(load_critic(task.critic)),
+            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
+        }
+    )
+
+
+def _near_sinking(worths: LonelyWorths) -> LonelyWorths:
+    """Of RLAs that a few signals can sink."""
+    names = ("first_value", "sunk_below", "well_above")
+    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
+
+
+def _hastened(critic: CriticSettings) -> CriticSettings:
+    """A critic that is trusted, and that measures and changes, after as little as is heard in seconds."""
+    agreement, every = critic.agreement, critic.signal_every_s
+    few = max(2, round(_QUICK_SHARE * agreement.least))
+    heard = {
+        "bound": _QUICK_SHARE * agreement.bound,
+        "least": few,
+        "window": 2 * few,
+        "apart_s": _QUICK_SHARE * agreement.apart_s,
+    }
+    return critic.model_copy(
+        update={
+            "agreement": agreement.model_copy(update=heard),
+            "signal_every_s": every.model_copy(
+                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
+            ),
+            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
         }
     )

@@ -9,6 +9,10 @@ from hal.settings import Settings
 PHASES = ("phases", "judge", "reinforcement", "critic")
 """Parts of a task that phases 1 and 2 have nothing to do with."""
 
+_TAUGHT = ("reinforcement_s", "repair_s", "long_run_s")
+_OF_THE_CRITIC = ("critic_s", "autonomy_s", "repair_alone_s")
+_EVERY = ("reposition_every_s", "set_down_every_s", "shown_s")
+
 Seconds = Annotated[float, Field(ge=1, le=100_000)]
 SecondsOrNever = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(gt=0, le=1)]
@@ -94,8 +98,16 @@ class PhasesSettings(Settings):
     appraisals: AppraisalsSettings = AppraisalsSettings()
     asked: AskedOfPhases = AskedOfPhases()
 
-    def shortened(self, most_s: float, worlds: tuple[str, ...]) -> "PhasesSettings":
-        """No time longer than this, and exams in these worlds only."""
-        times = ("reinforcement_s", "critic_s", "autonomy_s", "long_run_s", "repair_s", "repair_alone_s")
-        update: dict[str, object] = {name: min(getattr(self, name), most_s) for name in times}
+    def shortened(self, most_s: float, worlds: tuple[str, ...], most_alone_s: float, share: float) -> "PhasesSettings":
+        """No time longer than these, exams in these worlds only, and everything done every so often done sooner.
+
+        `most_alone_s`: of what the critic learns, or teaches. `share`: of each time between two signals or set-downs.
+        """
+        update: dict[str, object] = {name: min(getattr(self, name), most_s) for name in _TAUGHT}
+        update |= {name: min(getattr(self, name), most_alone_s) for name in _OF_THE_CRITIC}
+        update |= {name: share * getattr(self, name) for name in _EVERY}
+        for name in ("signals", "appraisals"):
+            times: Settings = getattr(self, name)
+            every = {key: share * getattr(times, key) for key in type(times).model_fields if key.endswith("_s")}
+            update[name] = times.model_copy(update=every)
         return self.model_copy(update=update | {"repair_worlds": worlds})

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.kept.made_of import sources
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.phases.job import StepJob
@@ -74,4 +75,16 @@ def test_what_is_done_to_robots_is_source_and_what_only_shows_it_is_not() -> Non
 def test_quick_is_every_step_for_seconds() -> None:
     quick = planned(quick=True)
     assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
-    assert sum(job.robot_time_s for job in quick.jobs) < 600
+    assert sum(job.robot_time_s for job in quick.jobs) < 1200
+
+
+def test_what_is_done_every_so_often_and_what_has_to_be_heard_first_is_less_in_a_quick_run() -> None:
+    quick, whole = planned(quick=True).task, TASK
+    assert quick.phases is not None
+    assert whole.phases is not None
+    assert quick.phases.signals.bad_every_s == 0.2 * whole.phases.signals.bad_every_s
+    assert quick.phases.set_down_every_s == 0.2 * whole.phases.set_down_every_s
+    heard, critic = load_critic(quick.critic), load_critic(whole.critic)
+    assert heard.agreement.least < critic.agreement.least
+    assert heard.best.window_s * 4 <= quick.phases.repair_alone_s
+    assert heard.feature_hash == critic.feature_hash
