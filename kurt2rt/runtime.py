@@ -45,6 +45,7 @@ class Runtime:
     wanted: Wanted
     school: School
     reinforcement: Reinforcement
+    self_teaching: SelfTeaching
     inbox: TeacherInbox
     statistics: StatisticsCounter
     ledger: Ledger
@@ -55,7 +56,8 @@ class Runtime:
         """What was counted of the RLAs that live, and what they are worth, as it is now."""
         counted, system = self.statistics, self.level.system
         counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
-        return replace(self.reinforcement.to_save(), uses=dict(counted.uses), transitions=dict(counted.transitions))
+        worths = self.self_teaching.with_best(self.reinforcement.to_save())
+        return replace(worths, uses=dict(counted.uses), transitions=dict(counted.transitions))
 
 
 def build_runtime(
@@ -104,6 +106,8 @@ def build_runtime(
     hand = load_repertoire(task.repertoire, settings)
     agreement = Agreement(critic.agreement, critic.values)
     agreement.hear_all(events)
+    self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)
+    self_teaching.recall(events, saved)
     school = School(
         level,
         Authority(hand, attended=attended),
@@ -112,8 +116,9 @@ def build_runtime(
         reinforcement=reinforcement,
         critic=Critic(system, critic),
         agreement=agreement,
-        self_teaching=SelfTeaching(reinforcement, system, critic, agreement, period_s),
+        self_teaching=self_teaching,
         asked=asked,
+        period_s=period_s,
     )
     inbox = TeacherInbox()
     statistics = statistics or StatisticsCounter()
@@ -133,5 +138,17 @@ def build_runtime(
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
     return Runtime(
-        settings, task, definition, level, wanted, school, reinforcement, inbox, statistics, ledger, tick, scheduler
+        settings,
+        task,
+        definition,
+        level,
+        wanted,
+        school,
+        reinforcement,
+        self_teaching,
+        inbox,
+        statistics,
+        ledger,
+        tick,
+        scheduler,
     )

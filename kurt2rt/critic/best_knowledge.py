@@ -1,5 +1,6 @@
 """The guard over what the critic changes: the best knowledge so far is kept, and come back to."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from kurt2rt.critic.settings import BestSettings
@@ -40,6 +41,8 @@ class BestKnowledge:
         self._margin = settings.margin
         self.best: float | None = None
         """Score of the best window; None before the first one has ended, and after a roll-back."""
+        self.includes = 0
+        """How many teaching events there were when the best window began: what the critic changed later is unproven."""
         self.score: float | None = None
         """Score of the last window."""
         self.proofs = 0
@@ -53,6 +56,14 @@ class BestKnowledge:
         """How many there were when the window began."""
         self._unproven: list[_Change] = []
         """Oldest first."""
+
+    def recall(self, events: Iterable[TeachingEvent], best: float | None, includes: int) -> None:
+        """Go on from another run: all its events, and what `best` and `includes` were at its end."""
+        for event in events:
+            self.changed(event)
+        self.best, self.includes = best, includes
+        # Knowledge without a best is measured as it is.
+        self._unproven = [] if best is None else [each for each in self._unproven if each.number > includes]
 
     def begin(self) -> None:
         """The robot is alone from now on: what counted before may have been elsewhere, so it is measured first."""
@@ -99,7 +110,7 @@ class BestKnowledge:
         measured, self.measures = self.measures, False
         nothing_to_prove = measured and not self._unproven
         if self.best is None or score >= self.best or nothing_to_prove:
-            self.best = score
+            self.best, self.includes = score, self._window_from
             self.proofs += 1
             self._unproven = [each for each in self._unproven if each.number > self._window_from]
             return ()

@@ -1,13 +1,14 @@
 """The critic in its teacher's place: its signals, and the guard that takes back what made things worse (phase 5)."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.autonomy import Autonomy
 from kurt2rt.critic.best_knowledge import BestKnowledge
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.critic.settings import CriticSettings
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.lesson_book import rla_of
@@ -37,6 +38,19 @@ class SelfTeaching:
         """Of the account of phase 5, when the best window ended."""
         self.trusted = agreement.trusted
         """Whether the critic may act; kept, because it changes only with what is heard."""
+
+    def recall(self, events: Iterable[TeachingEvent], saved: Statistics | None) -> None:
+        """Take in what was taught before this run: what the critic changed since the best window is to be proven."""
+        numbers = {} if saved is None else saved.numbers
+        self.best.recall(events, numbers.get(BEST_SCORE), int(numbers.get(BEST_INCLUDES, 0)))
+
+    def with_best(self, statistics: Statistics) -> Statistics:
+        """Statistics to be saved, with the best window as it is now."""
+        best = self.best
+        numbers = {name: each for name, each in statistics.numbers.items() if name not in (BEST_SCORE, BEST_INCLUDES)}
+        if best.best is not None:
+            numbers |= {BEST_SCORE: best.best, BEST_INCLUDES: float(best.includes)}
+        return replace(statistics, numbers=numbers)
 
     def hear(self, event: TeachingEvent) -> None:
         """Follow an event that was applied just now, and that the agreement has heard."""

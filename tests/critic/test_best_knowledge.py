@@ -199,6 +199,33 @@ def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
+def test_in_another_run_it_goes_on_from_the_best_window_and_what_was_changed_after_it() -> None:
+    kept = best()
+    events: list[TeachingEvent] = [
+        created(1, "proven"),
+        created(2, "late"),
+        created(3, "undone"),
+        LessonUndone("undone", origin()),
+    ]
+    kept.changed(events[0])
+    window(kept, good=8)
+    for event in events[1:]:
+        kept.changed(event)
+    assert (kept.best, kept.includes) == (0.8, 1)
+    again = best()
+    again.recall(events, kept.best, kept.includes)
+    assert again.measures
+    assert [each.lesson for each in window(again, good=2)] == ["late"]
+
+
+def test_without_a_best_another_run_begins_with_knowledge_as_it_is() -> None:
+    again = best()
+    again.recall([created(1, "first")], None, 0)
+    window(again, good=8)
+    again.begin()
+    assert window(again, good=0) == ()
+
+
 Act = tuple[str, int]
 
 

@@ -79,6 +79,8 @@ class Track:
         self.critic = Critic(self.system, critic)
         self.agreement = Agreement(critic.agreement, critic.values)
         self.agreement.hear_all(events)
+        self.self_teaching = SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S)
+        self.self_teaching.recall(events, saved)
         self.school = School(
             self.level,
             Authority(actions, attended=False),
@@ -87,7 +89,7 @@ class Track:
             reinforcement=self.reinforcement,
             critic=self.critic,
             agreement=self.agreement,
-            self_teaching=SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S),
+            self_teaching=self.self_teaching,
         )
         self.school.phase = phase
         self.events = list(events)

@@ -170,7 +170,7 @@ def test_what_is_come_back_to_is_worth_what_it_was_in_the_best_window() -> None:
     assert isinstance(event, RlaCreated)
     assert event.rla.condition == (THERE,)  # RLA 2 had sunk
     assert robot.worth(2) < worth
-    while not robot.school._self_teaching.measures:  # type: ignore[union-attr] # a roll-back ends the window
+    while not robot.self_teaching.measures:  # a roll-back ends the window
         robot.go(HERE, 1, CRASHED)
     assert robot.worth(2) == worth
 
@@ -250,6 +250,38 @@ def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
     assert changes(robot) == []
     robot.go(HERE, 100, CRASHED)
     assert changes(robot) != []
+
+
+def started_again(robot: Track) -> Track:
+    saved = robot.self_teaching.with_best(robot.reinforcement.to_save())
+    return Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS, saved=saved)
+
+
+def test_what_was_not_proven_when_the_robot_was_switched_off_is_to_be_proven_when_it_is_on_again() -> None:
+    story = Judged()
+    story.robot.go(HERE, 90, CRASHED)
+    assert story.robot.hash != story.known
+    robot = started_again(story.robot)
+    assert robot.hash == story.robot.hash
+    robot.go(HERE, 99, CRASHED)
+    assert robot.hash == story.robot.hash  # it only looks
+    robot.go(HERE, 1, CRASHED)
+    assert robot.hash == story.known
+    again = started_again(robot)  # and what is come back to is measured as it is
+    again.go(HERE, 100, CRASHED)
+    assert again.hash == story.known
+
+
+def test_what_was_proven_before_the_robot_was_switched_off_stays() -> None:
+    robot = alone()
+    robot.go(HERE, 100, CRASHED)  # what it is measured against
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    made = robot.hash
+    robot.go(THERE, 200, CALM)  # two good windows: in the first one it was changed
+    again = started_again(robot)
+    again.go(HERE, 100, CRASHED)
+    assert again.hash == robot.hash == made
 
 
 def test_a_score_that_falls_a_little_is_chance() -> None:
