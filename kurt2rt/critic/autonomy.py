@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Opinion
+from kurt2rt.critic.need import Need
 from kurt2rt.critic.settings import CriticSettings
 
 
@@ -25,6 +26,7 @@ class Autonomy:
     def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
         """`period_s` of a tick."""
         self._agreement = agreement
+        self.need = Need(settings.need, period_s)
         every_s = settings.signal_every_s
         self._every_ticks = {-1: round(every_s.bad / period_s), 1: round(every_s.good / period_s)}
         self._next_tick = {-1: 0, 1: 0}
@@ -33,17 +35,24 @@ class Autonomy:
         self._thought_since = 0
         self._looked_at = -1
 
-    def signal(self, tick: int, opinion: Opinion | None, driving: bool) -> Signal | None:
+    def begin(self) -> None:
+        """The robot is alone from now on."""
+        self.need.begin()
+
+    def signal(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> Signal | None:
         """What is to be learnt from in this tick, of what the critic thinks; to be asked in every tick of phase 5.
 
-        `driving`: whether an action drives. None where the critic is not trusted, has just said the same, or has not
-        thought so for long enough: what it thinks for a moment is often chance.
+        `driving`: whether an action drives. `listening`: it says nothing now, whatever it thinks. None where the critic
+        is not trusted or not needed, has just said the same, or has not thought so for long enough: what it thinks for
+        a moment is often chance.
         """
         thought = opinion.value if opinion is not None and driving and opinion.known else 0
         if thought != self._thought or tick != self._looked_at + 1:
             self._thought, self._thought_since = thought, tick
         self._looked_at = tick
-        if opinion is None or thought == 0 or tick - self._thought_since < self._patience_ticks:
+        held = thought != 0 and tick - self._thought_since >= self._patience_ticks
+        self.need.look(driving=driving, bad=held and thought < 0)
+        if opinion is None or not held or listening or not self.need.needed:
             return None
         if tick < self._next_tick[opinion.value] or not self._agreement.trusted:
             return None

@@ -133,6 +133,17 @@ class SignalEverySettings(Settings):
     good: Seconds
 
 
+class NeedSettings(Settings):
+    """When a critic that is trusted begins to act: what drives well enough is left alone."""
+
+    bad_share: Share
+    """It acts once it has found this share of the driven time bad, and then until phase 5 ends; 0: always."""
+    mean_s: Seconds
+    """Time constant of that share, in driven time."""
+    first_s: Annotated[float, Field(ge=0, le=100_000)]
+    """Not before phase 5 has lasted so long."""
+
+
 class BestSettings(Settings):
     """The guard that keeps the best knowledge."""
 
@@ -155,6 +166,7 @@ class CriticSettings(Settings):
     signal_every_s: SignalEverySettings
     patience_s: Annotated[float, Field(ge=0, le=10)]
     """It gives a signal only when it has thought the same for so long."""
+    need: NeedSettings
     best: BestSettings
 
     @field_validator("appraisals")

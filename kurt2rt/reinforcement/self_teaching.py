@@ -60,6 +60,7 @@ class SelfTeaching:
     def begin(self) -> None:
         """From now on the robot is alone with a critic that is trusted."""
         self.best.begin()
+        self._autonomy.begin()
         self._best_worths = self._reinforcement.worths_alone()
 
     @property
@@ -68,8 +69,8 @@ class SelfTeaching:
         return self.best.measures
 
     def signal(self, tick: int, decision: Decision, opinion: Opinion | None) -> None:
-        """Learn from what the critic thinks of this tick, as from a teacher's signal; not while it measures."""
-        signal = self._autonomy.signal(tick, opinion, driving=decision.answers)
+        """Learn from what the critic thinks of this tick, as from a teacher's signal; while it measures only listen."""
+        signal = self._autonomy.signal(tick, opinion, driving=decision.answers, listening=self.measures)
         if signal is not None:
             self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)
 

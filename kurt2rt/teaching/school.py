@@ -200,7 +200,7 @@ class School:
         reinforcement.choice.explores = learning
         if learning:
             reinforcement.drove(decision.rla_id if decision.answers else None, tick)
-        if alone is not None and changes_itself:
+        if alone is not None:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []
         for lesson in reinforcement.repairs(tick, self.phase):

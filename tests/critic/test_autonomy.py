@@ -3,7 +3,7 @@
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.autonomy import Autonomy, Signal
 from kurt2rt.critic.critic import Opinion
-from kurt2rt.critic.settings import AgreementSettings, SignalEverySettings
+from kurt2rt.critic.settings import AgreementSettings, NeedSettings, SignalEverySettings
 from kurt2rt.rla.rla import Appraised, RlaRewarded
 from tests.critic.helpers import SETTINGS, appraisal, origin
 
@@ -11,7 +11,10 @@ BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
 GOOD = Opinion(1, "good", 0.5, None, 0.1, 1.0, True)
 NEUTRAL = Opinion(0, "neutral", 0.7, None, 0.1, 1.0, True)
 UNKNOWN = Opinion(0, "", 0.0, None, 2.0, 1.0, False)
-RATES = SETTINGS.model_copy(update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0), "patience_s": 0.0})
+ALWAYS = NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0)
+RATES = SETTINGS.model_copy(
+    update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0), "patience_s": 0.0, "need": ALWAYS}
+)
 
 
 def agreement(*, trusted: bool = True) -> Agreement:
@@ -64,3 +67,19 @@ def test_a_wait_or_a_gap_begins_the_thought_anew() -> None:
     speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
     assert [tick for tick in range(20) if speaking.signal(tick, BAD, tick != 4)] == [10]
     assert [tick for tick in range(200, 210) if speaking.signal(tick, BAD, True)] == [205]
+
+
+def test_what_drives_well_enough_is_left_alone() -> None:
+    need = NeedSettings(bad_share=0.05, mean_s=1.0, first_s=0.0)
+    listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
+    said = [tick for tick in range(2000) if listening.signal(tick, BAD if tick % 50 == 49 else GOOD, True)]
+    assert (said, listening.need.needed) == ([], False)
+    assert next(tick for tick in range(2000, 2100) if listening.signal(tick, BAD, True)) < 2010
+    assert listening.signal(2300, GOOD, True) is not None  # from then on it acts
+
+
+def test_while_it_is_told_to_listen_it_finds_out_whether_it_is_needed() -> None:
+    need = NeedSettings(bad_share=0.5, mean_s=1.0, first_s=0.0)
+    listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
+    assert not any(listening.signal(tick, BAD, True, listening=True) for tick in range(100))
+    assert listening.signal(100, GOOD, True) is not None

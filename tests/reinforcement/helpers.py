@@ -3,7 +3,7 @@
 from behaviors.judges.judge import Circumstances
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic
-from kurt2rt.critic.settings import AgreementSettings, BestSettings, CriticSettings, SignalEverySettings
+from kurt2rt.critic.settings import AgreementSettings, BestSettings, CriticSettings, NeedSettings, SignalEverySettings
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
@@ -42,6 +42,7 @@ QUICK = SETTINGS.model_copy(
         "patience_s": 0.0,
         "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=5.0),
         "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
+        "need": NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0),
         "best": BestSettings(window_s=1.0, margin=0.1),
     }
 )

@@ -140,6 +140,7 @@ def _hastened(critic: CriticSettings) -> CriticSettings:
             "signal_every_s": every.model_copy(
                 update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
             ),
+            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
             "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
         }
     )
