@@ -159,7 +159,7 @@ class ScriptedAppraiser:
         if not self._shown or not ticks or self._chance.random() >= share:
             return []
         self._resume_at = tick + ticks + 1
-        return [RunBehaviour(self._next_id(), _NAME, self._chance.choice(self._shown), ticks)]
+        return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._shown), ticks)]
 
     def watch(self, record: TickRecord) -> list[Command]:
         """See one tick; all that he says to it."""
@@ -168,7 +168,7 @@ class ScriptedAppraiser:
         said: list[Command] = []
         if self._resume_at is not None and record.tick >= self._resume_at:
             self._resume_at = None
-            said.append(Resume(self._next_id(), _NAME))
+            said.append(Resume(self._next_id("shown"), _NAME))
         answer = self._answering.watch(picture_of(record))
         if answer is not None:
             said.append(answer)
@@ -207,6 +207,6 @@ class ScriptedAppraiser:
         name = self._appraisals.get(value)
         return None if name is None else Appraise(self._next_id(), _NAME, name, tick)
 
-    def _next_id(self) -> str:
+    def _next_id(self, what: str = "signal") -> str:
         self._said += 1
-        return f"{self._session}-signal-{self._said}"
+        return f"{self._session}-{what}-{self._said}"

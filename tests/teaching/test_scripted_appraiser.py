@@ -138,7 +138,11 @@ def test_where_it_is_set_down_some_action_is_shown_and_then_it_drives_on() -> No
     assert isinstance(shown, RunBehaviour)
     assert (shown.action in ("a", "b"), shown.ticks) == (True, 20)
     told = said(person, [record(tick, NEUTRAL, Cause.TEACHER) for tick in range(8, 40)])
-    assert [tick for tick, command in told if isinstance(command, Resume)] == [28]
+    ((tick, resume),) = [(tick, command) for tick, command in told if isinstance(command, Resume)]
+    assert tick == 28
+    # These are no signals, which may come too late: a refusal must not pass unseen.
+    assert not person.is_signal(shown.command_id)
+    assert not person.is_signal(resume.command_id)
 
 
 def test_in_phase_5_nobody_is_there() -> None:
