@@ -20,7 +20,7 @@ from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import Command, DeleteRla, Reward
+from kurt2rt.teaching.commands import Command, DeleteRla, Resume, Reward
 from kurt2rt.teaching.scripted_appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
 from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
@@ -137,18 +137,25 @@ async def teach(
             praise += command.value > 0
             blame += command.value < 0
 
+    def lift_alarm(tick: int) -> None:
+        nonlocal alarms, latched_ticks
+        load.note_hands(tick, "go")
+        latched_ticks = 0
+        alarms += 1
+
     def after_tick(record: TickRecord) -> None:
-        nonlocal asking, rescues, unknown_rescues, alarms, latched_ticks, refused, unknown, trusted
+        nonlocal asking, rescues, unknown_rescues, latched_ticks, refused, unknown, trusted
         refused += require_carried_out(record, task, may_be_late=teacher.is_signal)
         if record.tick in begins:
             runtime.inbox.put(teacher.enter(begins[record.tick]))
+        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
         for command in teacher.watch(record):
             say(command, record.tick)
-        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
+            if isinstance(command, Resume) and record.grant.latched:  # what he had shown ended in an alarm
+                lift_alarm(record.tick)
         if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
             runtime.inbox.put(teacher.go())
-            latched_ticks = 0
-            alarms += 1
+            lift_alarm(record.tick)
         if record.decision.asking and not asking:
             ask_positions.append(arena.position)
         asking = record.decision.asking
@@ -159,14 +166,18 @@ async def teach(
         # A robot that is pressed to a wall and asks again and again is no nearer to getting away.
         if not (waits and plan.rescues_who_asks) and drive.makes_no_way(waits=waits):
             drive.rescue()
+            load.note_hands(record.tick, "rescued")
             rescues += 1
             unknown_rescues += asking
         if drive.course.stranded or (reposition_every and record.tick % reposition_every == 0):
             drive.reposition(in_sight=in_sight)
+            load.note_hands(record.tick, "set_down")
         if set_down_every and teacher.phase is Phase.CRITIC and record.tick % set_down_every == 0:
             drive.reposition(in_sight=True, close=True)
+            load.note_hands(record.tick, "set_down")
             for command in teacher.show(record.tick, shown, plan.shown_share):
                 runtime.inbox.put(command)
+                load.note_hands(record.tick, "shown")
         if drive.course.behaviour != record.behaviour:
             runtime.inbox.put(teacher.pursue(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:

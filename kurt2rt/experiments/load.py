@@ -1,12 +1,12 @@
-"""How much a teacher has to do: what he says in each minute of teaching."""
+"""How much a teacher has to do: what he says, and does with his hands, in each minute of teaching."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from kurt2rt.teaching.commands import Appraise, Command, Correct, DeleteRla, ReplaceAction, Reward, Teach
 
 
 class Minute(NamedTuple):
-    """What a teacher said in one minute of robot time, also where it changed nothing."""
+    """What a teacher said and did in one minute of robot time, also where it changed nothing."""
 
     lessons: int = 0
     """Answers to the robot's questions."""
@@ -15,6 +15,19 @@ class Minute(NamedTuple):
     """Praise and blame."""
     appraisals: int = 0
     """Lessons for the critic."""
+    set_down: int = 0
+    """The robot was carried elsewhere, as planned."""
+    shown: int = 0
+    """An action was shown to the critic."""
+    rescued: int = 0
+    """The robot was carried elsewhere because it made no way."""
+    go: int = 0
+    """The robot was told to drive again after the guard had stopped it."""
+
+
+Hands = Literal["set_down", "shown", "rescued", "go"]
+SAID = ("lessons", "corrections", "rewards", "appraisals")
+"""What is said; the rest is done."""
 
 
 class Load:
@@ -32,7 +45,7 @@ class Load:
 
     def note(self, tick: int, command: Command) -> None:
         """He says something; what is no teaching does not count."""
-        place = min((tick - 1) // self._ticks_per_minute, len(self._minutes) - 1)
+        place = self._place(tick)
         now = self._minutes[place]
         match command:
             case Teach():
@@ -44,3 +57,12 @@ class Load:
             case Appraise():
                 now = now._replace(appraisals=now.appraisals + 1)
         self._minutes[place] = now
+
+    def note_hands(self, tick: int, what: Hands) -> None:
+        """He does something."""
+        place = self._place(tick)
+        now = self._minutes[place]
+        self._minutes[place] = now._replace(**{what: getattr(now, what) + 1})
+
+    def _place(self, tick: int) -> int:
+        return min((tick - 1) // self._ticks_per_minute, len(self._minutes) - 1)

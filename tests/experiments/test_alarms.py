@@ -7,7 +7,9 @@ import anyio
 
 from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.report import render_exams
+from kurt2rt.rla.rla import Phase
 from kurt2rt.simulated import SimulatedArena, SimulatedStage
 from tests.experiments.helpers import ROBOT, short_task
 from tests.experiments.test_report import printed
@@ -44,10 +46,24 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
         return result
 
     result = anyio.run(lesson)
-    assert result.alarms == 1
+    assert result.alarms == sum(minute.go for minute in result.load) == 1
     at_the_alarm, a_second_later, end = (result.trail[at] for at in (52, 59, -1))
     assert at_the_alarm == a_second_later
     assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
+
+
+def test_an_alarm_that_the_end_of_what_was_shown_lifts_is_one_all_the_same(tmp_path: Path) -> None:
+    async def lesson() -> LessonResult:
+        # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
+        plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)
+        result, _ = await run_lesson(
+            STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None, plan=plan
+        )
+        return result
+
+    result = anyio.run(lesson)
+    assert [(minute.shown, minute.go) for minute in result.load] == [(1, 1)]
+    assert result.alarms == 1
 
 
 def test_an_exam_ends_and_says_why() -> None:

@@ -19,6 +19,16 @@ def test_each_kind_is_counted_in_its_minute() -> None:
     )
 
 
+def test_the_work_of_the_hands_is_load_too() -> None:
+    load = Load(ticks=12_000, period_s=0.01)
+    load.note_hands(1, "set_down")
+    load.note_hands(6_000, "set_down")
+    load.note_hands(6_001, "shown")
+    load.note_hands(6_001, "rescued")
+    load.note_hands(12_000, "go")
+    assert load.minutes == (Minute(set_down=2), Minute(shown=1, rescued=1, go=1))
+
+
 def test_what_teaches_nothing_is_no_load() -> None:
     load = Load(ticks=100, period_s=0.01)
     load.note(1, SetPhase("1", "Ann", Phase.CRITIC))

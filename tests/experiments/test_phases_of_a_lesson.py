@@ -60,6 +60,7 @@ def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Tau
     plan = of_phase(Phase.CRITIC, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
     result, events = go_on(taught, tmp_path, plan)
     assert result.repositions == 3
+    assert [(minute.set_down, minute.shown) for minute in result.load] == [(3, 3)]
     critics = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == CRITIC]
     assert critics
     assert all(isinstance(event, RlaCreated | Appraised) or event.origin.phase is Phase.CRITIC for event in events)
@@ -77,7 +78,7 @@ def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_el
 
     result, events = anyio.run(lesson)
     assert events == []
-    assert result.rescues == result.unknown_rescues == 3
+    assert result.rescues == result.unknown_rescues == sum(minute.rescued for minute in result.load) == 3
     assert result.share_unknown > 0.99
 
 

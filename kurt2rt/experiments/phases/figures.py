@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kurt2rt.critic.settings import load_critic
-from kurt2rt.experiments.load import Minute
+from kurt2rt.experiments.load import SAID
 from kurt2rt.experiments.phases.outcome import StageOutcome
 from kurt2rt.experiments.phases.steps import (
     BRANCHES,
@@ -109,7 +109,7 @@ def _draw_load(study: Study, path: Path) -> None:
         lasts = taught[0].duration_s / 60.0
         ends = np.minimum(np.arange(1, minutes + 1), lasts)
         width = np.diff(ends, prepend=0.0)
-        for kind in Minute._fields:
+        for kind in SAID:
             said = np.mean([[getattr(minute, kind) for minute in each.load] for each in taught], axis=0) / width
             highest = max(highest, float(said.max()))
             axes.stairs(

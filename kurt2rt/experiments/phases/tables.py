@@ -156,6 +156,7 @@ def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
                 *cells,
                 f"{quartiles([each.praise for each in taught])[1]:g}",
                 f"{quartiles([each.blame for each in taught])[1]:g}",
+                f"{quartiles([each.refused_signals for each in taught])[1]:g}",
                 f"{quartiles([each.withdrawn for each in taught])[1]:g}",
             )
         )
@@ -166,15 +167,23 @@ def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
         "corrections",
         "rewards",
         "appraisals",
+        "set down",
+        "shown",
+        "rescued",
+        "Go",
         "+1",
         "-1",
+        "too late",
         "withdrawn",
     )
     return Sheet(
         title,
         columns,
         tuple(rows),
-        note="Medians of all robots; in brackets in a minute. Phases 1 and 2 are one lesson.",
+        note="Medians of all robots; in brackets in a minute. Phases 1 and 2 are one lesson. Set down, shown, rescued "
+        "and Go are the work of the hands: the robot carried elsewhere as planned, an action shown to the critic, "
+        "carried away because it made no way, told to drive again after the guard had stopped it. Too late: rewards "
+        "and appraisals that the robot refused.",
     )
 
 
