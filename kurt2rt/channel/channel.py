@@ -12,7 +12,7 @@ from kurt2rt.channel.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.reception import Copies, Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
-from kurt2rt.channel.requests import BOOT_BYTES
+from kurt2rt.channel.requests import BOOT_BYTES, VERSION
 from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
@@ -24,7 +24,6 @@ from kurt2rt.teaching.commands import HandOver, Stop
 from kurt2rt.teaching.inbox import InboxFullError
 from kurt2rt.tick import TickRecord
 
-VERSION = 1
 PICTURES_PER_S = 20
 LOOPBACK, EVERYWHERE = "127.0.0.1", "::"
 _REFRESH_S = 1.0

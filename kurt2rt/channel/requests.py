@@ -6,6 +6,8 @@ from typing import Annotated, ClassVar, get_args, get_type_hints
 from kurt2rt.channel.schema import Check, Octets, OneOf, OrNone, Real, Text, Whole
 from kurt2rt.rla.rla import Phase
 
+VERSION = 2
+"""Of the wire contract: what /hello and /state hold. A device refuses another one and says what to do."""
 BOOT_BYTES = 4
 COMMAND_ID_BYTES = 8
 HIGHEST_SPEED_M_S = 2.0

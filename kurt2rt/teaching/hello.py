@@ -4,12 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER
+from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, VERSION
 from kurt2rt.channel.schema import Flag, ManyOf, Octets, Real, Row, Text, Whole, WireError
 
 _NAME = Text(64)
 _METRES = Real(1000.0, "m")
-_VERSION = Whole(1, 1)
 _NUMBER = Whole(0, LARGEST_NUMBER)
 _BOOT = Octets(BOOT_BYTES)
 _SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))), most=64)
@@ -67,13 +66,14 @@ class Hello:
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
-    """The introduction in a decoded body. Raises WireError."""
+    """The introduction in a decoded body. Raises WireError, which for another version says what to do."""
+    _require_version(body)
     try:
         phases = body["phases"]
         if not isinstance(phases, Mapping) or set(phases) != set(range(1, len(phases) + 1)):
             raise WireError("phases have to be a map from 1, 2, 3 ... to names")
         return Hello(
-            version=_VERSION("version of the wire contract", body["v"]),
+            version=VERSION,
             boot=_BOOT("boot", body["boot"]),
             tick=_NUMBER("tick", body["tick"]),
             robot=_NAME("robot", body["robot"]),
@@ -92,3 +92,13 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error
+
+
+def _require_version(body: Mapping[str, Any]) -> None:
+    version = Whole(1, LARGEST_NUMBER)("version of the wire contract", body.get("v"))
+    if version != VERSION:
+        older = "the robot's" if version < VERSION else "this device's"
+        raise WireError(
+            f"the robot speaks version {version} of the wire contract, and this device version {VERSION}; bring "
+            f"{older} kurt2rt up to date, so that both are the same"
+        )

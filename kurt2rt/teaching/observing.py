@@ -47,6 +47,9 @@ def _show(response: Response, requests: OscoreRequests, pictures: Pictures) -> N
     try:
         picture = decode_state(response.payload)
     except WireError as error:
-        requests.trouble = f"the robot's picture is not understood, it may be of another version: {error}"
+        requests.trouble = (
+            f"the robot's picture is not understood, it may be of another version: {error}; bring kurt2rt up to date "
+            "on the robot and on this device"
+        )
     else:
         pictures.show(picture)

@@ -19,6 +19,7 @@ from kurt2rt.channel.credentials import Pairing, pair, renew
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
+    VERSION,
     AnswerRequest,
     AppraiseRequest,
     BehaviourRequest,
@@ -55,7 +56,7 @@ from tests.channel.lossy_link import LossyLink, Weather
 from tests.teaching.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
 
 HELLO = {
-    "v": 1,
+    "v": VERSION,
     "boot": b"boot",
     "tick": 7,
     "robot": "kurt2-indoor",
@@ -213,12 +214,18 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
     assert robot.orders() == [HelloRequest()]
 
 
-async def test_a_robot_of_another_version_is_not_understood(client: TeacherClient, robot: StandInRobot) -> None:
+@pytest.mark.parametrize(("version", "older"), [(VERSION - 1, "the robot's"), (VERSION + 1, "this device's")])
+async def test_a_robot_of_another_version_is_not_understood_and_it_is_said_what_to_do(
+    client: TeacherClient, robot: StandInRobot, version: int, older: str
+) -> None:
     async def speaks_otherwise(_: Request) -> Reply:
-        return Reply(Verdict.DONE, {**HELLO, "v": 2})
+        # An older robot lacks what was added since: that must not be what is complained of.
+        lacking = {key: value for key, value in HELLO.items() if key not in ("appraisals", "trusted_from")}
+        return Reply(Verdict.DONE, {**lacking, "v": version})
 
     robot.mind = speaks_otherwise
-    with pytest.raises(NoAnswerError, match="version of the wire contract"):
+    said = f"speaks version {version} of the wire contract, .* bring {older} kurt2rt up to date"
+    with pytest.raises(NoAnswerError, match=said):
         await client.hello()
 
 
