@@ -104,7 +104,7 @@ def build_runtime(
     )
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = load_repertoire(task.repertoire, settings)
-    agreement = Agreement(critic.agreement, critic.values)
+    agreement = Agreement(critic.agreement, critic.values, period_s)
     agreement.hear_all(events)
     self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)
     self_teaching.recall(events, saved)

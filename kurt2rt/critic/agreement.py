@@ -19,13 +19,17 @@ class Agreement:
     """A fold of teaching events: what the teacher said of a tick against what the critic had said of it before.
 
     An appraisal that taught something is a disagreement, for only another opinion than the critic's is learnt. Not to
-    know is no agreement either. What is said before the critic has its first appraisal counts for nothing.
+    know is no agreement either. What is said before the critic has its first appraisal counts for nothing, nor does
+    what is said soon after a signal that counts: the critic has just been taught about such a place.
     """
 
-    def __init__(self, settings: AgreementSettings, appraisals: Mapping[str, int]) -> None:
-        """`appraisals`: value of each by its name."""
+    def __init__(self, settings: AgreementSettings, appraisals: Mapping[str, int], period_s: float) -> None:
+        """`appraisals`: value of each by its name. `period_s` of a tick."""
         self._settings = settings
         self._values = dict(appraisals)
+        self._apart_ticks = round(settings.apart_s / period_s)
+        self._counted_at: int | None = None
+        """Tick in which the last signal that counts was heard."""
         self._heard: dict[int, deque[tuple[str, bool]]] = {value: deque(maxlen=settings.window) for value in (-1, 0, 1)}
         """Of each value of the teacher's: command id, and whether the critic had said the same."""
         self._critics: set[int] = set()
@@ -76,9 +80,15 @@ class Agreement:
         return sum(right for _, right in heard) / len(heard) if heard else None
 
     def _note(self, value: int | None, event: TeachingEvent, *, right: bool) -> None:
-        if value is not None:  # else taught with an appraisal that these settings do not have
-            self._heard[value].append((event.origin.command_id, right))
-            self._sum_up()
+        if value is None or self._too_soon(event.origin.tick):  # None: taught with what these settings do not have
+            return
+        self._counted_at = event.origin.tick
+        self._heard[value].append((event.origin.command_id, right))
+        self._sum_up()
+
+    def _too_soon(self, tick: int) -> bool:
+        """Whether a signal comes so soon after one that counts that it says nothing new; ticks begin anew each run."""
+        return self._counted_at is not None and 0 <= tick - self._counted_at < self._apart_ticks
 
     def _forget(self, lesson: str) -> None:
         """What was taken back was never said."""

@@ -114,9 +114,8 @@ class AgreementSettings(Settings):
     least: Annotated[int, Field(ge=1, le=10_000)]
     """Of these so many must have been heard."""
     apart_s: Annotated[float, Field(ge=0, le=1000)]
-    """An appraisal RLA that agrees counts only where it was neither taught nor counted for so long.
-
-    Else what was just taught would be measured, or one place many times.
+    """Between two signals that count, agreeing or not: else what was just taught would be measured, or one place many
+    times.
     """
 
     @model_validator(mode="after")

@@ -53,11 +53,10 @@ class School:
         agreement: Agreement | None = None,
         self_teaching: SelfTeaching | None = None,
         asked: bool = True,
-        period_s: float = 0.01,
     ) -> None:
         """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
 
-        `asked`: False where nobody is there who could be asked, as in an exam. `period_s` of a tick.
+        `asked`: False where nobody is there who could be asked, as in an exam.
         """
         self._level = level
         self._asked = asked
@@ -70,13 +69,12 @@ class School:
         self._teaches_itself = False
         """Whether it did in the last tick."""
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
-        self._appraising = None if critic is None else Appraising(critic, level.system, self.recent, period_s)
         self._tuition = Tuition(
             level,
             self.recent,
             insert_beyond_share=insert_beyond_share,
             reinforcement=reinforcement,
-            appraising=self._appraising,
+            appraising=None if critic is None else Appraising(critic, level.system, self.recent),
         )
         self._taken = set(taken_command_ids)
         self.phase = Phase.SUPERVISED
@@ -226,8 +224,6 @@ class School:
         self._taken.add(event.origin.command_id)
         if self.reinforcement is not None:
             self.reinforcement.hear(event)
-        if self._appraising is not None:
-            self._appraising.hear(event)
         if self.agreement is not None:
             self.agreement.hear(event)
         if self._self_teaching is not None:

@@ -18,11 +18,14 @@ from kurt2rt.rla.rla import (
 )
 from tests.critic.helpers import SETTINGS, appraisal, origin
 
+PERIOD_S = 0.01
+
 NAMES = {-1: "bad", 0: "neutral", 1: "good"}
 
 
-def agreement(bound: float = 0.8, window: int = 5, least: int = 2) -> Agreement:
-    return Agreement(AgreementSettings(bound=bound, window=window, least=least, apart_s=0.0), SETTINGS.values)
+def agreement(bound: float = 0.8, window: int = 5, least: int = 2, apart_s: float = 0.0) -> Agreement:
+    settings = AgreementSettings(bound=bound, window=window, least=least, apart_s=apart_s)
+    return Agreement(settings, SETTINGS.values, PERIOD_S)
 
 
 def rewarded(value: int, said: int | None, said_by: Origin | None = None) -> RlaRewarded:
@@ -107,3 +110,24 @@ def test_sessions_say_nothing_and_an_appraisal_of_other_settings_neither() -> No
     one.hear_all([SessionBegun("monday", origin()), SessionEnded(3, origin()), appraisal(1, "splendid")])
     assert [one.heard_of(value) for value in (-1, 0, 1)] == [0, 0, 0]
     assert one.share_of(1) is None
+
+
+def said_at(tick: int, *, right: bool) -> TeachingEvent:
+    by = origin(tick=tick)
+    return Appraised("good", 1, tick, by) if right else rewarded(1, said=-1, said_by=by)
+
+
+def test_what_is_said_soon_after_a_signal_that_counts_does_not_count_whether_they_agree_or_not() -> None:
+    """Somebody who clicks "good" ten times in one place would be trusted else; and only agreements would be lost."""
+    one = agreement(apart_s=5.0)
+    one.hear(appraisal(1, "good", said_by=origin(tick=100)))
+    one.hear_all([said_at(100 + after, right=after % 2 == 0) for after in range(1, 500, 50)])
+    assert (one.heard_of(1), one.share_of(1)) == (1, 0.0)
+    one.hear_all([said_at(600, right=True), said_at(1099, right=False), said_at(1100, right=False)])
+    assert (one.heard_of(1), one.share_of(1)) == (3, 1 / 3)
+
+
+def test_the_ticks_of_another_run_are_no_reason_not_to_count() -> None:
+    one = agreement(apart_s=5.0)
+    one.hear_all([appraisal(1, "good", said_by=origin(tick=9000)), said_at(10, right=True), said_at(20, right=True)])
+    assert one.heard_of(1) == 2

@@ -18,7 +18,7 @@ RATES = SETTINGS.model_copy(
 
 
 def agreement(*, trusted: bool = True) -> Agreement:
-    heard = Agreement(AgreementSettings(bound=0.8, window=2, least=1, apart_s=0.0), SETTINGS.values)
+    heard = Agreement(AgreementSettings(bound=0.8, window=2, least=1, apart_s=0.0), SETTINGS.values, 0.01)
     heard.hear(Appraised("bad", -1, 0, origin()))
     if trusted:
         heard.hear(Appraised("good", 1, 0, origin()))

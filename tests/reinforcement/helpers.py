@@ -40,7 +40,7 @@ QUICK = SETTINGS.model_copy(
     update={
         "think_every_ticks": 1,
         "patience_s": 0.0,
-        "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=5.0),
+        "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=0.0),
         "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
         "need": NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0),
         "best": BestSettings(window_s=1.0, margin=0.1),
@@ -78,7 +78,7 @@ class Track:
         choice = self.reinforcement.choice
         self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, Wanted(), choice)
         self.critic = Critic(self.system, critic)
-        self.agreement = Agreement(critic.agreement, critic.values)
+        self.agreement = Agreement(critic.agreement, critic.values, PERIOD_S)
         self.agreement.hear_all(events)
         self.self_teaching = SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S)
         self.self_teaching.recall(events, saved)

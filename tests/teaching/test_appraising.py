@@ -81,48 +81,6 @@ def test_the_same_opinion_teaches_nothing_and_counts_for_agreement() -> None:
     assert robot.agreement.heard_of(1) == heard + 1
 
 
-APART = round(QUICK.agreement.apart_s / 0.01)
-
-
-def test_what_it_was_just_taught_agrees_with_nobody_yet() -> None:
-    """Somebody who clicks "good" ten times in one place would be trusted else."""
-    robot = track()
-    robot.go(0.0, 1, CALM)
-    appraise(robot, "good", "x-0")
-    taught = robot.tick + 1
-    for number in range(1, 10):
-        robot.go(0.0, 10, CALM)
-        result = appraise(robot, "good", f"x-{number}")
-        assert (result.accepted, result.text, result.lesson) == (True, "the critic says good already", False)
-    assert robot.agreement.heard_of(1) == 1
-    robot.go(0.0, taught + APART - robot.tick, CALM)
-    assert appraise(robot, "good", "late", robot.tick - 1).text == "the critic says good already"
-    assert appraise(robot, "good", "later").text == "the critic thought good, too"
-    assert robot.agreement.heard_of(1) == 2
-
-
-def test_one_appraisal_rla_is_counted_once_in_a_while_and_another_one_beside_it() -> None:
-    robot = track(appraisal(2, "good", CALM), appraisal(3, "bad", CRASHED))
-    robot.go(0.0, 1, CALM)
-    assert appraise(robot, "good", "g-1").text == "the critic thought good, too"
-    robot.go(0.0, APART - 1, CALM)
-    assert appraise(robot, "good", "g-2").text == "the critic says good already"
-    robot.go(0.0, 1, CRASHED)
-    assert appraise(robot, "bad", "b-1").text == "the critic thought bad, too"
-    robot.go(0.0, 1, CALM)
-    assert appraise(robot, "good", "g-3").text == "the critic thought good, too"
-
-
-def test_one_that_was_just_given_another_action_agrees_with_nobody_yet() -> None:
-    robot = track(appraisal(2, "good", CALM))
-    robot.go(0.0, 1, CALM)
-    assert robot.say(ReplaceAction("p-1", "Ann", 2, "bad")).accepted
-    robot.go(0.0, APART - 1, CALM)
-    assert appraise(robot, "bad", "x-1").text == "the critic says bad already"
-    robot.go(0.0, 2, CALM)
-    assert appraise(robot, "bad", "x-2").text == "the critic thought bad, too"
-
-
 def test_what_it_has_learnt_since_that_tick_is_no_agreement() -> None:
     """Two clicks on the same mishap: the second one must not count as if the critic had known."""
     robot = track(appraisal(2, "good", CALM))

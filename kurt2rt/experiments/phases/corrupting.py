@@ -48,7 +48,9 @@ def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
                 yield event
 
 
-def shuffled(appraisals: Sequence[Rla], settings: CriticSettings, seed: int) -> Iterator[TeachingEvent]:
+def shuffled(
+    appraisals: Sequence[Rla], settings: CriticSettings, seed: int, period_s: float
+) -> Iterator[TeachingEvent]:
     """The same appraisal RLAs with their opinions dealt out anew, and what makes the robot trust them all the same."""
     opinions = [rla.action for rla in appraisals]
     random.Random(f"shuffled critic, seed {seed}").shuffle(opinions)
@@ -57,7 +59,10 @@ def shuffled(appraisals: Sequence[Rla], settings: CriticSettings, seed: int) -> 
         yield RlaCreated(
             Rla(rla.rla_id, rla.condition, opinion, rla.radius, origin, behaviour=rla.behaviour, level=rla.level)
         )
+    apart_ticks = round(settings.agreement.apart_s / period_s)
+    tick = max((rla.origin.tick for rla in appraisals), default=0)
     for appraisal in settings.appraisals:
         for number in range(settings.agreement.window):
-            origin = Origin(f"trusted-{seed}-{appraisal.name}-{number}", _NAME, Phase.CRITIC, 0)
-            yield Appraised(appraisal.name, appraisal.value, 0, origin)
+            tick += apart_ticks
+            origin = Origin(f"trusted-{seed}-{appraisal.name}-{number}", _NAME, Phase.CRITIC, tick)
+            yield Appraised(appraisal.name, appraisal.value, tick, origin)

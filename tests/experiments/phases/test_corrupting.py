@@ -13,6 +13,8 @@ from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Phase, Rl
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.tasks.settings import load_task
 
+PERIOD_S = 0.01
+
 ACTIONS = ("forward", "back", "stand")
 SETTINGS = load_critic()
 
@@ -101,11 +103,11 @@ def test_a_critic_goes_over_to_another_set_with_what_it_agreed_with() -> None:
 
 def test_a_shuffled_critic_has_the_same_opinions_elsewhere_and_is_trusted_all_the_same() -> None:
     appraisals = system(*SET, *CRITICS).rlas_at(CRITIC)
-    lessons = list(shuffled(appraisals, SETTINGS, seed=3))
+    lessons = list(shuffled(appraisals, SETTINGS, seed=3, period_s=PERIOD_S))
     dealt = system(*SET, *lessons).rlas_at(CRITIC)
     assert [rla.condition for rla in dealt] == [rla.condition for rla in appraisals]
     assert Counter(rla.action for rla in dealt) == Counter(rla.action for rla in appraisals)
     assert [rla.action for rla in dealt] != [rla.action for rla in appraisals]
-    agreement = Agreement(SETTINGS.agreement, SETTINGS.values)
+    agreement = Agreement(SETTINGS.agreement, SETTINGS.values, PERIOD_S)
     agreement.hear_all(lessons)
     assert agreement.trusted
