@@ -97,13 +97,14 @@ async def examine(
     saved: Statistics | None = None,
     alone: Statistics | None = None,
     stuck_ends: bool = True,
+    on_record: Callable[[TickRecord], None] = lambda _: None,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
 
     `saved`: what rewards had made of that. `alone`: what phase 5 held RLAs to be worth, where the exam follows it: of
     several on the very same condition the best by this one answers, as it would there.
     `stuck_ends`: else a robot that is stuck is set down at the nearest start pose and goes on, so that collisions are
-    those of the whole time; it has got stuck all the same.
+    those of the whole time; it has got stuck all the same. `on_record` sees every tick.
     Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
     names an action which the repertoire lacks.
     """
@@ -155,6 +156,7 @@ async def examine(
     def after_tick(record: TickRecord) -> None:
         nonlocal unknown, changes, ticks, stuck, asking, action, alarm
         require_carried_out(record, task)
+        on_record(record)
         decision = record.decision
         ticks = record.tick
         unknown += decision.asking

@@ -39,8 +39,8 @@ def test_quick_goes_the_whole_path_leaves_a_report_and_goes_on_where_it_was(kurt
     folder = Path(f"results/phases/{task}-quick")
     assert first.out.endswith(f"report  {folder}/report.html\n")
     results = sorted(folder.glob("results/*/*.json"))
-    assert len(results) == 13
-    _, trusted, changes = zip(*map(alone, folder.glob("results/critic-*/*.json")), strict=True)
+    assert len(results) == 14
+    _, trusted, changes = zip(*map(alone, folder.glob("results/critic-[as]*/*.json")), strict=True)
     assert all(trusted)
     assert sum(changes) > 0
     stamps_ns = [path.stat().st_mtime_ns for path in results]
@@ -48,5 +48,5 @@ def test_quick_goes_the_whole_path_leaves_a_report_and_goes_on_where_it_was(kurt
     again = kurt2rt(*QUICK, "--task", task)
     assert again.out == first.out
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
-    assert changed == [place == 4 for place in range(13)]
+    assert changed == [place == 4 for place in range(14)]
     assert f"kurt2rt phases --quick --task {task} --seeds 0" in (folder / "report.html").read_text()

@@ -1,16 +1,18 @@
 """Exams of one stage."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.curriculum import Report
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.kept.stage import StudyStage
-from kurt2rt.experiments.phases.outcome import ExamOutcome
+from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
+from kurt2rt.experiments.phases.scoring import Scoring
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tick import TickRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +49,16 @@ class Examiner:
             outcomes.append(_outcome(drive, succeeded=drive.succeeded(progress[world], self.task.exam.success)))
         return tuple(outcomes)
 
+    async def critic(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> tuple[Judgement, ...]:
+        """A drive in the world that is taught in, by what `events` taught, in which the judge judges the critic.
+
+        Nothing is learnt in it.
+        """
+        assert self.task.judge is not None
+        scoring = Scoring(self.task.judge.build())
+        await self._drive(self.task.teaching.world, events, saved, None, by_teacher=False, on_record=scoring.look)
+        return tuple(scoring.judgements)
+
     async def _drive(
         self,
         world: str,
@@ -55,6 +67,7 @@ class Examiner:
         alone: Statistics | None,
         *,
         by_teacher: bool,
+        on_record: Callable[[TickRecord], None] = lambda _: None,
     ) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
         arena = self.stage.open(world, self.seed, "exam")
@@ -70,6 +83,7 @@ class Examiner:
                 by_teacher=by_teacher,
                 saved=saved,
                 alone=alone,
+                on_record=on_record,
                 # A robot that knows nothing only stands, and that is soon seen.
                 stuck_ends=not events and not by_teacher,
             )

@@ -11,7 +11,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.error import LessonLostError, StudyError
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
@@ -19,7 +19,7 @@ from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.examining import Examiner
 from kurt2rt.experiments.phases.folding import folded
-from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome, TeachingOutcome
+from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, Judgement, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, Step
 from kurt2rt.experiments.phases.told import told
 from kurt2rt.experiments.pool import Tell
@@ -156,7 +156,8 @@ class StepJob:
     def robot_time_s(self) -> float:
         """What is taught, and an exam in each world."""
         taught_s = self.of.plan.duration_s if self.of.plan else 0.0
-        return taught_s + (0.0 if self.of.aside else len(self.of.worlds) * self.robot.task.exam.duration_s)
+        drives = 0 if self.of.aside else len(self.of.worlds) + self.of.judges_critic
+        return taught_s + drives * self.robot.task.exam.duration_s
 
     def run(self, tell: Tell) -> None:
         """Make the set, teach, examine, keep the result and the knowledge."""
@@ -167,7 +168,7 @@ class StepJob:
         results = robot.results
         with results.scratch() as folder:
             knowledge = folder / "knowledge"
-            shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
+            self._copy_knowledge(knowledge)
             self._prepare(knowledge)
             before = len(read_lessons(knowledge, robot.settings, robot.task))
             teaching, alone, plan = None, None, self.plan()
@@ -183,7 +184,7 @@ class StepJob:
                 )
                 teaching, alone = told(lesson, events[before:]), lesson.alone
                 if step.aside:
-                    shutil.copyfile(results.folder / robot.knowledge_of(step.after), knowledge)
+                    self._copy_knowledge(knowledge)
                     self._add(knowledge, list(critics_lessons(events[before:])))
             with Journal.read_only(knowledge) as journal:
                 events, saved = [entry.event for entry in journal.entries()], journal.statistics()
@@ -193,8 +194,9 @@ class StepJob:
             else:
                 teachers = results.read(self.first, JobOutcome).teachers
                 exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers, alone)
+            judgements = await robot.examiner(time).critic(events, saved) if step.judges_critic else ()
             results.keep(knowledge, robot.knowledge_of(step.name))
-        stage = _stage(step.name, system, teaching, exams)
+        stage = _stage(step.name, system, teaching, exams, judgements)
         results.write(self, JobOutcome(made_of=self.made_of, seed=robot.seed, stages=(stage,)))
 
     def plan(self) -> LessonPlan | None:
@@ -208,6 +210,19 @@ class StepJob:
         (stage,) = self.robot.results.read(self.alike, JobOutcome).stages
         assert stage.teaching is not None
         return replace(plan, blame_by_chance=stage.teaching.blame)
+
+    def _copy_knowledge(self, knowledge: Path) -> None:
+        """What the step goes on from."""
+        shutil.copyfile(self._left_by(self.of.after), knowledge)
+
+    def _left_by(self, step: str) -> Path:
+        """Knowledge that another step left. Raises StudyError where its result stands and this is gone."""
+        robot = self.robot
+        file = robot.results.folder / robot.knowledge_of(step)
+        if not file.exists():
+            result = robot.results.folder / robot.result_of(step)
+            raise StudyError(f"{file} is gone, and {result} stands; delete that too, and run again")
+        return file
 
     def _prepare(self, knowledge: Path) -> None:
         """Wrong actions and the critic of phase 4, where the step begins with them."""
@@ -238,20 +253,24 @@ class StepJob:
 
     def _critics(self) -> Iterator[TeachingEvent]:
         robot = self.robot
-        taught = robot.results.folder / robot.knowledge_of(PHASE_4)
+        taught = self._left_by(PHASE_4)
         if self.of.critic == "taught":
             yield from critics_lessons(read_lessons(taught, robot.settings, robot.task))
             return
         with Journal.read_only(taught) as journal:
             appraisals = fold_journal(journal, radius=1.0).rlas_at(CRITIC)
-        yield from shuffled(appraisals, load_critic(robot.task.critic), robot.seed)
+        yield from shuffled(appraisals, load_critic(robot.task.critic), robot.seed, robot.settings.can.cycle_s)
 
 
 Job = TaughtJob | StepJob
 
 
 def _stage(
-    name: str, system: RlaSystem, teaching: TeachingOutcome | None, exams: tuple[ExamOutcome, ...]
+    name: str,
+    system: RlaSystem,
+    teaching: TeachingOutcome | None,
+    exams: tuple[ExamOutcome, ...],
+    judgements: tuple[Judgement, ...] = (),
 ) -> StageOutcome:
     return StageOutcome(
         name=name,
@@ -260,4 +279,6 @@ def _stage(
         knowledge_hash=system.knowledge_hash(),
         teaching=teaching,
         exams=exams,
+        still_withdrawn=sum(rla.asks for rla in system.rlas),
+        judgements=judgements,
     )

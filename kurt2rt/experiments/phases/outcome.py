@@ -54,6 +54,16 @@ class TeachingOutcome(Settings):
         return self.collisions + self.rescues + self.alarms
 
 
+class Judgement(Settings):
+    """What the critic said of what a judge thinks, while nothing was taught."""
+
+    judged: int
+    """-1, 0 or +1: what the judge thinks."""
+    said: int | None
+    """What the critic says; None: it does not know."""
+    ticks: int
+
+
 class StageOutcome(Settings):
     """A robot's knowledge at one stage, how it came there, and how it drives with it."""
 
@@ -65,6 +75,10 @@ class StageOutcome(Settings):
     teaching: TeachingOutcome | None
     """None: nothing was taught since the stage before."""
     exams: tuple[ExamOutcome, ...]
+    still_withdrawn: int = 0
+    """RLAs whose action was withdrawn and not taught anew: they ask, and exams pass over them."""
+    judgements: tuple[Judgement, ...] = ()
+    """Where the critic was only judged: each pair of opinions that came."""
 
 
 class JobOutcome(Settings):

@@ -16,7 +16,7 @@ from kurt2rt.tasks.settings import TaskSettings
 
 OWN = {
     f"kurt2rt/experiments/phases/{name}.py"
-    for name in ("corrupting", "examining", "folding", "job", "outcome", "settings", "steps", "told")
+    for name in ("corrupting", "examining", "folding", "job", "outcome", "scoring", "settings", "steps", "told")
 }
 """Modules that say what is done to robots here, and what of it is kept."""
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0

@@ -17,7 +17,7 @@ UNTAUGHT, PHASE_1, PHASE_2 = "untaught", "phase-1", "phase-2"
 PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run"
 CORRUPTED, ASKS, UNKNOWN_BAD = "corrupted", "asks-only", "unknown-is-bad"
 BLAME_BY_CHANCE, REWARDS = "blame-by-chance", "rewards"
-CRITIC_ALONE, SHUFFLED, INTACT = "critic-alone", "critic-shuffled", "intact-autonomous"
+JUDGED, CRITIC_ALONE, SHUFFLED, INTACT = "critic-judged", "critic-alone", "critic-shuffled", "intact-autonomous"
 
 PATH = (UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5)
 BRANCHES = (CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, CRITIC_ALONE, SHUFFLED)
@@ -35,6 +35,7 @@ TITLES = {
     UNKNOWN_BAD: "asks, unknown is -1",
     BLAME_BY_CHANCE: "asks, -1 by chance",
     REWARDS: "asks and rewards (phase 3)",
+    JUDGED: "critic judged",
     CRITIC_ALONE: "critic alone (phase 5)",
     SHUFFLED: "shuffled critic alone",
     INTACT: "intact set, critic alone",
@@ -59,6 +60,8 @@ class Step:
     """What the wrong actions are for: another purpose has others."""
     blames_like: str = ""
     """The step in which this robot was blamed as often as it shall be by chance; empty where nobody goes by chance."""
+    judges_critic: bool = False
+    """Whether a drive follows in which nothing is learnt and the judge judges the critic."""
     aside: bool = False
     """Whether only the critic is kept of what was taught, and all else, exams too, is as it was before the step."""
 
@@ -119,9 +122,9 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
         shown_s=phases.shown_s,
         shown_share=phases.shown_share,
     )
-    yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, worlds)
+    yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, repair_worlds)
     errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
-    yield Step(PHASE_4, PHASE_3, errs, "own", critic, worlds, mistakes="critic", aside=True)
+    yield Step(PHASE_4, PHASE_3, errs, "own", critic, repair_worlds, mistakes="critic", aside=True)
     yield Step(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
     yield Step(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
 
@@ -138,6 +141,7 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
     yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
     yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
     yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds, blames_like=REWARDS)
+    yield Step(JUDGED, PHASE_2, wrong, "taught", None, (), judges_critic=True)
     yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
     yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
     yield Step(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)

@@ -11,6 +11,7 @@ from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
     INTACT,
+    JUDGED,
     LONG_RUN,
     PHASE_1,
     PHASE_2,
@@ -28,7 +29,7 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 TASK = load_task("wall_following")
 ALL = (
     *(UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5, LONG_RUN),
-    *(CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, CRITIC_ALONE, SHUFFLED, INTACT),
+    *(CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, JUDGED, CRITIC_ALONE, SHUFFLED, INTACT),
 )
 
 
@@ -90,7 +91,8 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
     """All stages of some robots, alike but for those that are given (with _ for - in their names)."""
     stages = {
         name: tuple(
-            stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED) else teaching()) for _ in range(robots)
+            stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED, JUDGED) else teaching())
+            for _ in range(robots)
         )
         for name in ALL
     }

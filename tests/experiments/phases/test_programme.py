@@ -36,7 +36,7 @@ def test_jobs_come_in_waves_of_which_each_needs_only_those_before() -> None:
 
 def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
     jobs = planned().jobs
-    assert len({job.file for job in jobs}) == len(jobs) == 2 * 13
+    assert len({job.file for job in jobs}) == len(jobs) == 2 * 14
 
 
 def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
     INTACT,
+    JUDGED,
     LONG_RUN,
     PATH,
     PHASE_2,
@@ -51,7 +52,9 @@ def test_every_repair_begins_with_the_same_wrong_set_at_the_same_place_for_the_s
 
 
 def test_a_critic_is_taken_from_this_robot_s_phase_4() -> None:
-    assert {name for name, step in STEPS.items() if step.critic != "own"} == {CRITIC_ALONE, SHUFFLED, INTACT}
+    assert {name for name, step in STEPS.items() if step.critic != "own"} == {*(JUDGED, CRITIC_ALONE, SHUFFLED, INTACT)}
+    assert STEPS[JUDGED].plan is None
+    assert (STEPS[JUDGED].corrupted, STEPS[JUDGED].mistakes) == (STEPS[REWARDS].corrupted, STEPS[REWARDS].mistakes)
     assert all(PHASE_4 in STEPS[name].needs for name in (CRITIC_ALONE, SHUFFLED, INTACT))
 
 

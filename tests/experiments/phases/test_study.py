@@ -11,6 +11,7 @@ from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
+    JUDGED,
     LONG_RUN,
     PHASE_1,
     PHASE_2,
@@ -99,6 +100,22 @@ def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same(tiny
     }
     assert seen[-1].done_s == sum(job.robot_time_s for job in programme.jobs if job.file in left_out)
     assert read_study(programme, results).stages == tiny.study.stages
+
+
+def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
+    (judged,) = tiny.study.stages[JUDGED]
+    assert judged.teaching is None
+    assert judged.exams == ()
+    assert judged.rlas == tiny.study.stages[CORRUPTED][0].rlas
+    assert 0 < sum(each.ticks for each in judged.judgements) <= 100
+
+
+def test_knowledge_that_is_gone_while_its_result_stands_is_told_with_what_to_delete(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    programme = tiny_programme(results)
+    (job,) = [job for job in programme.jobs if job.step == CORRUPTED]
+    with pytest.raises(StudyError, match=r"phase-2/\S+.knowledge is gone, and \S+100.json stands; delete that too"):
+        job.run(lambda _: None)
 
 
 def test_results_that_are_not_there_are_not_shown(tiny: Tiny, tmp_path: Path) -> None:
