@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from kurt2rt.experiments.courses.course import DISTANCE_ERROR
-from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
+from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement, StageOutcome
 from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
 from kurt2rt.experiments.shown.intervals import Difference, Rate, difference_of, rate_of
 
@@ -68,6 +68,42 @@ def summarize(exams: Sequence[ExamOutcome]) -> WorldSummary:
         changes_per_s=quartiles([each.action_changes_per_s for each in exams])[1],
         distance_error_m=quartiles(errors)[1] if errors else None,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class CriticScore:
+    """How far a critic says what the judge thinks; None where there was nothing to divide by."""
+
+    precision: float | None
+    """Of the ticks that it calls bad, the share that are."""
+    recall: float | None
+    """Of the ticks that are bad, the share that it calls so."""
+    agreement: float | None
+    """Mean over bad and good ones of the share that it calls so."""
+    silent: float | None
+    """Share of ticks of which it does not know anything."""
+
+
+def score_of(judgements: Sequence[Judgement]) -> CriticScore:
+    """Of one robot, or of several together."""
+
+    def share(part: Callable[[Judgement], bool], whole: Callable[[Judgement], bool]) -> float | None:
+        ticks = sum(each.ticks for each in judgements if whole(each))
+        return sum(each.ticks for each in judgements if part(each) and whole(each)) / ticks if ticks else None
+
+    rights = [share(lambda each: each.said == value, lambda each: each.judged == value) for value in (-1, 1)]  # noqa: B023
+    known = [right for right in rights if right is not None]
+    return CriticScore(
+        precision=share(lambda each: each.judged == -1, lambda each: each.said == -1),
+        recall=rights[0],
+        agreement=sum(known) / len(known) if known else None,
+        silent=share(lambda each: each.said is None, lambda _: True),
+    )
+
+
+def alike(one: Sequence[StageOutcome], other: Sequence[StageOutcome]) -> int:
+    """Robots that drive the same in all exams of both stages."""
+    return sum(a.exams == b.exams for a, b in zip(one, other, strict=True))
 
 
 def collisions_of(exams: Sequence[ExamOutcome]) -> Rate:

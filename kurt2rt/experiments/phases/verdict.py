@@ -9,7 +9,7 @@ from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LO
 from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.summary import Paired, collisions_of, paired, worlds_of
 from kurt2rt.experiments.report import label_of
-from kurt2rt.experiments.shown.intervals import Rate, rate_of
+from kurt2rt.experiments.shown.intervals import Rate, fall_of, rate_of
 from kurt2rt.experiments.shown.verdict import Verdict
 
 _HOUR_S = 3600.0
@@ -28,12 +28,13 @@ def verdicts(study: Study) -> Iterator[Verdict]:
     yield from _repaired("repaired by the critic alone", alone, asked.repaired_by_critic)
     if asked.collisions_fall_by:
         before, after = (collisions_of(_exams(stages)).value for stages in (study.stages[CORRUPTED], alone))
-        fall = 1 - after / before if before else 0.0
+        pairs = [[collisions_of(robot.exams).value for robot in stages] for stages in (study.stages[CORRUPTED], alone)]
+        fall = fall_of(*pairs)
         yield Verdict(
             "collisions fall by the critic alone",
             f"by {asked.collisions_fall_by:.0%}",
-            f"by {fall:.0%}, {before:.2f} to {after:.2f} in 10 min",
-            fall >= asked.collisions_fall_by,
+            f"by {fall.value:.0%} ({fall.low:.0%} to {fall.high:.0%}), {before:.2f} to {after:.2f} in 10 min",
+            fall.value >= asked.collisions_fall_by,
         )
     if asked.intact_not_worse:
         for each in paired(study.stages[PHASE_2], study.stages[INTACT]):
@@ -43,7 +44,7 @@ def verdicts(study: Study) -> Iterator[Verdict]:
         yield Verdict(
             "interventions an hour after phase 5",
             f"below {limit_h:g}",
-            f"{rate.value:.2f} ({rate.low:.2f} to {rate.high:.2f})",
+            f"{rate.value:.2f} ({rate.low:.2f} to {rate.high:.2f}); {robots_of_the_long_run(study)}",
             rate.value < limit_h,
         )
 
@@ -52,6 +53,13 @@ def interventions(study: Study, stage: str = LONG_RUN) -> Rate:
     """An hour, of all robots together in a step without a teacher."""
     taught = [each.teaching for each in study.stages[stage] if each.teaching is not None]
     return rate_of([each.interventions for each in taught], [each.duration_s / _HOUR_S for each in taught])
+
+
+def robots_of_the_long_run(study: Study) -> str:
+    """What the hours are made of, and the robot that needed most."""
+    taught = [each.teaching for each in study.stages[LONG_RUN] if each.teaching is not None]
+    minutes = " or ".join(f"{each:g}" for each in sorted({each.duration_s / 60.0 for each in taught}))
+    return f"{len(taught)} robots of {minutes} min each, of which the worst had {max(t.interventions for t in taught)}"
 
 
 def _repaired(what: str, stages: tuple[StageOutcome, ...], asked: tuple[AskedShare, ...]) -> Iterator[Verdict]:

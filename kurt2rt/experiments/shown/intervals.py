@@ -83,3 +83,19 @@ def difference_of(changes: Sequence[float]) -> Difference:
     drawn = chance.integers(len(changes), size=(_RESAMPLES, len(changes)))
     low, high = np.quantile(np.asarray(changes, dtype=np.float64)[drawn].mean(axis=1), (_TAIL, 1 - _TAIL))
     return Difference(value, min(float(low), value), max(float(high), value))
+
+
+def fall_of(before: Sequence[float], after: Sequence[float]) -> Difference:
+    """By which share the sum of something falls in the same robots, bootstrapped over the robots, pairs kept together.
+
+    Where there was nothing before, nothing falls.
+    """
+    were, are = np.asarray(before, dtype=np.float64), np.asarray(after, dtype=np.float64)
+    value = 1.0 - math.fsum(after) / math.fsum(before) if any(before) else 0.0
+    if len(before) == 1:
+        return Difference(value, -math.inf, 1.0)
+    drawn = np.random.default_rng(_BOOTSTRAP_SEED).integers(len(were), size=(_RESAMPLES, len(were)))
+    sums = were[drawn].sum(axis=1)
+    falls = 1.0 - np.divide(are[drawn].sum(axis=1), sums, out=np.ones_like(sums), where=sums > 0)
+    low, high = np.quantile(falls, (_TAIL, 1 - _TAIL))
+    return Difference(value, min(float(low), value), max(float(high), value))

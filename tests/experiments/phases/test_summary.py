@@ -1,6 +1,7 @@
 """The same robots before and after."""
 
-from kurt2rt.experiments.phases.summary import paired, worlds_of
+from kurt2rt.experiments.phases.outcome import Judgement
+from kurt2rt.experiments.phases.summary import CriticScore, paired, score_of, worlds_of
 from tests.experiments.phases.outcomes import exam, stage
 
 
@@ -25,6 +26,14 @@ def test_what_stays_as_it_is_is_neither_better_nor_worse() -> None:
         assert not each.surely_better
         assert not each.surely_worse
         assert each.better == each.worse == 0
+
+
+def test_a_critic_is_measured_by_what_is_bad_and_what_it_calls_so() -> None:
+    told = [(-1, -1, 30), (-1, 0, 10), (0, -1, 20), (1, 1, 5), (1, None, 15), (0, 0, 20)]
+    score = score_of([Judgement(judged=judged, said=said, ticks=ticks) for judged, said, ticks in told])
+    assert (score.precision, score.recall, score.silent) == (0.6, 0.75, 0.15)
+    assert score.agreement == (0.75 + 0.25) / 2
+    assert score_of([]) == CriticScore(None, None, None, None)
 
 
 def test_a_robot_that_was_stuck_once_or_more_counts_once() -> None:

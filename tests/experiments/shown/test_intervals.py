@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.shown.intervals import difference_of, poisson_interval, rate_of
+from kurt2rt.experiments.shown.intervals import difference_of, fall_of, poisson_interval, rate_of
 
 
 def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
@@ -85,3 +85,12 @@ def test_the_interval_of_a_change_turns_round_with_it(changes: list[float]) -> N
     there, back = difference_of(changes), difference_of([-change for change in changes])
     assert there.low <= there.value <= there.high
     assert (back.low, back.value, back.high) == pytest.approx((-there.high, -there.value, -there.low), abs=1e-9)
+
+
+def test_a_fall_is_told_with_an_interval_over_pairs() -> None:
+    certain = fall_of([2.0, 4.0, 6.0] * 7, [1.0, 2.0, 3.0] * 7)
+    assert certain == pytest.approx((0.5, 0.5, 0.5))  # robots differ, the fall is the same in all
+    unsure = fall_of([4.0] * 20, [8.0, 0.0] * 10)
+    assert unsure.value == 0.0
+    assert -0.6 < unsure.low < -0.2 < 0.2 < unsure.high < 0.6
+    assert fall_of([0.0, 0.0], [0.0, 0.0]) == (0.0, 0.0, 0.0)
