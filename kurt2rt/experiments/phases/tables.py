@@ -1,5 +1,6 @@
 """The tables of a path of all phases."""
 
+import math
 from collections.abc import Iterator, Sequence
 
 from kurt2rt.experiments.load import Minute
@@ -8,8 +9,10 @@ from kurt2rt.experiments.phases.steps import (
     ASKS,
     BLAME_BY_CHANCE,
     BRANCHES,
+    CORRUPTED,
     CRITIC_ALONE,
     INTACT,
+    JUDGED,
     LONG_RUN,
     PATH,
     PHASE_2,
@@ -23,8 +26,8 @@ from kurt2rt.experiments.phases.steps import (
     phases_of,
 )
 from kurt2rt.experiments.phases.study import Study
-from kurt2rt.experiments.phases.summary import Paired, paired, worlds_of
-from kurt2rt.experiments.phases.verdict import interventions, verdicts
+from kurt2rt.experiments.phases.summary import Paired, alike, collisions_of, paired, score_of, summarize, worlds_of
+from kurt2rt.experiments.phases.verdict import interventions, robots_of_the_long_run, verdicts
 from kurt2rt.experiments.report import label_of, quartiles
 from kurt2rt.experiments.shown.intervals import rate_of
 from kurt2rt.experiments.shown.sheet import Sheet
@@ -32,7 +35,8 @@ from kurt2rt.experiments.shown.sheet import Sheet
 SUCCESS = (
     "Success is an exam without collision in which the robot is never stuck nor stopped by the guard, and makes at "
     "least the share of the teacher's own progress that the task asks. A robot that is stuck is set down elsewhere and "
-    "drives on, so that collisions are those of the whole time."
+    "drives on, so that collisions are those of the whole time. Exams pass over RLAs that are still withdrawn: their "
+    "neighbours answer."
 )
 _PHASE_4 = "Phase 4 teaches the critic alone: what the robot drives by, and so its exams, are those of phase 3."
 _PAIRED = (
@@ -46,8 +50,10 @@ def sheets(study: Study, reasons: Sequence[str]) -> Iterator[Sheet]:
     """All of them. `reasons` not to judge, if any."""
     yield asked_sheet(study, reasons)
     yield exam_sheet("Phase by phase", PATH, study, f"{SUCCESS} {_PHASE_4}")
+    yield teachers_sheet(study)
     yield load_sheet("What the teacher had to do", (PHASE_2, PHASE_3, PHASE_4), study)
     yield critic_sheet(study)
+    yield judged_sheet(study)
     yield exam_sheet(
         f"A set of phase 2 with {phases_of(study.programme.task).corrupted_share:.0%} wrong actions, and its repair",
         BRANCHES,
@@ -55,7 +61,8 @@ def sheets(study: Study, reasons: Sequence[str]) -> Iterator[Sheet]:
         "All branches begin with the same set of each robot. Asks only: the teacher answers, no more. Unknown is -1: "
         "he also blames what led into a situation that the robot does not know. By chance: he blames whatever drives "
         "now and then, and answers where the robot asks again. Critic alone: nobody is asked. "
-        "Shuffled: the same appraisals with their opinions dealt out anew, trusted all the same.",
+        "Shuffled: the same appraisals with their opinions dealt out anew, trusted all the same. "
+        + " ".join(words_of_controls(study)),
     )
     yield load_sheet("What that took", (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS), study)
     yield alone_sheet(study)
@@ -100,6 +107,7 @@ def exam_sheet(title: str, stages: Sequence[str], study: Study, note: str) -> Sh
     rows = []
     for name in stages:
         rlas = quartiles([stage.rlas for stage in study.stages[name]])[1]
+        withdrawn = f"{quartiles([stage.still_withdrawn for stage in study.stages[name]])[1]:g}"
         for place, world in enumerate(worlds_of(study.stages[name])):
             low, high = world.interval
             rate = world.collisions
@@ -118,6 +126,7 @@ def exam_sheet(title: str, stages: Sequence[str], study: Study, note: str) -> Sh
                     f"{world.share_unknown:.1%}",
                     f"{world.changes_per_s:.2f}",
                     "" if world.distance_error_m is None else f"{world.distance_error_m:.3f}",
+                    withdrawn if place == 0 else "",
                 )
             )
     columns = (
@@ -134,6 +143,7 @@ def exam_sheet(title: str, stages: Sequence[str], study: Study, note: str) -> Sh
         "unknown",
         "changes/s",
         "distance error, m",
+        "still withdrawn",
     )
     return Sheet(title, columns, tuple(rows), words=2, note=note)
 
@@ -200,8 +210,9 @@ def critic_sheet(study: Study) -> Sheet:
             (
                 TITLES[name],
                 f"{quartiles([stage.appraisals for stage in stages])[1]:g}",
-                "too little heard" if agreement is None else f"{agreement[1]:.2f}",
-                "" if agreement is None else f"{agreement[0]:.2f} to {agreement[2]:.2f}",
+                # Elsewhere nobody says what it could agree with: what there is was heard in phase 4, or made up.
+                "" if name != PHASE_4 else "too little heard" if agreement is None else f"{agreement[1]:.2f}",
+                "" if name != PHASE_4 or agreement is None else f"{agreement[0]:.2f} to {agreement[2]:.2f}",
                 f"{sum(each.share_trusted > 0 for each in taught)} of {len(taught)}",
                 f"{quartiles([each.critics_changes for each in taught])[1]:g}",
                 f"{quartiles([each.rolled_back for each in taught])[1]:g}",
@@ -212,9 +223,89 @@ def critic_sheet(study: Study) -> Sheet:
         "The critic",
         columns,
         tuple(rows),
-        note="Agreement with the teacher's signals before they were learnt. Trusted: robots in which it ever was. "
-        "Changes of actions and RLAs that it made, and those that were undone since its score fell.",
+        note="Agreement with the teacher's signals of phase 4, before they were learnt. Trusted: robots in which it "
+        "ever was. Changes of actions and RLAs that it made, and those that were undone since its score fell.",
     )
+
+
+def judged_sheet(study: Study) -> Sheet:
+    """What the critic says where it learns nothing, beside what the judge thinks."""
+    robots = [stage.judgements for stage in study.stages[JUDGED]]
+    together = score_of([each for robot in robots for each in robot])
+    scores = [score_of(each) for each in robots]
+    rows = []
+    for words, name in (
+        ("of what it calls bad is bad", "precision"),
+        ("of what is bad it calls so", "recall"),
+        ("agreement, mean of bad and good", "agreement"),
+        ("does not know", "silent"),
+    ):
+        shares = [share for share in (getattr(each, name) for each in scores) if share is not None]
+        low, median, high = quartiles(shares) if shares else (math.nan,) * 3
+        value: float | None = getattr(together, name)
+        told = ("nothing", "", "") if value is None else (f"{value:.2f}", f"{median:.2f}", f"{low:.2f} to {high:.2f}")
+        rows.append((words, *told))
+    return Sheet(
+        "The critic, judged",
+        ("share", "all robots together", "median robot", "quartiles"),
+        tuple(rows),
+        note="After phase 4, in a drive by the corrupted set of the branches in the world that is taught in: tick by "
+        "tick beside the judge, and nothing is learnt. The critic has not seen these wrong actions.",
+    )
+
+
+def teachers_sheet(study: Study) -> Sheet:
+    """The yardstick: how the teacher's own policy drives from the same starts."""
+    rows = []
+    for world in dict.fromkeys(exam.world for robot in study.teachers for exam in robot):
+        drives = [exam for robot in study.teachers for exam in robot if exam.world == world]
+        failed = [
+            str(seed)
+            for seed, robot in zip(study.programme.seeds, study.teachers, strict=True)
+            if any(exam.world == world and not exam.succeeded for exam in robot)
+        ]
+        told, rate = summarize(drives), collisions_of(drives)
+        rows.append(
+            (
+                told.label,
+                f"{told.succeeded} of {told.robots}",
+                f"{rate.value:.2f}",
+                f"{told.stuck}",
+                f"{told.progress[1]:.1f} {told.unit}",
+                f"{told.progress[0]:.1f} to {told.progress[2]:.1f}",
+                ", ".join(failed) or "none",
+            )
+        )
+    columns = ("world", "without fault", "collisions in 10 min", "stuck", "progress", "quartiles", "seeds that failed")
+    return Sheet(
+        "How the teacher drives himself",
+        columns,
+        tuple(rows),
+        note="By his policy from the starts of the exams: what progress is measured by. Where he failed himself, a "
+        "robot that does as he does cannot be without fault.",
+    )
+
+
+def words_of_controls(study: Study) -> Iterator[str]:
+    """Sentences on controls that say nothing, because what they are to show did not happen."""
+    stages = study.stages
+    robots = len(stages[ASKS])
+    if not any(each.asks for each in _taught(stages[ASKS])):
+        yield f"{TITLES[ASKS]}: no robot asked anything."
+    never = sum(each.blame == 0 for each in _taught(stages[UNKNOWN_BAD]))
+    if never:
+        yield f"{TITLES[UNKNOWN_BAD]}: {never} of {robots} robots never met the unknown, so no -1 came."
+    for one, other in (
+        (ASKS, CORRUPTED),
+        (UNKNOWN_BAD, ASKS),
+        (BLAME_BY_CHANCE, ASKS),
+        (REWARDS, ASKS),
+        (CRITIC_ALONE, CORRUPTED),
+        (SHUFFLED, CORRUPTED),
+    ):
+        same = alike(stages[one], stages[other])
+        if same:
+            yield f"{TITLES[one]}: {same} of {robots} robots drive exactly as in '{TITLES[other]}'."
 
 
 def alone_sheet(study: Study) -> Sheet:
@@ -281,7 +372,7 @@ def long_run_sheet(study: Study) -> Sheet:
         columns,
         (row,),
         words=0,
-        note="All robots together, in the world that is taught in; the critic goes on.",
+        note=f"{robots_of_the_long_run(study)}. All together, in the world that is taught in; the critic goes on.",
     )
 
 

@@ -1,7 +1,17 @@
 """The tables, of outcomes that are known."""
 
-from kurt2rt.experiments.phases.steps import BRANCHES, LONG_RUN, PATH, PHASE_2, REWARDS, TITLES
-from kurt2rt.experiments.phases.tables import asked_sheet, critic_sheet, exam_sheet, load_sheet, long_run_sheet
+from dataclasses import replace
+
+from kurt2rt.experiments.phases.steps import ASKS, BRANCHES, LONG_RUN, PATH, PHASE_2, REWARDS, TITLES
+from kurt2rt.experiments.phases.tables import (
+    asked_sheet,
+    critic_sheet,
+    exam_sheet,
+    load_sheet,
+    long_run_sheet,
+    teachers_sheet,
+    words_of_controls,
+)
 from kurt2rt.experiments.shown.sheet import Sheet
 from tests.experiments.phases.outcomes import exam, stage, study, teaching
 
@@ -55,3 +65,25 @@ def test_nothing_is_judged_where_there_is_a_reason_not_to() -> None:
 def test_every_branch_is_beside_the_others() -> None:
     sheet = exam_sheet("t", BRANCHES, study(), "")
     assert [row[0] for row in sheet.rows] == [TITLES[name] for name in BRANCHES]
+
+
+def test_agreement_is_told_of_phase_4_alone() -> None:
+    rows = critic_sheet(study()).rows
+    assert [bool(row[2]) for row in rows] == [True, *[False] * 4]
+
+
+def test_where_the_teacher_failed_himself_stands_beside_what_he_reaches() -> None:
+    told = replace(study(3), teachers=((exam(),), (exam(succeeded=False, collisions=1),), (exam(progress=9.0),)))
+    row = cells(teachers_sheet(told), 0)
+    assert (row["without fault"], row["seeds that failed"], row["progress"]) == ("2 of 3", "101", "8.0 laps")
+
+
+def test_a_control_that_equals_another_is_said_to() -> None:
+    words = list(words_of_controls(study(2)))
+    assert "asks, unknown is -1: 2 of 2 robots never met the unknown, so no -1 came." in words
+    assert "asks only: 2 of 2 robots drive exactly as in 'corrupted, untouched'." in words
+    assert not any("no robot asked" in each for each in words)
+    silent = [stage(ASKS, exam(progress=7.0), taught=teaching().model_copy(update={"asks": 0})) for _ in range(2)]
+    words = list(words_of_controls(study(2, asks_only=silent)))
+    assert "asks only: no robot asked anything." in words
+    assert not any(each.startswith("asks only: 2 of 2") for each in words)
