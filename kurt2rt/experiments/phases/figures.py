@@ -71,10 +71,12 @@ def _draw_stages(study: Study, names: Sequence[str], path: Path) -> None:
     figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
     success, collisions = figure.subplots(1, 2, sharey=True)
     places = np.arange(len(names))[::-1]
+    # Not every stage is examined in every world: a world has its own colour and place all the same.
+    every = list(dict.fromkeys(world.world for name in names for world in worlds_of(study.stages[name])))
     for stage, place in zip(names, places, strict=True):
-        worlds = worlds_of(study.stages[stage])
-        for number, world in enumerate(worlds):
-            at = place + 0.14 * ((len(worlds) - 1) / 2 - number)
+        for world in worlds_of(study.stages[stage]):
+            number = every.index(world.world)
+            at = place + 0.14 * ((len(every) - 1) / 2 - number)
             colour = _WORLD_COLOURS[number % len(_WORLD_COLOURS)]
             label = f"world {world.label}" if stage == names[0] else None
             _bar(success, at, world.share, world.interval, colour, label)
