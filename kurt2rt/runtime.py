@@ -118,7 +118,6 @@ def build_runtime(
         agreement=agreement,
         self_teaching=self_teaching,
         asked=asked,
-        period_s=period_s,
     )
     inbox = TeacherInbox()
     statistics = statistics or StatisticsCounter()
