@@ -132,9 +132,11 @@ def trusting(driving: Drive) -> Drive:
     """The same robot started anew, with a critic that thinks ill of what it does near things, and is trusted."""
     driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
     taught = list(driving.notebook.events)
+    tick = 0
     for number in range(30):
         for name, value in (("bad", -1), ("good", 1)):
-            taught.append(Appraised(name, value, 1, Origin(f"{name}-{number}", "Ann", Phase.CRITIC, 1)))
+            tick += 1000  # one signal in some seconds counts
+            taught.append(Appraised(name, value, tick, Origin(f"{name}-{number}", "Ann", Phase.CRITIC, tick)))
     anew = Drive(taught)
     assert anew.runtime.school.agreement is not None
     assert anew.runtime.school.agreement.trusted

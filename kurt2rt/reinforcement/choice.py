@@ -32,9 +32,13 @@ class Choice:
         return rla
 
     def best(self, group: Sequence[Rla]) -> Rla:
-        """The one of most worth that has an action; of equals the oldest."""
+        """The one of most worth that has an action; of equals the newest.
+
+        It was tried because those before it had sunk: also a robot that was started anew, and no longer knows how far
+        they had, goes on with it.
+        """
         candidates = [rla for rla in group if not rla.asks] or group
-        return max(candidates, key=lambda rla: (self._worth(rla.rla_id), -rla.rla_id))
+        return max(candidates, key=lambda rla: (self._worth(rla.rla_id), rla.rla_id))
 
     def forget(self) -> None:
         """Choose anew: somebody was blamed, or worths have changed otherwise."""

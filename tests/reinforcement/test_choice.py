@@ -28,10 +28,10 @@ def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: boo
     return made
 
 
-def test_the_one_of_most_worth_answers_and_of_equals_the_oldest() -> None:
+def test_the_one_of_most_worth_answers_and_of_equals_the_newest_which_was_tried_because_the_others_had_sunk() -> None:
     group = competitors("a", "b", "c")
     assert choice(Worths({2: 0.4, 3: 0.1})).among(group, 1).rla_id == 2
-    assert choice(Worths()).among(group, 1).rla_id == 1
+    assert choice(Worths()).among(group, 1).rla_id == 3
 
 
 def test_a_choice_stands_until_the_group_has_not_been_nearest_for_a_while() -> None:
@@ -61,11 +61,11 @@ def test_one_that_was_deleted_is_not_held() -> None:
     chosen = choice(worths)
     assert chosen.among(competitors("a", "b", "c"), 1).rla_id == 2
     left = (competitors("a", "b", "c")[0], competitors("a", "b", "c")[2])
-    assert chosen.among(left, 2).rla_id == 1
+    assert chosen.among(left, 2).rla_id == 3
 
 
 def test_one_whose_action_was_withdrawn_does_not_compete() -> None:
-    assert choice(Worths({2: 0.9})).among(competitors("a", ASK, "c"), 1).rla_id == 1
+    assert choice(Worths({2: 0.9})).among(competitors("a", ASK, "c"), 1).rla_id == 3
 
 
 def picks(seed: int, epsilon: float, *, explores: bool = True) -> list[int]:
