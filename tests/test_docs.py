@@ -45,6 +45,7 @@ LONG: dict[str, Shorten] = {
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"],
     "paper": lambda _: ["paper", "--quick", "--task", "circle", "--no-plain"],
+    "phases": lambda _: ["phases", "--help"],  # a quick run of all phases is tests/cli/test_phases.py
     "run": lambda words: [*words, "--seconds", "2", "--port", "0", "--page-port", "0"],
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
