@@ -88,5 +88,9 @@ class State:
     """Share of the teacher's latest signals that the critic had thought, too; None while too few were heard."""
     trusted: bool = False
     """Whether the critic agrees well enough to act in phase 5."""
+    role: str = "listens"
+    """What the critic does: a value of kurt2rt.critic.role.Role."""
+    bad_share: float | None = None
+    """Share of the driven time that it found bad lately; None while it only listens."""
     signals_missing: tuple[int, int] = (0, 0)
     """How many bad and how many good signals the teacher still has to give before agreement is known."""

@@ -93,6 +93,8 @@ class Telling:
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,
             trusted=agreement is not None and agreement.trusted,
+            role=school.critics_role.value,
+            bad_share=school.bad_share,
             signals_missing=self._signals_missing(),
         )
 

@@ -125,6 +125,8 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("on", "opinion_of", OrNone(_NUMBER)),
     ("ag", "agreement", OrNone(Real(1.0))),
     ("tru", "trusted", Flag()),
+    ("cr", "role", _NAME),
+    ("bs", "bad_share", OrNone(Real(1.0))),
     ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
 )
 """Key on the wire, field of State, check."""

@@ -178,10 +178,10 @@ class TerminalTeacher:
         told = ""
         quiet_until = 0.0
         asking = False
-        trusted: bool | None = None
+        standing: tuple[bool, str] | None = None
         async for state in self._robot.states():
-            if state.phase >= Phase.CRITIC and state.trusted != trusted:
-                trusted = state.trusted
+            if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
+                standing = state.trusted, state.role
                 self._say(f"critic: {trust_in(state)}")
             if state.cause == Cause.UNKNOWN:
                 if not asking:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from kurt2rt.channel.state import State
+from kurt2rt.critic.role import Role
 from kurt2rt.rla.rla import ASK, rla_title
 from kurt2rt.teaching.hello import AppraisalName, Hello
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -79,7 +80,22 @@ def trust_in(state: State) -> str:
         missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
         return f"needs {missing or 'a few'} signals more of yours (not trusted)"
     share = math.floor(state.agreement * 100) / 100  # not rounded up to the bound that it misses
-    return f"agrees with you {share:.2f} ({'trusted' if state.trusted else 'not trusted'})"
+    trusted = "trusted" if state.trusted else "not trusted"
+    return f"agrees with you {share:.2f} ({'; '.join(part for part in (trusted, role_in(state)) if part)})"
+
+
+def role_in(state: State) -> str:
+    """What a critic does that is alone with the robot; empty while it only listens."""
+    match state.role:
+        case Role.LISTENS:
+            return ""
+        case Role.MEASURES:
+            return "measures how well it goes"
+        case Role.NOT_NEEDED:
+            percent = math.floor((state.bad_share or 0.0) * 100)  # not rounded up to what it would be needed for
+            return f"not needed: {percent} % of the driving was bad"
+        case other:
+            return other
 
 
 def change_in(lesson: LessonLine | None) -> str:

@@ -53,6 +53,8 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "opinion_of": state.opinion_of,
         "agreement": state.agreement,
         "trusted": state.trusted,
+        "role": state.role,
+        "bad_share": state.bad_share,
         "signals_missing": state.signals_missing,
         "place": None if place is None else asdict(place),
         "link": {

@@ -4,6 +4,8 @@ from collections.abc import Iterable
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic, Opinion
+from kurt2rt.critic.need import Need
+from kurt2rt.critic.role import Role
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
@@ -101,6 +103,22 @@ class School:
     def corrections(self) -> int:
         """How often a teacher has corrected."""
         return self._tuition.corrections
+
+    @property
+    def critics_role(self) -> Role:
+        """What the critic did in the last tick; it listens where there is none."""
+        alone = self._self_teaching
+        if alone is None or not self._teaches_itself:
+            return Role.LISTENS
+        if alone.measures:
+            return Role.MEASURES
+        return Role.ACTS if _need_of(alone).needed else Role.NOT_NEEDED
+
+    @property
+    def bad_share(self) -> float | None:
+        """Share of the driven time that the critic found bad lately; None while it only listens."""
+        alone = self._self_teaching
+        return None if alone is None or not self._teaches_itself else _need_of(alone).share
 
     def stop(self, because: str, by: str | None = None) -> None:
         """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
@@ -335,6 +353,10 @@ class School:
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
+
+
+def _need_of(alone: SelfTeaching) -> Need:
+    return alone._autonomy.need
 
 
 def _no_person(name: str) -> str | None:

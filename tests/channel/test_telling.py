@@ -228,6 +228,10 @@ async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) 
     # Of each value the first one was news to the critic, and was learnt.
     assert told.agreement == pytest.approx((LEAST - 1) / LEAST)
     assert (told.trusted, told.signals_missing) == (True, (0, 0))
+    assert (told.role, told.bad_share) == ("listens", None)
+    await desk.ask(desk.command(PhaseRequest, Phase.AUTONOMOUS))
+    told = picture(desk)
+    assert (told.role, told.bad_share) == ("measures", 0.0)
 
 
 async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:

@@ -107,6 +107,8 @@ STATES = st.builds(
     opinion_of=st.none() | NUMBERS,
     agreement=st.none() | st.floats(0.0, 1.0),
     trusted=st.booleans(),
+    role=NAMES,
+    bad_share=st.none() | st.floats(0.0, 1.0),
     signals_missing=st.tuples(NUMBERS, NUMBERS),
 )
 

@@ -325,6 +325,12 @@ async def test_the_teacher_is_told_when_the_critic_is_trusted_and_may_ask_what_i
         desk.type("critic")
         await desk.reads("critic: thinks good · agrees with you 0.87 (trusted)")
         await desk.reads("critic: changed nothing lately")
+        await looked_at(desk, robot, phase=5, role="measures", bad_share=0.0)
+        await desk.reads("critic: agrees with you 0.87 (trusted; measures how well it goes)")
+        await looked_at(desk, robot, role="not needed", bad_share=0.019)
+        await desk.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
+        await looked_at(desk, robot, role="acts")
+        await desk.reads("critic: agrees with you 0.87 (trusted; acts)")
 
 
 async def test_what_is_typed_where_an_action_was_withdrawn_is_an_answer(pairing: Pairing, robot: StandInRobot) -> None:

@@ -9,6 +9,7 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
+from kurt2rt.channel.requests import VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -54,7 +55,7 @@ A_PLACE = SimulatedPlace(x_m=0.54, y_m=3.63, heading_rad=0.0, laps=0.0, collisio
 
 
 A_HELLO = Hello(
-    version=1,
+    version=VERSION,
     boot=b"boot",
     tick=100,
     robot="kurt2-indoor",

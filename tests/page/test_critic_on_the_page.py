@@ -105,6 +105,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     assert phone.text("#agreement-text") == "agrees with you 0.87"
     assert phone.text("#trusted") == "trusted"
     lesson.reads("#opinion", "critic: thinks bad")
+    assert not phone.find("#role").is_displayed()
     assert not phone.find("#changed").is_displayed()
     lesson.look("phase-4")
 
@@ -125,12 +126,19 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.show(lessons=2)
     lesson.reads("#changed", "changed last: RLA 17 corrected: spin_left instead of back, 21 Nov")
     assert phone.text("#trusted") == "trusted"
+    lesson.show(role="measures", bad_share=0.0)
+    lesson.reads("#role", "measures how well it goes")
+    lesson.show(role="acts", bad_share=0.07)
+    lesson.reads("#role", "acts")
+    lesson.show(role="not needed", bad_share=0.0199)
+    lesson.reads("#role", "not needed: 1 % of the driving was bad")
     phone.touch("#praise")
     phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
     lesson.look("phase-5")
     lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
-    lesson.show(agreement=0.7, trusted=False, lessons=1)
+    lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
     lesson.reads("#trusted", "only listens")
+    assert not phone.find("#role").is_displayed()
     lesson.fits()
     lesson.reads("#changed", "undone: RLA 17")
 

@@ -24,6 +24,21 @@ export function agreement(state, trustedFrom) {
   return state.trusted ? `agrees with you ${share}` : `agrees ${share}, needs ${trustedFrom.toFixed(2)}`;
 }
 
+// What it does with what it thinks, once the robot is alone with it; nothing while it only listens.
+export function role({ role, bad_share: bad }) {
+  const percent = Math.floor((bad ?? 0) * 100); // not rounded up to what it would be needed for
+  switch (role) {
+    case "listens":
+      return "";
+    case "measures":
+      return "measures how well it goes";
+    case "not needed":
+      return `not needed: ${percent} % of the driving was bad`;
+    default:
+      return role;
+  }
+}
+
 export function lastChange(lesson) {
   if (!lesson) return "has changed nothing lately";
   return `${lesson.undone ? "undone" : "changed last"}: ${[lesson.text, when(lesson.stamp)].filter(Boolean).join(", ")}`;
@@ -84,6 +99,9 @@ export class Critic {
     setText($("trusted"), state.trusted ? "trusted" : state.phase > TAUGHT_IN ? "only listens" : "not trusted yet");
     $("agreement-fill").style.width = `${(state.agreement ?? 0) * 100}%`;
     setText($("agreement-text"), agreement(state, this.#trustedFrom));
+    const does = role(state);
+    $("role").hidden = !does;
+    setText($("role"), does);
     $("changed").hidden = state.phase === TAUGHT_IN;
     setText($("changed"), lastChange(lesson));
   }
