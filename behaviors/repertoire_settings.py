@@ -2,13 +2,25 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from hal.settings import Settings
 
 Speed = Annotated[float, Field(ge=-1.0, le=1.0)]
 PositiveSpeed = Annotated[float, Field(gt=0, le=1.0)]
-ActionName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$")]
+RESERVED = "ask"
+"""Stands in place of an RLA's action that was withdrawn (kurt2rt.rla.rla.ASK)."""
+
+
+def _require_free(name: str) -> str:
+    if name == RESERVED:
+        raise ValueError(
+            f"{RESERVED} stands for an action that was withdrawn, where the robot asks; give the action another name"
+        )
+    return name
+
+
+ActionName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), AfterValidator(_require_free)]
 
 
 class MotorAction(Settings):

@@ -11,7 +11,7 @@ import yaml
 
 from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire import load_repertoire
-from behaviors.repertoire_settings import RepertoireSettings
+from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, find_config, load_settings
@@ -19,6 +19,7 @@ from hal.settings_by_kind import find_kind
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.faults.table import FaultTable
 from kurt2rt.perception.definition import SituationDefinition, load_situation
+from kurt2rt.rla.rla import ASK
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.wire.settings import WireSettings
 from simbridge.world_settings import WorldSettings, load_world
@@ -236,6 +237,7 @@ def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: 
         ),
         ("kind: motor", "knd: motor", "actions.0: the key 'kind' is missing"),
         ("name: back,", "name: forward,", "two actions share the name forward"),
+        ("name: back,", "name: ask,", "actions.7.motor.name: Value error, ask stands for an action that was withdrawn"),
         ("name: back,", "name: go back,", "actions.7.motor.name: String should match pattern"),
     ],
 )
@@ -243,6 +245,10 @@ def test_a_wrong_action_is_explained_by_its_own_kind(old: str, new: str, told: s
     path = tmp_path / "repertoire.yaml"
     path.write_text(REPERTOIRE.replace(old, new, 1))
     assert told in refusal(path, RepertoireSettings)
+
+
+def test_the_name_that_no_action_may_have_is_that_of_an_action_that_was_withdrawn() -> None:
+    assert RESERVED == ASK
 
 
 @pytest.mark.parametrize(
