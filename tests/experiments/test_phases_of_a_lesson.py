@@ -111,8 +111,8 @@ def rival(action: str) -> RlaCreated:
 @pytest.mark.parametrize(
     ("alone", "drives"),
     [
-        (None, False),  # of equals the oldest
-        (Statistics(), False),
+        (None, False),  # what its teacher had said of the newer one
+        (Statistics(), True),  # of equals the newest
         (Statistics(values={1: -0.3}), True),  # of the other one phase 5 had nothing to say yet
         (Statistics(values={1: 0.4, 2: 0.6}), True),
         (Statistics(values={2: 0.4}), False),
