@@ -222,7 +222,7 @@ function show() {
   pad.show(state);
   critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
-  setText($("health"), `late ${state.late_p99_ms?.toFixed(2) ?? "–"} ms, missed ${state.missed_ticks}`);
+  setText($("health"), `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms, missed ${state.missed_ticks}`);
   if (state.refused && drive.held) say("refused", state.refused);
   organising.show(state, inCharge());
   claim();
