@@ -7,17 +7,18 @@ from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.autonomy import Autonomy
 from kurt2rt.critic.best_knowledge import BestKnowledge
 from kurt2rt.critic.critic import Opinion
+from kurt2rt.critic.role import Role
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.knowledge.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.lesson_book import rla_of
-from kurt2rt.rla.rla import CRITIC, LessonUndone, Rla, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, LessonUndone, Phase, Rla, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 
 
 class SelfTeaching:
-    """Acts while the critic is trusted; to be asked in phase 5 only. Without trust it does nothing."""
+    """Acts while the critic stands in its teacher's place; until then it listens."""
 
     def __init__(
         self,
@@ -38,6 +39,8 @@ class SelfTeaching:
         """Of the account of phase 5, when the best window ended."""
         self.trusted = agreement.trusted
         """Whether the critic may act; kept, because it changes only with what is heard."""
+        self._alone = False
+        """Whether it stood in its teacher's place in the last tick."""
 
     def recall(self, events: Iterable[TeachingEvent], saved: Statistics | None) -> None:
         """Take in what was taught before this run: what the critic changed since the best window is to be proven."""
@@ -57,11 +60,29 @@ class SelfTeaching:
         self.trusted = self._agreement.trusted
         self.best.changed(event)
 
-    def begin(self) -> None:
-        """From now on the robot is alone with a critic that is trusted."""
-        self.best.begin()
-        self._autonomy.begin()
-        self._best_worths = self._reinforcement.worths_alone()
+    def stands_in(self, phase: Phase) -> bool:
+        """Whether the critic stands in its teacher's place from this tick on: in phase 5, while it is trusted."""
+        alone = phase is Phase.AUTONOMOUS and self.trusted
+        if alone and not self._alone:
+            self.best.begin()
+            self._autonomy.begin()
+            self._best_worths = self._reinforcement.worths_alone()
+        self._alone = alone
+        return alone
+
+    @property
+    def role(self) -> Role:
+        """What the critic did in the last tick."""
+        if not self._alone:
+            return Role.LISTENS
+        if self.measures:
+            return Role.MEASURES
+        return Role.ACTS if self._autonomy.need.needed else Role.NOT_NEEDED
+
+    @property
+    def bad_share(self) -> float | None:
+        """Share of the driven time that the critic found bad lately; None while it only listens."""
+        return self._autonomy.need.share if self._alone else None
 
     @property
     def measures(self) -> bool:

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic, Opinion
-from kurt2rt.critic.need import Need
 from kurt2rt.critic.role import Role
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Decision
@@ -68,8 +67,6 @@ class School:
         self.agreement = agreement
         self.reinforcement = reinforcement
         self._self_teaching = self_teaching
-        self._teaches_itself = False
-        """Whether it did in the last tick."""
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._tuition = Tuition(
             level,
@@ -107,18 +104,12 @@ class School:
     @property
     def critics_role(self) -> Role:
         """What the critic did in the last tick; it listens where there is none."""
-        alone = self._self_teaching
-        if alone is None or not self._teaches_itself:
-            return Role.LISTENS
-        if alone.measures:
-            return Role.MEASURES
-        return Role.ACTS if _need_of(alone).needed else Role.NOT_NEEDED
+        return Role.LISTENS if self._self_teaching is None else self._self_teaching.role
 
     @property
     def bad_share(self) -> float | None:
         """Share of the driven time that the critic found bad lately; None while it only listens."""
-        alone = self._self_teaching
-        return None if alone is None or not self._teaches_itself else _need_of(alone).share
+        return None if self._self_teaching is None else self._self_teaching.bad_share
 
     def stop(self, because: str, by: str | None = None) -> None:
         """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
@@ -206,11 +197,8 @@ class School:
         if reinforcement is None:
             return []
         reinforcement.count_for(self.phase)
-        if self.phase is not Phase.AUTONOMOUS or (alone is not None and not alone.trusted):
+        if alone is not None and not alone.stands_in(self.phase):
             alone = None
-        if alone is not None and not self._teaches_itself:
-            alone.begin()
-        self._teaches_itself = alone is not None
         changes_itself = alone is not None and not alone.measures
         learning = self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
         reinforcement.choice.explores = learning
@@ -353,10 +341,6 @@ class School:
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
-
-
-def _need_of(alone: SelfTeaching) -> Need:
-    return alone._autonomy.need
 
 
 def _no_person(name: str) -> str | None:
