@@ -16,7 +16,7 @@ demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
 test: lint types
-	$(BIN)/pytest -n 4 -q
+	$(BIN)/pytest -n 4 -q --dist loadfile
 
 test-deep: $(INSTALLED) guard
 	$(BIN)/pytest -n 2 -q -m deep
