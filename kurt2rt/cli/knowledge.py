@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kurt2rt.cli.printed import console_of
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.fold import check_knowledge
@@ -25,12 +26,6 @@ _TEACHER = "command line"
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
 
 
-def _console() -> Console:
-    console = Console()
-    # Into a file or a pager a table goes at its full width.
-    return console if console.is_terminal else Console(width=_WIDE)
-
-
 @knowledge.command()
 def show(
     file: KnowledgeFile,
@@ -38,7 +33,7 @@ def show(
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
-        console = _console()
+        console = console_of(_WIDE)
         console.print(render_knowledge(journal, limit, wide=console.width >= _WIDE))
 
 
@@ -50,7 +45,7 @@ def lessons(
 ) -> None:
     """List the lessons, newest first, with their ids and who undid them."""
     with Journal.read_only(file) as journal:
-        _console().print(render_lessons(journal, limit, of))
+        console_of(_WIDE).print(render_lessons(journal, limit, of))
 
 
 @knowledge.command()

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
+from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
 if TYPE_CHECKING:
@@ -76,7 +76,6 @@ def paper(
     from kurt2rt.experiments.paper.settings import load_paper
     from kurt2rt.experiments.paper.study import conduct, read_study
     from kurt2rt.experiments.paper.tables import sheets
-    from kurt2rt.experiments.shown.sheet import as_rich
     from kurt2rt.simulated import SimulatedStage
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
@@ -105,14 +104,7 @@ def paper(
             pictures = list(draw_pictures(study, stage, results.folder))
             report = results.folder / "report.html"
             write_report(study, pictures, command, report)
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=_WIDTH)  # in a file a table need not be as narrow as a terminal that nobody has
-    for sheet in sheets(study):
-        console.print(as_rich(sheet))
-    for reason in reasons_not_to_judge(programme):
-        console.print(f"Not judged: {reason}", markup=False, highlight=False, soft_wrap=True)
-    console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
+    print_study(sheets(study), reasons_not_to_judge(programme), report, width=_WIDTH)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

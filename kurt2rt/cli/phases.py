@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import Changes, changes_of
+from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
@@ -65,7 +65,6 @@ def phases(
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
     from kurt2rt.experiments.phases.study import conduct, read_study
     from kurt2rt.experiments.phases.tables import sheets
-    from kurt2rt.experiments.shown.sheet import as_rich
     from kurt2rt.simulated import SimulatedStage
     from kurt2rt.tasks.settings import load_task
 
@@ -84,15 +83,8 @@ def phases(
             report = results.folder / "report.html"
             command = _command(quick=quick, seeds=typed_seeds, task=task, changes=changes or [])
             write_report(study, pictures, command, report)
-    console = Console()
-    if not console.is_terminal:
-        console = Console(width=_WIDTH)  # in a file a table need not be as narrow as a terminal that nobody has
     reasons = list(reasons_not_to_judge(programme))
-    for sheet in sheets(study, reasons):
-        console.print(as_rich(sheet))
-    for reason in reasons:
-        console.print(f"Not judged: {reason}", markup=False, highlight=False, soft_wrap=True)
-    console.print(f"report  {report}", markup=False, highlight=False, soft_wrap=True)
+    print_study(sheets(study, reasons), reasons, report, width=_WIDTH)
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:
