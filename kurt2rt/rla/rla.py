@@ -10,6 +10,9 @@ ASK = "ask"
 BASIC = "basic"
 """The level whose RLAs drive the wheels."""
 
+MID = "mid"
+"""The level whose RLAs say which taught behaviour the basic level is to follow."""
+
 CRITIC = "critic"
 """The level whose RLAs say what a situation is worth, in place of a teacher; also the critic's name as a teacher."""
 
@@ -41,8 +44,8 @@ class Origin:
 
 
 def rla_title(rla_id: int, behaviour: str, level: str = BASIC) -> str:
-    """How an RLA is spoken of: RLA 17, RLA 17 of turn_left where the behaviour has a name, appraisal RLA 40."""
-    kind = {BASIC: "RLA", CRITIC: "appraisal RLA"}.get(level, f"{level} RLA")
+    """How an RLA is spoken of: RLA 17, RLA 17 of turn_left where the behaviour has a name, mid-level RLA 12."""
+    kind = {BASIC: "RLA", MID: "mid-level RLA", CRITIC: "appraisal RLA"}.get(level, f"{level} RLA")
     return f"{kind} {rla_id} of {behaviour}" if behaviour else f"{kind} {rla_id}"
 
 
