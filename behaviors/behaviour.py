@@ -8,6 +8,16 @@ from hal.robot import Senses, WheelSpeeds
 class Behaviour(Protocol):
     """An action of the repertoire. Its state is its own and begins anew with `start`."""
 
+    @property
+    def finished(self) -> bool:
+        """Whether it has done what it was started for; it stands then, and yields to another one at once."""
+        ...
+
+    @property
+    def lost(self) -> bool:
+        """Whether it does not know how to go on; it stands then, and whoever chose it asks."""
+        ...
+
     def start(self) -> None:
         """Called in the tick in which this behaviour takes the wheels over from another one."""
         ...

@@ -7,6 +7,10 @@ from hal.robot_settings import InfraredSettings
 class KeepDistance:
     """Proportional control of distance and angle to the wall, from the two outer sensors of one side."""
 
+    finished = False
+    """A control loop never is."""
+    lost = False
+
     def __init__(
         self,
         infrared: InfraredSettings,

@@ -6,6 +6,10 @@ from hal.robot import Senses, WheelSpeeds
 class MotorPrimitive:
     """Drives both sides at fixed speeds as long as it is active."""
 
+    finished = False
+    """Motor values never are."""
+    lost = False
+
     def __init__(self, wheel_speeds: WheelSpeeds) -> None:
         self._wheel_speeds = wheel_speeds
 

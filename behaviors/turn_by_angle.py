@@ -9,6 +9,8 @@ from hal.robot_settings import GeometrySettings
 class TurnByAngle:
     """Turns left by a positive angle, right by a negative one; stands when it is done."""
 
+    lost = False
+
     def __init__(self, geometry: GeometrySettings, *, angle_deg: float, speed_m_s: float) -> None:
         # Each side travels the arc of half the effective track.
         self._wanted_m = math.radians(abs(angle_deg)) * geometry.effective_track_m / 2
@@ -16,6 +18,11 @@ class TurnByAngle:
         self._sign = sign = 1.0 if angle_deg > 0 else -1.0
         self._turning = WheelSpeeds(-sign * speed_m_s, sign * speed_m_s)
         self._turned_m = 0.0
+
+    @property
+    def finished(self) -> bool:
+        """Whether the wheels have run the arc."""
+        return self._turned_m >= self._wanted_m
 
     def start(self) -> None:
         """Begin a turn of the whole angle."""
@@ -26,4 +33,4 @@ class TurnByAngle:
         # Signed: a robot that still swings the other way has more to turn, not less.
         difference = self._sign * (senses.encoder_right_ticks - senses.encoder_left_ticks)
         self._turned_m += 0.5 * difference * self._metres_per_tick
-        return self._turning if self._turned_m < self._wanted_m else STANDSTILL
+        return STANDSTILL if self.finished else self._turning

@@ -111,11 +111,19 @@ class BasicLevel:
         if self._held.choose(rla.action):
             if rla is not self._driver:
                 self._driver, self._drivers_condition = rla, None
-            return Decision(self._held.step(senses), Cause.RLA, self._held.name, rla.rla_id, match, answers=True)
+            return self._drive(senses, Cause.RLA, rla, match, answers=True)
         driver = self._driver
         assert driver is not None
         answers = driver.condition == rla.condition or self._inside(driver, situation)
-        return Decision(self._held.step(senses), Cause.HELD, self._held.name, driver.rla_id, match, answers)
+        return self._drive(senses, Cause.HELD, driver, match, answers=answers)
+
+    def _drive(self, senses: Senses, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
+        """What the action at the wheels does; where that one is lost, this level knows no better and asks."""
+        wheel_speeds = self._held.step(senses)
+        if self._held.lost:
+            # It is not begun anew: back where it knows the situation it goes on, as any RLA does.
+            return Decision(STANDSTILL, Cause.UNKNOWN, None, None, match)
+        return Decision(wheel_speeds, cause, self._held.name, rla.rla_id, match, answers)
 
     def _inside(self, rla: Rla, situation: Situation) -> bool:
         """Whether the situation lies within the radius of the RLA that drives, though another one is nearer."""

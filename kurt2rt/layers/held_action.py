@@ -17,17 +17,25 @@ class HeldAction:
         """Of the action that drives, or drove last."""
 
     def choose(self, action: str) -> bool:
-        """Let `action` drive; False when another one keeps the wheels, for its minimum time is not over."""
+        """Let `action` drive; False when another one keeps the wheels, for its minimum time is not over.
+
+        One that has finished, or does not know how to go on, keeps them from nobody.
+        """
         if self._active is not None:
             if action == self.name:
                 return True
-            if self._ticks < self._minimum_ticks:
+            if self._ticks < self._minimum_ticks and not (self._active.finished or self._active.lost):
                 return False
         self._active = self._repertoire[action]
         self._active.start()
         self.name = action
         self._ticks = 0
         return True
+
+    @property
+    def lost(self) -> bool:
+        """Whether the action at the wheels does not know how to go on, after `step`."""
+        return self._active is not None and self._active.lost
 
     def step(self, senses: Senses) -> WheelSpeeds:
         """Wheel speeds of the action that drives, after `choose`."""

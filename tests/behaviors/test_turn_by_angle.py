@@ -36,6 +36,17 @@ def test_turns_by_the_angle_and_then_stands(angle_deg: float) -> None:
     assert last == STANDSTILL
 
 
+def test_it_has_finished_when_it_stands_and_not_before() -> None:
+    behaviour = turn(90.0)
+    turned_deg = drive(behaviour, 1)[0]
+    while not behaviour.finished:
+        turned_deg += drive(behaviour, 1, WheelSpeeds(-0.20, 0.20))[0]
+    assert turned_deg == pytest.approx(90.0, abs=0.6)
+    assert behaviour.step(sensed()) == STANDSTILL
+    behaviour.start()
+    assert not behaviour.finished
+
+
 def test_a_positive_angle_turns_left() -> None:
     assert turn(90.0).step(sensed()) == WheelSpeeds(-0.20, 0.20)
     assert turn(-90.0).step(sensed()) == WheelSpeeds(0.20, -0.20)

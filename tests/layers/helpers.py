@@ -20,6 +20,8 @@ class Counted:
     def __init__(self) -> None:
         self.starts = 0
         self.steps = 0
+        self.finished = False
+        self.lost = False
 
     def start(self) -> None:
         self.starts += 1
