@@ -120,7 +120,7 @@ def knows(shift: Shift, rla_id: int) -> RlaCreated:
     """One RLA, far from where the robot is."""
     runtime = shift.desk.runtime
     event = created(rla_id, (1e6,) * runtime.level.system.dimensions)
-    runtime.school._apply(event)
+    runtime.school.learning.apply(event)
     return event
 
 

@@ -83,7 +83,7 @@ class Telling:
             session=school.session,
             clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
             guard=record.grant.reasons,
-            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.trouble,
+            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.learning.trouble,
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
@@ -93,8 +93,8 @@ class Telling:
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,
             trusted=agreement is not None and agreement.trusted,
-            role=school.critics_role.value,
-            bad_share=school.bad_share,
+            role=school.learning.critics_role.value,
+            bad_share=school.learning.bad_share,
             signals_missing=self._signals_missing(),
         )
 

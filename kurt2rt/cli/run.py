@@ -255,8 +255,8 @@ def status_line(status: Status, health: Health) -> str:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
     if status.trouble is not None:
         parts.append(status.trouble)
-    if runtime.school.trouble:
-        parts.append(runtime.school.trouble)
+    if runtime.school.learning.trouble:
+        parts.append(runtime.school.learning.trouble)
     if status.channel_trouble:
         parts.append(status.channel_trouble)
     if health.trouble:

@@ -4,7 +4,6 @@ from collections.abc import Iterable
 
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic, Opinion
-from kurt2rt.critic.role import Role
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
@@ -29,6 +28,7 @@ from kurt2rt.teaching.commands import (
     Take,
     Watch,
 )
+from kurt2rt.teaching.learning import Learning
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.refused import RefusedError, refuse
 from kurt2rt.teaching.tuition import Tuition, require_action
@@ -66,7 +66,6 @@ class School:
         self.critic = critic
         self.agreement = agreement
         self.reinforcement = reinforcement
-        self._self_teaching = self_teaching
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._tuition = Tuition(
             level,
@@ -75,7 +74,13 @@ class School:
             reinforcement=reinforcement,
             appraising=None if critic is None else Appraising(critic, level.system, self.recent),
         )
-        self._taken = set(taken_command_ids)
+        self.learning = Learning(
+            level,
+            taken_command_ids=taken_command_ids,
+            reinforcement=reinforcement,
+            agreement=agreement,
+            self_teaching=self_teaching,
+        )
         self.phase = Phase.SUPERVISED
         self.stopped_because = ""
         """Empty while nobody stopped the robot."""
@@ -84,9 +89,6 @@ class School:
         """What the teacher had seen when he said what is wanted now."""
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
-        self.trouble = ""
-        """What the robot wanted to learn by itself and could not, in one line; empty while there is nothing."""
-        self._skipped = 0
         self.session: str | None = None
         """Name of the session that is on."""
         self._session_from = 0
@@ -94,22 +96,12 @@ class School:
 
     def has_taken(self, command_id: str) -> bool:
         """Whether a command of this id was carried out already."""
-        return command_id in self._taken
+        return command_id in self.learning.taken
 
     @property
     def corrections(self) -> int:
         """How often a teacher has corrected."""
         return self._tuition.corrections
-
-    @property
-    def critics_role(self) -> Role:
-        """What the critic did in the last tick; it listens where there is none."""
-        return Role.LISTENS if self._self_teaching is None else self._self_teaching.role
-
-    @property
-    def bad_share(self) -> float | None:
-        """Share of the driven time that the critic found bad lately; None while it only listens."""
-        return None if self._self_teaching is None else self._self_teaching.bad_share
 
     def stop(self, because: str, by: str | None = None) -> None:
         """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
@@ -180,60 +172,17 @@ class School:
         try:
             text, event = self._carry_out(command, situation, tick)
             if event is not None:
-                self._apply(event)
+                self.learning.apply(event)
         except (RefusedError, UnfitEventError) as error:
             if nobody_taught and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # who was refused has not become the teacher by it
             return CommandResult(command.command_id, False, str(error)), None
-        self._taken.add(command.command_id)
+        self.learning.taken.add(command.command_id)
         return CommandResult(command.command_id, True, text, lesson=event is not None), event
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
-        """What is learnt from a tick when the wheels have been told: the decision, and what the critic thinks of it.
-
-        The events act from the next tick on and have to reach the journal.
-        """
-        reinforcement, alone = self.reinforcement, self._self_teaching
-        if reinforcement is None:
-            return []
-        reinforcement.count_for(self.phase)
-        if alone is not None and not alone.stands_in(self.phase):
-            alone = None
-        changes_itself = alone is not None and not alone.measures
-        learning = self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
-        reinforcement.choice.explores = learning
-        if learning:
-            reinforcement.drove(decision.rla_id if decision.answers else None, tick)
-        if alone is not None:
-            alone.signal(tick, decision, opinion)
-        events: list[TeachingEvent] = []
-        for lesson in reinforcement.repairs(tick, self.phase):
-            self._take_in(lesson, events)
-        if alone is not None:
-            for undone in alone.roll_back(tick, decision, opinion):
-                self._take_in(undone, events)
-        return events
-
-    def _take_in(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
-        """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
-        try:
-            self._apply(event)
-        except UnfitEventError as error:
-            self._skipped += 1
-            self.trouble = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
-        else:
-            events.append(event)
-
-    def _apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge, and tell all that follow it. Raises UnfitEventError, and then nothing has changed."""
-        self._level.apply(event)
-        self._taken.add(event.origin.command_id)
-        if self.reinforcement is not None:
-            self.reinforcement.hear(event)
-        if self.agreement is not None:
-            self.agreement.hear(event)
-        if self._self_teaching is not None:
-            self._self_teaching.hear(event)
+        """What is learnt from a tick when the wheels have been told; see `Learning.from_tick`."""
+        return self.learning.from_tick(self.phase, tick, decision, opinion)
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
         authority = self.authority

@@ -279,7 +279,7 @@ async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(
 
 async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(desk: Desk) -> None:
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
-    desk.runtime.school._taken.add(f"ann-{request.command_id.hex()}")
+    desk.runtime.school.learning.taken.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
     assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "had been taken already; counted once")
 

@@ -159,7 +159,7 @@ def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> N
 
 
 def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
-    desk.runtime.school.trouble = "1 change was skipped"
+    desk.runtime.school.learning.trouble = "1 change was skipped"
     assert picture(desk).trouble == "1 change was skipped"
 
 

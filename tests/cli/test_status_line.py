@@ -60,7 +60,7 @@ def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> No
 
 def test_what_the_robot_could_not_learn_is_told() -> None:
     desk = Desk()
-    desk.runtime.school.trouble = "1 change was skipped"
+    desk.runtime.school.learning.trouble = "1 change was skipped"
     assert status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 
 

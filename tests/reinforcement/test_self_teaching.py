@@ -36,7 +36,7 @@ def lose_trust(robot: Track) -> None:
     for number in range(5):
         told = Origin(f"doubt-{number}", "Ann", Phase.AUTONOMOUS, robot.tick)
         event = RlaRewarded(2, 1, robot.tick, told, (), said=-1)
-        robot.school._apply(event)
+        robot.school.learning.apply(event)
         robot.events.append(event)
     assert not robot.agreement.trusted
 

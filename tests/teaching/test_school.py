@@ -703,10 +703,10 @@ def test_a_change_of_the_robots_own_that_does_not_fit_is_skipped_and_told_and_th
     for _ in range(3):
         robot.go(0.0, 200)
         robot.signal(-1)
-    assert robot.school.trouble == ""
+    assert robot.school.learning.trouble == ""
     assert robot.go(0.0).driving
     assert robot.learnt == []
-    assert robot.school.trouble == (
+    assert robot.school.learning.trouble == (
         "changes that did not fit the knowledge were skipped: 1, the last: "
         "command 'signal-3/withdraw-1' has taught a lesson already"
     )
