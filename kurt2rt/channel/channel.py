@@ -157,6 +157,8 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "behaviours": list(runtime.wanted.behaviours),
         "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],
         "trusted_from": 1.0 if critic is None else critic.agreement.bound,
+        "mid": None,
+        "seeks": False,
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,

@@ -9,8 +9,10 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
+    AnswerRequest,
     BehaviourRequest,
     CommandRequest,
+    CorrectRequest,
     DriveRequest,
     ExportRequest,
     HelloRequest,
@@ -28,6 +30,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
     Command,
@@ -189,6 +192,8 @@ class Reception:
                 reply = self._change_world(device, request)
                 self._outcomes.begin(command_id).set_result(reply)
                 return None
+            case AnswerRequest(level=level) | CorrectRequest(level=level) if level != BASIC:
+                return refusal("refused", "this robot has no mid level", self.tick)
         held = self._runtime.school.authority.held_by_another(device)
         if held is not None and not isinstance(request, TakeRequest):
             return refusal("held", held, self.tick)

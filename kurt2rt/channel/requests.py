@@ -3,10 +3,10 @@
 from dataclasses import dataclass, fields
 from typing import Annotated, ClassVar, get_args, get_type_hints
 
-from kurt2rt.channel.schema import Check, Octets, OneOf, OrNone, Real, Text, Whole
-from kurt2rt.rla.rla import Phase
+from kurt2rt.channel.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole
+from kurt2rt.rla.rla import BASIC, MID, Phase
 
-VERSION = 2
+VERSION = 3
 """Of the wire contract: what /hello and /state hold. A device refuses another one and says what to do."""
 BOOT_BYTES = 4
 COMMAND_ID_BYTES = 8
@@ -28,6 +28,7 @@ _Way = Annotated[float, Real(LONGEST_WAY_M, "m")]
 _Angle = Annotated[float, Real(100.0, "rad")]
 _Name = Annotated[str, Text(LONGEST_TEXT, least=1)]
 _NameOrNone = Annotated[str | None, OrNone(Text(LONGEST_TEXT, least=1))]
+_Level = Annotated[str, OneWord((BASIC, MID))]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,8 @@ class Request:
     """What comes to a path. Its fields are the body's, in their order."""
 
     path: ClassVar[str]
+    may_lack: ClassVar[int] = 0
+    """How many of its last fields a device of an older version leaves out; their defaults stand then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +113,15 @@ class AnswerRequest(CommandRequest):
     """Answer a situation (phase 1)."""
 
     path: ClassVar[str] = "/answer"
+    may_lack: ClassVar[int] = 2
     action: _Name
+    """What is right there: an action for the basic level, a taught behaviour for the mid level."""
     decision_tick: _TickOrNone
     """The situation of which tick; None: the present one. So it is with the next three."""
+    level: _Level = BASIC
+    """Whose situation it is."""
+    beside: Annotated[bool, Flag()] = False
+    """Possible too, beside what the mid level knows there already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,8 +129,11 @@ class CorrectRequest(CommandRequest):
     """Another action is right (phase 2)."""
 
     path: ClassVar[str] = "/correct"
+    may_lack: ClassVar[int] = 1
     action: _Name
     decision_tick: _TickOrNone
+    level: _Level = BASIC
+    """Whose decision was wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +191,7 @@ class PhaseRequest(CommandRequest):
 
 @dataclass(frozen=True, slots=True)
 class PursueRequest(CommandRequest):
-    """Follow another taught behaviour."""
+    """Follow another taught behaviour; while a mid level commands, until it has finished."""
 
     path: ClassVar[str] = "/pursue"
     behaviour: _Name

@@ -80,6 +80,19 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
+class OneWord:
+    """One of a few words."""
+
+    words: tuple[str, ...]
+
+    def __call__(self, what: str, value: object) -> str:
+        """This word. Raises WireError."""
+        if not isinstance(value, str) or value not in self.words:
+            raise WireError(f"{what} has to be one of {', '.join(self.words)}")
+        return value
+
+
+@dataclass(frozen=True, slots=True)
 class Flag:
     """True or False."""
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.teaching.question import FeatureDifference
 
 
@@ -16,6 +17,49 @@ class SimulatedPlace:
     collisions: int
     world_version: int
     """Grows when a wall is moved: ask for the world again."""
+
+
+@dataclass(frozen=True, slots=True)
+class MidState:
+    """What the mid level wants of the basic one, and why."""
+
+    behaviour: str
+    """The taught behaviour that is followed now."""
+    rla: int | None
+    """Mid-level RLA that commands; None while it asks, or a teacher or nobody has said what to follow."""
+    nearest: int | None
+    """Mid-level RLA nearest to what the robot has come by; None before the first."""
+    nearest_behaviour: str | None
+    distance: float
+    """Of the nearest one, such as how many symbols differ; infinite without one."""
+    radius: float
+    taught_by: str
+    """Who taught the nearest one's behaviour; empty without one."""
+    taught_at: str
+    """When, UTC, ISO 8601; empty without one, or while it is not durable yet."""
+    asks: bool
+    """Whether the robot stands because the mid level does not know what to follow."""
+    overridden: bool
+    """Whether a teacher's choice counts in its place, until the behaviour has finished."""
+    here: tuple[str, ...]
+    """The mid level's situation in words, the newest symbol first; empty words are none yet."""
+    there: tuple[str, ...]
+    """The nearest one's condition, word by word beside it; empty without one."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurpriseState:
+    """Something else came than an RLA has learnt to expect."""
+
+    tick: int
+    """When."""
+    level: str
+    rla: int
+    """Whose expectation it was."""
+    times: float
+    """Distance of what came from what was expected, in its usual ones: 1 is usual."""
+    new: bool
+    """Whether this RLA had never been followed by that one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,3 +138,15 @@ class State:
     """Share of the driven time that it found bad lately; None while it only listens."""
     signals_missing: tuple[int, int] = (0, 0)
     """How many bad and how many good signals the teacher still has to give before agreement is known."""
+    asks_at: str = BASIC
+    """While the robot asks: the level that does, BASIC or MID; nearest, distance and radius are of that level."""
+    mid: MidState | None = None
+    """None where the robot has no mid level."""
+    surprise: SurpriseState | None = None
+    """The latest one that is worth telling; None before the first."""
+    goal: str = ""
+    """What the robot seeks, in words; empty while it seeks nothing."""
+    plan: tuple[str, ...] = ()
+    """The behaviours that lead there, the next one first."""
+    plan_says: str = ""
+    """How far the plan is, or why there is none, in a line; empty without a goal."""

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
@@ -11,6 +12,7 @@ from kurt2rt.channel.schema import (
     ManyOf,
     Octets,
     OneOf,
+    OneWord,
     OrNone,
     Real,
     Row,
@@ -20,7 +22,8 @@ from kurt2rt.channel.schema import (
     decode_strictly,
     encode_plainly,
 )
-from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
+from kurt2rt.rla.rla import BASIC, MID
 from kurt2rt.teaching.question import FeatureDifference
 
 __all__ = [
@@ -65,10 +68,10 @@ def decode_request(path: str, payload: bytes) -> Request:
         raise WireError(f"there is no {path} here")
     body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
     checks = _CHECKS[kind]
-    if not isinstance(body, list) or len(body) != len(checks):
+    if not isinstance(body, list) or not len(checks) - kind.may_lack <= len(body) <= len(checks):
         names = ", ".join(name for name, _ in checks)
         raise WireError(f"{path} takes a list of {len(checks)}: [{names}]")
-    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=True)})
+    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=False)})
 
 
 def encode_answer(answer: Mapping[str, Any]) -> bytes:
@@ -85,6 +88,9 @@ def decode_answer(payload: bytes) -> dict[str, Any]:
     return answer
 
 
+_MOST_SYMBOLS = 32
+_MOST_STEPS = 32
+"""Of a plan that are told; a longer one is cut."""
 _LINE = Text(512)
 _NAME = Text(LONGEST_TEXT)
 _NUMBER = Whole(0, LARGEST_NUMBER)
@@ -128,11 +134,33 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("cr", "role", _NAME),
     ("bs", "bad_share", OrNone(Real(1.0))),
     ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
+    ("aa", "asks_at", OneWord((BASIC, MID))),
+    ("go", "goal", _NAME),
+    ("pn", "plan", ManyOf(_NAME, most=_MOST_STEPS)),
+    ("ps", "plan_says", _LINE),
 )
 """Key on the wire, field of State, check."""
 
 _WHEELS = Row((_FINITE, _FINITE))
 _QUESTION = ManyOf(Row((_NAME, _FINITE, _FINITE)), most=32)
+_WORDS = ManyOf(_NAME, most=_MOST_SYMBOLS)
+_MID = (
+    _NAME,
+    OrNone(_NUMBER),
+    OrNone(_NUMBER),
+    OrNone(_NAME),
+    _ANY_REAL,
+    _ANY_REAL,
+    _NAME,
+    _NAME,
+    Flag(),
+    Flag(),
+    _WORDS,
+    _WORDS,
+)
+"""The fields of MidState."""
+_SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _ANY_REAL, Flag())
+"""The fields of SurpriseState."""
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -147,6 +175,8 @@ def encode_state(state: State) -> bytes:
         if place is None
         else [place.x_m, place.y_m, place.heading_rad, place.laps, place.collisions, place.world_version]
     )
+    picture["mid"] = _row(state.mid, _MID)
+    picture["su"] = _row(state.surprise, _SURPRISE)
     return encode_plainly(picture)
 
 
@@ -162,13 +192,23 @@ def decode_state(payload: bytes) -> State:
     left_m_s, right_m_s = _WHEELS("wheel speeds", _take(picture, "m"))
     question = tuple(FeatureDifference(*each) for each in _QUESTION("question", _take(picture, "ask")))
     place = _PLACE("place", _take(picture, "pl"))
+    mid = OrNone(Row(_MID))("mid level", _take(picture, "mid"))
+    surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
     return State(
         left_m_s=left_m_s,
         right_m_s=right_m_s,
         question=question,
         place=None if place is None else SimulatedPlace(*place),
+        mid=None if mid is None else MidState(*mid),
+        surprise=None if surprise is None else SurpriseState(*surprise),
         **values,
     )
+
+
+def _row(value: MidState | SurpriseState | None, checks: tuple[Check, ...]) -> list[Any] | None:
+    if value is None:
+        return None
+    return [_tidied(getattr(value, each.name), check) for each, check in zip(fields(value), checks, strict=True)]
 
 
 def _take(picture: dict[Any, Any], key: str) -> object:
@@ -184,8 +224,8 @@ def _tidied(value: Any, check: Check) -> Any:
     match check:
         case Text():
             return check.cut(value)
-        case ManyOf(check=inner):
-            return [_tidied(each, inner) for each in value]
+        case ManyOf(check=inner, most=most):
+            return [_tidied(each, inner) for each in value[:most]]
         case OrNone(check=inner) if value is not None:
             return _tidied(value, inner)
         case _:

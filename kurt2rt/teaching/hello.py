@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, VERSION
-from kurt2rt.channel.schema import Flag, ManyOf, Octets, Real, Row, Text, Whole, WireError
+from kurt2rt.channel.schema import Flag, ManyOf, Octets, OrNone, Real, Row, Text, Whole, WireError
 
 _NAME = Text(64)
 _METRES = Real(1000.0, "m")
@@ -13,6 +13,7 @@ _NUMBER = Whole(0, LARGEST_NUMBER)
 _BOOT = Octets(BOOT_BYTES)
 _SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))), most=64)
 _APPRAISALS = ManyOf(Row((_NAME, Whole(-1, 1))), most=16)
+_MID = OrNone(Row((_NAME, Whole(0, 256), Real(1e9))))
 _OUTLINE = Row((_METRES, _METRES))
 
 
@@ -22,6 +23,17 @@ class AppraisalName(NamedTuple):
     name: str
     value: int
     """-1, 0 or +1."""
+
+
+class MidIntroduction(NamedTuple):
+    """The mid level, for who has never seen it."""
+
+    kind: str
+    """Of its situation: history, place."""
+    length: int
+    """How many features the situation has."""
+    radius: float
+    """R of its RLA system."""
 
 
 class SensorPlace(NamedTuple):
@@ -63,6 +75,10 @@ class Hello:
     """The critic's repertoire; empty where the robot has no critic."""
     trusted_from: float = 1.0
     """Agreement from which on the critic is trusted."""
+    mid: MidIntroduction | None = None
+    """None where no mid level chooses the behaviours."""
+    seeks: bool = False
+    """Whether the robot can be given a goal."""
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
@@ -89,6 +105,8 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             behaviours=ManyOf(_NAME, most=64)("behaviours", body["behaviours"]),
             appraisals=tuple(AppraisalName(*each) for each in _APPRAISALS("appraisals", body["appraisals"])),
             trusted_from=Real(1.0)("trusted_from", body["trusted_from"]),
+            mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),
+            seeks=Flag()("seeks", body["seeks"]),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error

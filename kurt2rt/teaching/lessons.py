@@ -13,6 +13,7 @@ from kurt2rt.channel.requests import (
     RewardRequest,
     UndoRequest,
 )
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.asking import Asking, facts_of
 from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
@@ -29,13 +30,16 @@ class Lessons:
         """The newest lessons, up to 20, newest first."""
         return await self._asking.told(LessonsRequest(count), lambda response: lesson_lines_of(facts_of(response)))
 
-    async def answer(self, action: str, *, of: int | None = None) -> Answer:
-        """Answer a situation: a new RLA (phase 1)."""
-        return await self._asking.command(AnswerRequest, action=action, decision_tick=of)
+    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
+        """Answer a situation: a new RLA (phase 1). At level MID `action` is a taught behaviour.
 
-    async def correct(self, action: str, *, of: int | None = None) -> Answer:
-        """Another action is right (phase 2)."""
-        return await self._asking.command(CorrectRequest, action=action, decision_tick=of)
+        `beside`: possible there, too, beside what the mid level knows already.
+        """
+        return await self._asking.command(AnswerRequest, action=action, decision_tick=of, level=level, beside=beside)
+
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        """Another action is right (phase 2), at level MID another behaviour."""
+        return await self._asking.command(CorrectRequest, action=action, decision_tick=of, level=level)
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         """Praise (+1) or blame (-1) what the robot did (phase 3)."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.teaching.question import FeatureDifference
 
 ASKING = State(
@@ -40,6 +40,24 @@ ASKING = State(
     place=SimulatedPlace(1.0, 2.0, 0.5, 0.25, 1, 3),
 )
 """A simulated robot that stands and asks; `phone` is its teacher."""
+
+COMMANDS = MidState(
+    behaviour="turn_left",
+    rla=12,
+    nearest=12,
+    nearest_behaviour="turn_left",
+    distance=2.0,
+    radius=6.0,
+    taught_by="phone",
+    taught_at="2026-11-21T12:04:00Z",
+    asks=False,
+    overridden=False,
+    here=("left", "straight", "right", "straight", "left", "left", "straight", "", "", "", "", ""),
+    there=("left", "straight", "left", "straight", "left", "straight", "straight", "", "", "", "", ""),
+)
+"""Mid-level RLA 12 has the robot turn left."""
+
+SURPRISED = SurpriseState(tick=1230, level="mid", rla=12, times=3.5, new=False)
 
 
 def state(**changes: Any) -> State:

@@ -1,7 +1,7 @@
 """What goes over the wire comes back the same; what is not right is refused in a sentence, and in no other way."""
 
 import math
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from typing import Any
 
 import cbor2
@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from kurt2rt.channel.requests import (
     AnswerRequest,
     AppraiseRequest,
+    CorrectRequest,
     DriveRequest,
     LessonsRequest,
     MoveWallRequest,
@@ -21,8 +22,8 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     checks_of,
 )
-from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OrNone, Real, Row, Text, Whole
-from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
+from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.channel.wire import (
     PATHS,
     WireError,
@@ -33,9 +34,9 @@ from kurt2rt.channel.wire import (
     encode_request,
     encode_state,
 )
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import BASIC, MID, Phase
 from kurt2rt.teaching.question import FeatureDifference
-from tests.channel.states import state
+from tests.channel.states import COMMANDS, SURPRISED, state
 
 BOOT = b"boot"
 ID = b"12345678"
@@ -44,6 +45,8 @@ REALS = st.floats(allow_nan=False)
 FINITE = st.floats(-1e9, 1e9)
 PRINTABLE = st.characters(categories=("L", "N", "P", "S")) | st.just(" ")
 NAMES = st.text(PRINTABLE, max_size=64)
+WORDS = st.lists(NAMES, max_size=12).map(tuple)
+LEVELS = st.sampled_from((BASIC, MID))
 
 
 def values(check: Check) -> st.SearchStrategy[Any]:
@@ -57,6 +60,10 @@ def values(check: Check) -> st.SearchStrategy[Any]:
             return st.floats(-most, most)
         case OneOf(numbers=numbers, kind=kind):
             return st.sampled_from(numbers).map(kind)
+        case OneWord(words=words):
+            return st.sampled_from(words)
+        case Flag():
+            return st.booleans()
         case Text(most=most, least=least):
             return st.text(PRINTABLE, min_size=least, max_size=most)
         case OrNone(check=inner):
@@ -110,6 +117,27 @@ STATES = st.builds(
     role=NAMES,
     bad_share=st.none() | st.floats(0.0, 1.0),
     signals_missing=st.tuples(NUMBERS, NUMBERS),
+    asks_at=LEVELS,
+    mid=st.none()
+    | st.builds(
+        MidState,
+        behaviour=NAMES,
+        rla=st.none() | NUMBERS,
+        nearest=st.none() | NUMBERS,
+        nearest_behaviour=st.none() | NAMES,
+        distance=REALS,
+        radius=REALS,
+        taught_by=NAMES,
+        taught_at=NAMES,
+        asks=st.booleans(),
+        overridden=st.booleans(),
+        here=WORDS,
+        there=WORDS,
+    ),
+    surprise=st.none() | st.builds(SurpriseState, NUMBERS, LEVELS, NUMBERS, REALS, st.booleans()),
+    goal=NAMES,
+    plan=WORDS,
+    plan_says=NAMES,
 )
 
 ANYTHING = st.recursive(
@@ -213,6 +241,20 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
         ("/appraise", [BOOT, ID, 0, "", None], "appraisal has to be text of 1 to 64 printable characters"),
         ("/appraise", [BOOT, ID, 0, -1, None], "appraisal has to be text of 1 to 64 printable characters"),
         ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, "high", False], "level has to be one of basic, mid"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, None, False], "level has to be one of basic, mid"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, "mid", 1], "beside has to be true or false"),
+        ("/correct", [BOOT, ID, 0, "turn_left", None, b"mid"], "level has to be one of basic, mid"),
+        (
+            "/correct",
+            [BOOT, ID, 0, "turn_left", None, "mid", False],
+            "/correct takes a list of 6: [boot, command_id, seen, action, decision_tick, level]",
+        ),
+        (
+            "/answer",
+            [BOOT, ID, 0, "turn_left"],
+            "/answer takes a list of 7: [boot, command_id, seen, action, decision_tick, level, beside]",
+        ),
         ("/answer", [BOOT, ID, 0, "", None], "action has to be text of 1 to 64 printable characters"),
         ("/answer", [BOOT, ID, 0, "a\nb", None], "action has to be text of 1 to 64 printable characters"),
         ("/answer", [BOOT, ID, 0, "x" * 65, None], "action has to be text of 1 to 64 printable characters"),
@@ -231,11 +273,20 @@ def test_nothing_is_sent_that_the_robot_cannot_take() -> None:
 
 def test_the_bodies_are_the_lists_of_the_contract() -> None:
     assert cbor2.loads(encode_request(DriveRequest(BOOT, 90, 2, 0.25, -0.25))) == [BOOT, 90, 2, 0.25, -0.25]
-    assert cbor2.loads(encode_request(AnswerRequest(BOOT, ID, 90, "forward", 88))) == [BOOT, ID, 90, "forward", 88]
+    answer = AnswerRequest(BOOT, ID, 90, "forward", 88)
+    assert cbor2.loads(encode_request(answer)) == [BOOT, ID, 90, "forward", 88, "basic", False]
+    correction = CorrectRequest(BOOT, ID, 90, "turn_left", None, MID)
+    assert cbor2.loads(encode_request(correction)) == [BOOT, ID, 90, "turn_left", None, "mid"]
     assert cbor2.loads(encode_request(AppraiseRequest(BOOT, ID, 90, "bad", 88))) == [BOOT, ID, 90, "bad", 88]
     assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
     assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]
     assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
+
+
+def test_a_device_of_version_2_knows_no_levels_and_teaches_the_basic_one() -> None:
+    lesson = [BOOT, ID, 90, "forward", 88]
+    assert decode_request("/answer", cbor2.dumps(lesson)) == AnswerRequest(BOOT, ID, 90, "forward", 88, BASIC, False)
+    assert decode_request("/correct", cbor2.dumps(lesson)) == CorrectRequest(BOOT, ID, 90, "forward", 88, BASIC)
 
 
 def test_a_whole_number_is_taken_for_a_way() -> None:
@@ -247,6 +298,15 @@ def test_a_whole_number_is_taken_for_a_way() -> None:
 
 def test_a_state_leaves_room_in_its_datagram() -> None:
     assert len(encode_state(state())) < 450
+    assert len(encode_state(state(mid=COMMANDS, surprise=SURPRISED, plan=("turn_left",) * 12))) < 900
+
+
+def test_words_of_the_levels_are_cut_and_tidied_too() -> None:
+    untidy = state(mid=replace(COMMANDS, behaviour="turn\nleft", here=("left",) * 40), plan=("straight_on",) * 40)
+    picture = decode_state(encode_state(untidy))
+    assert picture.mid is not None
+    assert (picture.mid.behaviour, picture.mid.here) == ("turn left", ("left",) * 32)
+    assert picture.plan == ("straight_on",) * 32
 
 
 def test_a_line_break_in_a_text_does_not_cost_the_teacher_the_picture() -> None:

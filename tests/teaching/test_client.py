@@ -67,6 +67,8 @@ HELLO = {
     "behaviours": ["straight_on", "turn_left"],
     "appraisals": [["bad", -1], ["neutral", 0], ["good", 1]],
     "trusted_from": 0.8,
+    "mid": ["history", 12, 6.0],
+    "seeks": True,
     "sensors": [["front", "F", 0.2, 0.0, 0.0]],
     "outline": [0.434, 0.33],
     "max_m_s": 0.6,
