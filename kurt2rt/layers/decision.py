@@ -4,6 +4,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
+from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.rla.rla_system import Match
 
 
@@ -28,6 +30,23 @@ class Cause(StrEnum):
     """Lessons cannot be saved at the moment: the robot stands until they are."""
 
 
+class MidDecision(NamedTuple):
+    """What the mid level commands in this tick."""
+
+    behaviour: str
+    """The taught behaviour of the basic level that is wanted; where the mid level asks, the one that was."""
+    rla_id: int | None
+    """The mid-level RLA whose action this is; None while it asks, or a teacher overrides it."""
+    match: Match | None
+    """Nearest mid-level RLA, its distance, R and the runner-up; None before the first lesson at this level."""
+    asks: bool
+    """Whether no RLA is near enough, and nobody overrides it: the robot stands and asks."""
+    overridden: bool
+    """Whether a teacher has commanded the behaviour, until the next junction has been passed."""
+    event: JunctionEvent | None
+    """The junction that has been passed in this very tick."""
+
+
 class Decision(NamedTuple):
     """One tick's decision."""
 
@@ -41,6 +60,10 @@ class Decision(NamedTuple):
     """Nearest RLA at this situation, its distance, R and the runner-up; None before the first lesson."""
     answers: bool = False
     """Whether the situation lies inside the radius of the RLA that drives; outside it nobody may blame it."""
+    asks_at: str = BASIC
+    """The level that does not know its situation, where one does not; `match` is that level's."""
+    mid: MidDecision | None = None
+    """What the mid level commands; None where there is none."""
 
     @property
     def driving(self) -> bool:

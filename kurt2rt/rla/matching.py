@@ -43,6 +43,16 @@ def exact_distances(conditions: NDArray[np.float64], situation: NDArray[np.float
     return distances
 
 
+def fitting_row(condition: tuple[float, ...], dimensions: int) -> NDArray[np.float64]:
+    """A condition as an array (d,). Raises ValueError for a wrong length or a number that is not finite."""
+    row = np.array(condition, dtype=np.float64)
+    if row.shape != (dimensions,):
+        raise ValueError(f"condition has {row.size} values, this system matches {dimensions}")
+    if not np.isfinite(row).all():
+        raise ValueError("condition holds a value that is not finite")
+    return row
+
+
 class ConditionIndex:
     """All conditions in one contiguous array, in order of age.
 
@@ -70,11 +80,7 @@ class ConditionIndex:
 
     def insert(self, position: int, condition: tuple[float, ...]) -> None:
         """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
-        row = np.array(condition, dtype=np.float64)
-        if row.shape != (self._dimensions,):
-            raise ValueError(f"condition has {row.size} values, this system matches {self._dimensions}")
-        if not np.isfinite(row).all():
-            raise ValueError("condition holds a value that is not finite")
+        row = fitting_row(condition, self._dimensions)
         if self._count == len(self._exact):
             self._grow()
         for array in (self._exact, self._rough, self._half_squares, self._norms):

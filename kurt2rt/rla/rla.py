@@ -13,6 +13,9 @@ BASIC = "basic"
 MID = "mid"
 """The level whose RLAs say which taught behaviour the basic level is to follow."""
 
+MID = "mid"
+"""The level whose RLAs say which taught behaviour of the basic level is wanted."""
+
 CRITIC = "critic"
 """The level whose RLAs say what a situation is worth, in place of a teacher; also the critic's name as a teacher."""
 

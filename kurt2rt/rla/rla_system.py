@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import islice
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,11 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
+from kurt2rt.rla.symbol_index import SymbolIndex
+
+Metric = Literal["euclidean", "hamming", "edit"]
+"""How far apart two points are: of features that measure something, the Euclidean distance; of symbols, which are
+equal or not, in how many places they differ, or how many insertions, deletions and changes make one of the other."""
 
 
 class Match(NamedTuple):
@@ -74,7 +79,8 @@ class Space(NamedTuple):
     radius: float
     """Confidence radius of RLAs that have none of their own."""
     weights: NDArray[np.float64] | None = None
-    """Shape (dimensions,): how much each feature counts in a distance; None: all count 1."""
+    """Shape (dimensions,): how much each feature counts in a distance; None: all count 1. Symbols have none."""
+    metric: Metric = "euclidean"
 
 
 class _Contest:
@@ -84,7 +90,7 @@ class _Contest:
         self.radius = space.radius
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self.ids: list[int] = []  # oldest first
-        self.index = ConditionIndex(space.dimensions)
+        self.index = _index_of(space)
 
     def enter(self, rla_id: int, condition: Condition) -> None:
         """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
@@ -111,8 +117,16 @@ class _Contest:
         return weighted
 
 
+def _index_of(space: Space) -> ConditionIndex | SymbolIndex:
+    if space.metric == "euclidean":
+        return ConditionIndex(space.dimensions)
+    if space.weights is not None:
+        raise ValueError(f"symbols are equal or not: a space of metric {space.metric} takes no weights")
+    return SymbolIndex(space.dimensions, edits=space.metric == "edit")
+
+
 class RlaSystem:
-    """The fold of teaching events; winner takes all by Euclidean distance, among the RLAs of one taught behaviour."""
+    """The fold of teaching events; winner takes all by distance, among the RLAs of one taught behaviour."""
 
     def __init__(
         self,
@@ -132,6 +146,8 @@ class RlaSystem:
         self.weights = np.ones(dimensions) if weights is None else weights
         self.teaching_ticks = 0
         """How long all sessions that have ended lasted, together."""
+        self.changes = 0
+        """How many events were applied: while it stays as it is, equal situations have equal answers."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
         self._rlas: dict[int, Rla] = {}
         self._contests: dict[tuple[str, str], _Contest] = {}
@@ -257,6 +273,7 @@ class RlaSystem:
                     raise UnfitEventError(f"command {command_id!r} has taught a lesson already")
                 self._learn(event)
                 self._book.enter(event)
+        self.changes += 1
 
     def apply_all(self, events: Iterable[TeachingEvent]) -> None:
         """Apply events in order."""

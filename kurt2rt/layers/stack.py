@@ -1,0 +1,33 @@
+"""The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
+
+from hal.robot import STANDSTILL, Senses
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.level import Level
+from kurt2rt.layers.mid_level import MidLevel
+from kurt2rt.perception.perception import Situation
+from kurt2rt.rla.rla import MID
+
+
+class LayerStack:
+    """A mid level over a basic one; itself a level, so the tick sees one layer (kurt2rt.layers.level.Level)."""
+
+    def __init__(self, basic: Level, mid: MidLevel) -> None:
+        """Both share one kurt2rt.layers.wanted.Wanted: the mid level commands there, the basic level looks there."""
+        self.basic = basic
+        self.mid = mid
+        self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+        """The basic level's decision about what the mid level commands; where that one asks, the robot stands."""
+        commanded = self.mid.decide(senses, self._before)
+        if commanded.asks:
+            decision = self.basic.decide(situation, senses, stand_because or Cause.UNKNOWN)
+            self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
+        else:
+            decision = self.basic.decide(situation, senses, stand_because)
+            self._before = decision._replace(mid=commanded)
+        return self._before
+
+    def restart(self) -> None:
+        """The robot has been set down elsewhere."""
+        self.mid.restart()

@@ -1,0 +1,71 @@
+"""The mid level's situation as the paper has it (VI.B.2): the last differing symbols."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from hal.robot import Senses
+from hal.robot_settings import RobotSettings
+from kurt2rt.layers.decision import Decision
+from kurt2rt.mid.junction_detector import JunctionDetector
+from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.mid.situation import MidSituation, MidSituationSettings
+from kurt2rt.mid.symbols.source import NONE, AnySymbolSettings, SymbolSource
+from kurt2rt.rla.rla_system import Metric
+
+
+class HistorySettings(MidSituationSettings):
+    """A history of symbols."""
+
+    symbols: AnySymbolSettings
+    length: Annotated[int, Field(ge=1, le=100)]
+    """How many symbols are remembered."""
+    distance: Literal["hamming", "edit"]
+    """hamming: in how many places two histories differ; edit: how many insertions, deletions and changes it takes."""
+
+    @property
+    def features(self) -> tuple[str, ...]:
+        """The newest symbol first."""
+        return tuple(f"symbol {place}" for place in range(1, self.length + 1))
+
+    @property
+    def metric(self) -> Metric:
+        """Symbols are equal or not."""
+        return self.distance
+
+    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
+        """The history, empty."""
+        return SymbolHistory(self, self.symbols.build(robot), detector)
+
+
+class SymbolHistory:
+    """The last symbols, newest first; NONE where there was none yet."""
+
+    def __init__(self, settings: HistorySettings, source: SymbolSource, detector: JunctionDetector) -> None:
+        self.features = settings.features
+        self.dimensions = settings.length
+        self.vector: NDArray[np.float64] = np.full(settings.length, float(NONE))
+        self.passed: JunctionEvent | None = None
+        self._source = source
+        self._detector = detector
+
+    def perceive(self, senses: Senses, before: Decision) -> bool:
+        """Take in one tick."""
+        self.passed = self._detector.perceive(senses)
+        symbol = self._source.perceive(senses, before, self.passed)
+        if symbol == NONE:
+            return False
+        vector = np.empty_like(self.vector)
+        vector[0] = symbol
+        vector[1:] = self.vector[:-1]
+        self.vector = vector
+        return True
+
+    def restart(self) -> None:
+        """Forget all symbols."""
+        self._detector.restart()
+        self._source.restart()
+        self.passed = None
+        self.vector = np.full(self.dimensions, float(NONE))

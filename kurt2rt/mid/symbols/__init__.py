@@ -1,0 +1,1 @@
+"""What a history is made of: one kind of symbols a file."""

@@ -1,0 +1,48 @@
+"""The contract of a source of symbols."""
+
+from abc import abstractmethod
+from typing import Annotated, Protocol
+
+from pydantic import PlainValidator, SerializeAsAny
+
+from hal.robot import Senses
+from hal.robot_settings import RobotSettings
+from hal.settings_by_kind import KindSettings, as_its_kind
+from kurt2rt.layers.decision import Decision
+from kurt2rt.mid.junction_event import JunctionEvent
+
+NONE = 0
+"""The symbol of a place of a history that nothing stands in yet."""
+
+
+class SymbolSource(Protocol):
+    """Says in each tick which symbol the robot is at."""
+
+    def perceive(self, senses: Senses, before: Decision, passed: JunctionEvent | None) -> int:
+        """The symbol that is new in this tick; NONE: none is. `before`: the decision of the tick before."""
+        ...
+
+    def restart(self) -> None:
+        """Forget what was."""
+        ...
+
+
+class SymbolSettings(KindSettings):
+    """Base of the settings of every kind of symbols: a class named after its file in this folder, which is the kind."""
+
+    @property
+    @abstractmethod
+    def names(self) -> tuple[str, ...]:
+        """How the symbols 1, 2, 3 ... are spoken of."""
+
+    @abstractmethod
+    def build(self, robot: RobotSettings) -> SymbolSource:
+        """The source, for this robot. Raises hal.settings.SettingsError."""
+
+
+def _checked(given: object) -> SymbolSettings:
+    return as_its_kind(given, "kurt2rt.mid.symbols", SymbolSettings)  # type: ignore[type-abstract]
+
+
+AnySymbolSettings = Annotated[SerializeAsAny[SymbolSettings], PlainValidator(_checked)]
+"""In a schema: settings of whatever kind of symbols the file names."""
