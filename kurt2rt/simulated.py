@@ -112,6 +112,10 @@ class SimulatedArena:
         """Set the robot down elsewhere."""
         self.simulation.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
 
+    def put(self, pose: TruePose) -> None:
+        """Set the robot down here."""
+        self.simulation.place(Pose(*pose))
+
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:
         """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""

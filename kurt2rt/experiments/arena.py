@@ -112,6 +112,10 @@ class Arena(Protocol):
         """
         ...
 
+    def put(self, pose: Pose) -> None:
+        """Lift the robot and set it down, standing, just here."""
+        ...
+
     def close(self) -> None:
         """Stop the robot and give its bus back."""
         ...

@@ -4,6 +4,7 @@ import math
 import random
 
 from kurt2rt.experiments.arena import Arena
+from kurt2rt.experiments.courses.course import RouteCourse
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -23,6 +24,8 @@ class Drive:
         self._arena = arena
         self._chance = chance
         self._way = WayMade(no_way_s, period_s, least_m=task.exam.stuck_within_m)
+        if isinstance(self.course, RouteCourse):
+            arena.put(self.course.set_down_at)
         self._pose = arena.pose
         self.course.put(self._pose)
 
@@ -44,13 +47,22 @@ class Drive:
         return self._way.none_since_window(self._arena.position)
 
     def rescue(self) -> None:
-        """Set it down at the nearest start pose."""
-        self._arena.rescue()
+        """Set it down at the nearest start pose, or on its route."""
+        if isinstance(self.course, RouteCourse):
+            self._arena.put(self.course.set_down_at)
+        else:
+            self._arena.rescue()
         self._put()
 
     def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
-        """Set it down elsewhere: at some start pose, or anywhere in sight of something, also `close` to it."""
-        self._arena.reposition(self._chance, in_sight=in_sight, close=close)
+        """Set it down elsewhere: at some start pose, or anywhere in sight of something, also `close` to it.
+
+        On a route it is set down there.
+        """
+        if isinstance(self.course, RouteCourse):
+            self._arena.put(self.course.set_down_at)
+        else:
+            self._arena.reposition(self._chance, in_sight=in_sight, close=close)
         self.repositions += 1
         self._put()
 

@@ -3,7 +3,7 @@
 import random
 from abc import abstractmethod
 from collections.abc import Mapping
-from typing import Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from hal.settings_by_kind import KindSettings
 from kurt2rt.experiments.arena import Arena, Plan, Pose
@@ -58,6 +58,34 @@ class Course(Protocol):
 
     def end_early(self) -> None:
         """The drive ends here before its time, stuck or stopped for good: what is asked now will not be done."""
+        ...
+
+
+class WayAhead(NamedTuple):
+    """Where a robot is on a route, as its teacher sees it."""
+
+    passed: int
+    """Junctions that it has left behind."""
+    inside: bool
+    """Whether it is in one."""
+    here: str
+    """The behaviour that is right at the junction that it is in, or comes to next."""
+    after: str
+    """The same at the one after it."""
+
+
+@runtime_checkable
+class RouteCourse(Course, Protocol):
+    """A course along a route: what is right at a junction is said to the level that chooses among behaviours."""
+
+    @property
+    def ahead(self) -> WayAhead:
+        """Where the robot is."""
+        ...
+
+    @property
+    def set_down_at(self) -> Pose:
+        """Where it is to be set down at the start, and where it is stranded or makes no way."""
         ...
 
 

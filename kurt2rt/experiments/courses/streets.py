@@ -21,8 +21,14 @@ class Side(IntEnum):
         """So many quarter turns to the left of this one."""
         return Side((self + quarters) % 4)
 
+    @property
+    def heading_rad(self) -> float:
+        """Of a robot that goes this way: counter-clockwise from the x axis."""
+        return self * math.pi / 2
 
-_ALONG = {Side.EAST: (1, 0), Side.NORTH: (0, 1), Side.WEST: (-1, 0), Side.SOUTH: (0, -1)}
+
+ALONG = {Side.EAST: (1, 0), Side.NORTH: (0, 1), Side.WEST: (-1, 0), Side.SOUTH: (0, -1)}
+"""Where each way leads, in x and y."""
 
 
 def side_towards(dx: float, dy: float) -> Side:
@@ -97,7 +103,7 @@ class StreetMap:
 
     def next_junction(self, pose: Pose, way: Side) -> Junction | None:
         """The one that the street which a pose lies in leads to, this way; None where it leads to none."""
-        along_x, along_y = _ALONG[way]
+        along_x, along_y = ALONG[way]
         ahead = [
             (along_m, each)
             for each in self.junctions
