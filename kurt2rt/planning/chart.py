@@ -1,0 +1,148 @@
+"""The chart: which places the robot knows, and the ways between them (paper, III.B and V.C).
+
+A place is a situation of the mid level with all RLAs that stand on it; each of these is a way, to where its expectation
+says that it leads.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import networkx as nx
+import numpy as np
+
+from kurt2rt.planning.target import Target, Vector
+from kurt2rt.rla.rla import Condition, Rla
+
+GroupAt = Callable[[Vector], tuple[Rla, ...]]
+"""The RLAs on the place that a situation of the mid level is at, oldest first; none where it is at no known one."""
+
+
+class Forecast(Protocol):
+    """What is expected of one RLA."""
+
+    @property
+    def mean(self) -> Vector:
+        """The situation in which it ends."""
+        ...
+
+    @property
+    def ticks(self) -> float:
+        """How long it takes."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A situation of the mid level, and what can be done there."""
+
+    place_id: int
+    """The oldest of its RLAs; for one that nothing was taught at yet, less the RLA that leads there."""
+    condition: Condition
+    members: tuple[Rla, ...]
+    """The RLAs on it, oldest first; none where nothing was taught yet."""
+
+
+class Way(NamedTuple):
+    """From one place to another."""
+
+    rla_id: int
+    action: str
+    start: int
+    """Place where it begins."""
+    end: int
+    """Place where it leads."""
+    share: float
+    """How often it led there, of all the times that it was gone."""
+    ticks: float
+    """How long it is expected to take."""
+
+    @property
+    def cost(self) -> float:
+        """Ticks, and those of the tries that lead elsewhere."""
+        return self.ticks / self.share
+
+
+class Chart:
+    """Places and ways as a directed graph."""
+
+    def __init__(self, places: Iterable[Place], ways: Iterable[Way]) -> None:
+        self.places = {place.place_id: place for place in places}
+        self.graph: nx.DiGraph[int] = nx.DiGraph()
+        self.graph.add_nodes_from(self.places)
+        for way in ways:
+            known = (way.start, way.end) in self.graph.edges
+            if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
+                self.graph.add_edge(way.start, way.end, cost=way.cost, way=way)
+
+    def members(self, place_id: int) -> frozenset[int]:
+        """Ids of the RLAs on a place."""
+        return frozenset(rla.rla_id for rla in self.places[place_id].members)
+
+    def way(self, start: int, end: int) -> Way:
+        """The cheapest way from a place straight to another."""
+        way: Way = self.graph.edges[start, end]["way"]
+        return way
+
+    def places_that_meet(self, target: Target) -> set[int]:
+        """Ids of the places at which a target is reached."""
+        return {each for each, place in self.places.items() if target.met_by(np.array(place.condition))}
+
+
+def chart_of(
+    rlas: Iterable[Rla],
+    group_at: GroupAt,
+    follow_ups: Mapping[tuple[int, int], int],
+    forecast: Callable[[int], Forecast | None],
+) -> Chart:
+    """The chart of all RLAs of the mid level.
+
+    `follow_ups`: how often each RLA was followed by each other.
+    `forecast`: what is expected of one, None for one that was never seen to end. An RLA leads to the place that its
+    expectation lies in, and as often as follow-ups of that place came; where expectations lie in no place, to where
+    its follow-ups stand.
+    """
+    members: dict[Condition, list[Rla]] = {}
+    for rla in rlas:
+        members.setdefault(rla.condition, []).append(rla)
+    places = {group[0].rla_id: Place(group[0].rla_id, at, tuple(group)) for at, group in members.items()}
+    home = {rla.rla_id: place_id for place_id, place in places.items() for rla in place.members}
+    came: dict[int, Counter[int]] = {}
+    for (before, after), times in follow_ups.items():
+        if before in home and after in home:
+            came.setdefault(before, Counter())[home[after]] += times
+    forecasts = {rla_id: expected for rla_id in home if (expected := forecast(rla_id)) is not None}
+    usual_ticks = float(np.mean([each.ticks for each in forecasts.values()])) if forecasts else 1.0
+    ways: list[Way] = []
+    for start, place in list(places.items()):
+        for rla in place.members:
+            if rla.asks:
+                continue
+            ends = Counter(came.get(rla.rla_id, Counter()))
+            expected = forecasts.get(rla.rla_id)
+            if expected is not None:
+                end = _end_of(rla, expected, group_at, home, places)
+                if end > 0 or not ends:
+                    ends[end] = max(ends[end], 1)
+            ticks = usual_ticks if expected is None else max(expected.ticks, 1.0)
+            seen = ends.total()
+            ways += [
+                Way(rla.rla_id, rla.action, start, end, n / seen, ticks) for end, n in ends.items() if end != start
+            ]
+    return Chart(places.values(), ways)
+
+
+def _end_of(
+    rla: Rla,
+    expected: Forecast,
+    group_at: GroupAt,
+    home: Mapping[int, int],
+    places: dict[int, Place],
+) -> int:
+    """The place that an expectation lies in; one that nothing was taught at yet is put on the chart."""
+    there = group_at(expected.mean)
+    if there:
+        return home[there[0].rla_id]
+    places[-rla.rla_id] = Place(-rla.rla_id, tuple(expected.mean.tolist()), ())
+    return -rla.rla_id

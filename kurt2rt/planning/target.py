@@ -1,0 +1,86 @@
+"""A goal as it can be compared with situations."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.rla.rla import Condition, Rla
+
+Vector = NDArray[np.float64]
+Distance = Callable[[Vector, Vector], float]
+"""How far two situations of the mid level are apart."""
+
+
+class NoSuchGoalError(ValueError):
+    """What the teacher wants the robot to go to is nothing that it knows of."""
+
+
+class Target(Protocol):
+    """What tells whether a situation is one that was to be reached."""
+
+    def met_by(self, situation: Vector) -> bool:
+        """Whether a situation of the mid level is."""
+        ...
+
+
+class Near:
+    """All situations within a distance of one."""
+
+    def __init__(self, situation: Condition, within: float, distance: Distance) -> None:
+        self._situation = np.array(situation, dtype=np.float64)
+        self._within = within
+        self._distance = distance
+
+    def met_by(self, situation: Vector) -> bool:
+        """Whether a situation is near enough."""
+        return self._distance(situation, self._situation) <= self._within
+
+
+class Having:
+    """All situations with some features about as wanted."""
+
+    def __init__(self, wanted: Mapping[int, float], tolerance: float) -> None:
+        """`wanted`: values by the feature's place in the situation."""
+        self._at = list(wanted)
+        self._values = np.array(list(wanted.values()), dtype=np.float64)
+        self._tolerance = tolerance
+
+    def met_by(self, situation: Vector) -> bool:
+        """Whether all of them are."""
+        return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())
+
+
+def target_of(
+    goal: Goal,
+    *,
+    named: Mapping[str, Condition],
+    rla: Callable[[int], Rla | None],
+    level: str,
+    features: Sequence[str],
+    radius: float,
+    distance: Distance,
+) -> Target:
+    """What a goal means now. Raises NoSuchGoalError, which says what there is.
+
+    `named`: situations of that level by name; `rla`: the living RLA of an id; `radius`: what counts as the same place.
+    """
+    match goal:
+        case NamedGoal(name):
+            if name not in named:
+                known = ", ".join(sorted(named)) or "nothing"
+                raise NoSuchGoalError(f"nothing was named {name!r}; named were: {known}")
+            return Near(named[name], radius, distance)
+        case RlaGoal(rla_id):
+            meant = rla(rla_id)
+            if meant is None or meant.level != level:
+                raise NoSuchGoalError(f"there is no RLA {rla_id} of level {level}; it may have been deleted")
+            return Near(meant.condition, radius if meant.radius is None else meant.radius, distance)
+        case PartialGoal(wanted, tolerance):
+            unknown = sorted(name for name, _ in wanted if name not in features)
+            if unknown or not wanted:
+                what = ", ".join(map(repr, unknown)) or "no feature at all"
+                raise NoSuchGoalError(f"{what} cannot be gone to; level {level} knows: {', '.join(features)}")
+            return Having({features.index(name): value for name, value in wanted}, tolerance)

@@ -1,0 +1,182 @@
+"""On the way to a goal: following the plan, being surprised, arriving, and seeing no way."""
+
+import numpy as np
+import pytest
+
+from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.planning.seeking import Course, Seeking
+from kurt2rt.planning.target import NoSuchGoalError, Target, target_of
+from kurt2rt.rla.rla import MID
+from tests.planning.town import FEATURES, RADIUS, Town
+from tests.rla.helpers import deleted
+
+
+def grid() -> Town:
+    """Three places in a row and two above, with ways east and north."""
+    town = Town(a=(0.0, 0.0), b=(2.0, 0.0), c=(4.0, 0.0), d=(2.0, 2.0), e=(4.0, 2.0))
+    town.way("a", "straight_on", "b")
+    town.way("b", "straight_on", "c")
+    town.way("b", "turn_left", "d", ticks=900.0)
+    town.way("c", "turn_left", "e")
+    town.way("d", "turn_right", "e")
+    town.teach("e", "straight_on")
+    return town
+
+
+def target(town: Town, goal: Goal) -> Target:
+    door = {"door": tuple(town.at("e").tolist())}
+    return target_of(
+        goal,
+        named=door,
+        rla=town.system.get,
+        level=MID,
+        features=FEATURES,
+        radius=RADIUS,
+        distance=town.distance,
+    )
+
+
+DOOR = NamedGoal("door")
+
+
+def seeking(town: Town, goal: Goal = DOOR) -> Seeking:
+    seeks = Seeking(town.chart, town.group_at)
+    seeks.seek(goal, target(town, goal))
+    return seeks
+
+
+def course(seeks: Seeking) -> Course:
+    return seeks.course
+
+
+def chosen(town: Town, seeks: Seeking, place: str) -> str | None:
+    rla = seeks.choose(town.group_at(town.at(place)))
+    return None if rla is None else rla.action
+
+
+def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("a"))
+    assert seeks.text == "on the way to door: 3 ways left, now straight_on (RLA 1)"
+    assert chosen(town, seeks, "a") == "straight_on"
+    seeks.arrive(town.at("b"))
+    assert chosen(town, seeks, "b") == "straight_on"
+    seeks.arrive(town.at("c"))
+    assert chosen(town, seeks, "c") == "turn_left"
+    assert not seeks.stands
+    seeks.arrive(town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+    assert seeks.stands
+    assert seeks.text == "arrived: door"
+    assert seeks.surprises == 0
+
+
+def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_there() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("a"))
+    seeks.arrive(town.at("b"))
+    seeks.arrive(town.at("d"))  # the robot turned where it was to go straight on
+    assert seeks.surprises == 1
+    assert chosen(town, seeks, "d") == "turn_right"
+    seeks.arrive(town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+
+
+def test_without_a_way_the_robot_stands_and_says_so() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+    back = RlaGoal(1)
+    seeks.seek(back, target(town, back))
+    seeks.arrive(town.at("e"))
+    assert seeks.stands
+    assert seeks.text == "no way from here to the situation of RLA 1: nothing taught leads there"
+
+
+def test_off_all_known_places_it_stands_and_is_lost() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("a"))
+    seeks.arrive(np.array([9.0, 9.0, 0.0]))
+    assert course(seeks) is Course.LOST
+    assert seeks.choose(town.group_at(town.at("a"))) is None
+    assert seeks.text.startswith("lost on the way to door")
+    seeks.arrive(town.at("b"))  # somebody led it back
+    assert course(seeks) is Course.UNDER_WAY
+
+
+def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
+    town = grid()
+    seeks = seeking(town, RlaGoal(1))
+    seeks.arrive(town.at("e"))
+    assert course(seeks) is Course.NO_WAY
+    town.way("e", "turn_left", "a")
+    seeks.replan(town.at("e"))
+    assert course(seeks) is Course.UNDER_WAY
+    assert chosen(town, seeks, "e") == "turn_left"
+
+
+def test_a_way_that_was_deleted_under_the_plan_is_planned_around() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("a"))
+    town.system.apply(deleted(2))  # from b straight on
+    seeks.arrive(town.at("b"))
+    assert chosen(town, seeks, "b") == "turn_left"
+    assert seeks.surprises == 0
+
+
+def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
+    town = grid()
+    town.walled = {"c", "d"}
+    fresh = Town(**town.places)
+    fresh.walled = town.walled
+    fresh.way("a", "straight_on", "b")
+    fresh.way("b", "straight_on", "c")
+    fresh.way("b", "turn_left", "d", ticks=900.0)
+    fresh.way("c", "turn_right", "a")
+    fresh.teach("d", "straight_on")
+    goal = PartialGoal((("wall_left", 1.0),), tolerance=0.1)
+    seeks = seeking(fresh, goal)
+    seeks.arrive(fresh.at("a"))
+    seeks.arrive(fresh.at("b"))
+    assert chosen(fresh, seeks, "b") == "straight_on"
+    without_wall = np.array([4.0, 0.0, 0.0])
+    seeks.arrive(without_wall)
+    assert course(seeks) is Course.UNDER_WAY
+    assert chosen(fresh, seeks, "c") == "turn_right"
+    seeks.arrive(fresh.at("a"))
+    seeks.arrive(fresh.at("b"))
+    assert chosen(fresh, seeks, "b") == "turn_left"
+    seeks.arrive(fresh.at("d"))
+    assert course(seeks) is Course.ARRIVED
+    assert seeks.text == "arrived: wall_left 1"
+
+
+def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
+    town = grid()
+    seeks = seeking(town)
+    seeks.arrive(town.at("a"))
+    seeks.stop()
+    seeks.arrive(town.at("b"))
+    assert course(seeks) is Course.NONE
+    assert seeks.text == ""
+    assert chosen(town, seeks, "b") is None
+    assert not seeks.stands
+
+
+@pytest.mark.parametrize(
+    ("goal", "words"),
+    [
+        (NamedGoal("attic"), "nothing was named 'attic'; named were: door"),
+        (RlaGoal(99), "there is no RLA 99 of level mid"),
+        (PartialGoal((("smell", 1.0),)), "'smell' cannot be gone to; level mid knows: x_m, y_m, wall_left"),
+        (PartialGoal(()), "no feature at all cannot be gone to"),
+    ],
+)
+def test_a_goal_that_means_nothing_is_refused_with_what_there_is(goal: Goal, words: str) -> None:
+    with pytest.raises(NoSuchGoalError, match=words):
+        target(grid(), goal)
