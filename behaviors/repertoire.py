@@ -1,15 +1,16 @@
 """The repertoire: every action by name, built for one robot."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 from behaviors.behaviour import Behaviour
 from behaviors.keep_distance import KeepDistance
 from behaviors.motor_primitive import MotorPrimitive
 from behaviors.repertoire_settings import (
-    ActionSettings,
     KeepDistanceAction,
     MotorAction,
     RepertoireSettings,
+    TaughtAction,
     TurnByAngleAction,
 )
 from behaviors.turn_by_angle import TurnByAngle
@@ -21,23 +22,43 @@ Repertoire = Mapping[str, Behaviour]
 """Behaviours by the name that stands in an RLA's action part."""
 
 
-def load_repertoire(name_or_path: str, robot: RobotSettings) -> dict[str, Behaviour]:
-    """Build the actions of a repertoire for a robot. Raises SettingsError."""
+BuildTaught = Callable[[TaughtAction, Path], Behaviour]
+"""Builds an action that was taught, which stands in the repertoire of that file. Raises ValueError."""
+
+
+def load_repertoire(
+    name_or_path: str, robot: RobotSettings, build_taught: BuildTaught | None = None
+) -> dict[str, Behaviour]:
+    """Build the actions of a repertoire for a robot. Raises SettingsError.
+
+    `build_taught`: RLA systems stand above this package, so who knows them builds the actions that are such systems.
+    """
     path = find_config("repertoires", name_or_path)
     settings = load_settings(path, RepertoireSettings)
     repertoire: dict[str, Behaviour] = {}
     for position, action in enumerate(settings.actions):
+        place = f"{path}: actions.{position} ({action.name})"
+        if isinstance(action, TaughtAction):
+            repertoire[action.name] = _build_taught(action, path, place, build_taught)
+            continue
         try:
             repertoire[action.name] = _build(action, robot)
         except ValueError as error:
             allowed = ", ".join(robot.infrared.names)
-            raise SettingsError(
-                f"{path}: actions.{position} ({action.name}): {error}; the robot's sensors are {allowed}"
-            ) from error
+            raise SettingsError(f"{place}: {error}; the robot's sensors are {allowed}") from error
     return repertoire
 
 
-def _build(action: ActionSettings, robot: RobotSettings) -> Behaviour:
+def _build_taught(action: TaughtAction, path: Path, place: str, build: BuildTaught | None) -> Behaviour:
+    if build is None:
+        raise SettingsError(f"{place}: is of kind {action.kind}, and nothing taught can act here; leave it out")
+    try:
+        return build(action, path)
+    except ValueError as error:
+        raise SettingsError(f"{place}: {error}") from error
+
+
+def _build(action: MotorAction | KeepDistanceAction | TurnByAngleAction, robot: RobotSettings) -> Behaviour:
     match action:
         case MotorAction():
             return MotorPrimitive(WheelSpeeds(action.left_m_s, action.right_m_s))

@@ -53,7 +53,22 @@ class TurnByAngleAction(Settings):
     speed_m_s: PositiveSpeed
 
 
-ActionSettings = Annotated[MotorAction | KeepDistanceAction | TurnByAngleAction, Field(discriminator="kind")]
+class TaughtAction(Settings):
+    """One taught behaviour of a task, with what a knowledge file holds of it: an RLA system as an action."""
+
+    kind: Literal["taught"]
+    name: ActionName
+    task: str
+    """By name (config/tasks), or path to its YAML file: how it perceives, matches and acts."""
+    knowledge: Annotated[str, Field(min_length=1)]
+    """The file; a path that is not absolute begins at the folder of this repertoire."""
+    behaviour: str = ""
+    """Which one of the task; left out where it has only one."""
+
+
+ActionSettings = Annotated[
+    MotorAction | KeepDistanceAction | TurnByAngleAction | TaughtAction, Field(discriminator="kind")
+]
 
 
 class RepertoireSettings(Settings):

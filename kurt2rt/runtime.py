@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from behaviors.judges.judge import Circumstances
-from behaviors.repertoire import load_repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.agreement import Agreement
@@ -20,6 +19,7 @@ from kurt2rt.perception.perception import Perception
 from kurt2rt.perception.weights import weights_of
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.repertoire.of_task import repertoire_of
 from kurt2rt.rla.rla import CRITIC, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.rla.statistics import StatisticsCounter
@@ -97,13 +97,13 @@ def build_runtime(
     recent = RecentDecisions(definition.dimensions)
     reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
     reinforcement.recall(events, saved)
-    repertoire = load_repertoire(task.repertoire, settings)
+    repertoire = repertoire_of(task, settings)
     wanted = wanted or Wanted(task.behaviours)
     level = BasicLevel(
         system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
     )
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
-    hand = load_repertoire(task.repertoire, settings)
+    hand = repertoire_of(task, settings)
     agreement = Agreement(critic.agreement, critic.values, period_s)
     agreement.hear_all(events)
     self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)

@@ -4,10 +4,9 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from behaviors.repertoire import load_repertoire
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
-from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Course, Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.lesson import TRAIL_STRIDE
 from kurt2rt.experiments.refusals import require_carried_out
@@ -15,6 +14,7 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.repertoire.of_task import repertoire_of
 from kurt2rt.rla.rla import Rla, TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import SuccessSettings, TaskSettings
@@ -98,13 +98,16 @@ async def examine(
     alone: Statistics | None = None,
     stuck_ends: bool = True,
     on_record: Callable[[TickRecord], None] = lambda _: None,
+    on_course: Callable[[TickRecord, Course], None] = lambda _record, _course: None,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
 
     `saved`: what rewards had made of that. `alone`: what phase 5 held RLAs to be worth, where the exam follows it: of
     several on the very same condition the best by this one answers, as it would there.
     `stuck_ends`: else a robot that is stuck is set down at the nearest start pose and goes on, so that collisions are
-    those of the whole time; it has got stuck all the same. `on_record` sees every tick.
+    those of the whole time; it has got stuck all the same. `on_record` sees every tick,
+    `on_course` also how the course stands after it.
+    What is wanted is the examiner's to say, or the mid level's where there is one.
     Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
     names an action which the repertoire lacks.
     """
@@ -112,9 +115,10 @@ async def examine(
     wanted = Wanted(task.behaviours)
     level: Level | None = None
     if by_teacher:
+        task = task.model_copy(update={"mid": None})  # its place is the teacher's, too
         level = PolicyLevel(
             task.policy.build(settings.infrared),
-            load_repertoire(task.repertoire, settings),
+            repertoire_of(task, settings),
             round(task.learning.minimum_action_s / period_s),
             wanted,
         )
@@ -149,7 +153,7 @@ async def examine(
 
     def say_what_is_wanted(now: str) -> None:
         nonlocal said
-        if drive.course.behaviour != now:
+        if getattr(task, "mid", None) is None and drive.course.behaviour != now:
             said += 1
             runtime.inbox.put(Pursue(f"exam-{said}", "examiner", drive.course.behaviour))
 
@@ -167,6 +171,7 @@ async def examine(
         changes += decision.action != action
         action = decision.action
         drive.follow()
+        on_course(record, drive.course)
         if drive.course.stranded:
             drive.reposition()
         say_what_is_wanted(record.behaviour)

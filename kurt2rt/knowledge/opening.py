@@ -68,9 +68,14 @@ def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> O
     return OpenedKnowledge(journal, entries, counter, saved)
 
 
-def read_lessons(path: Path, settings: RobotSettings, task: TaskSettings) -> list[TeachingEvent]:
-    """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError."""
-    with Journal.read_only(path) as journal:
+def read_lessons(
+    path: Path, settings: RobotSettings, task: TaskSettings, *, beside_its_writer: bool = False
+) -> list[TeachingEvent]:
+    """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError.
+
+    `beside_its_writer`: it may be this very process that writes it.
+    """
+    with Journal.beside_its_writer(path) if beside_its_writer else Journal.read_only(path) as journal:
         require_same(journal.binding, _binding(settings, task), path)
         entries = journal.entries()
         fold_entries(journal, entries, radius=math.inf)

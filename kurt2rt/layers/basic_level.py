@@ -75,6 +75,13 @@ class BasicLevel:
         self._drivers_condition: NDArray[np.float64] | None = None
         """Of the RLA that drives, once it was needed."""
 
+    def restart(self) -> None:
+        """Decide as if nothing had driven before; what was taught stays."""
+        self._held.stand()
+        self._driver = None
+        if self._choice is not None:
+            self._choice.forget()
+
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
         drives = self._is_about_driving(event)

@@ -40,6 +40,12 @@ class History:
         self._sums[:] = len(self._ring) * values
         self._filled = len(self._ring)
 
+    def forget(self) -> None:
+        """Hold no step any more."""
+        self._ring[:] = 0
+        self._sums[:] = 0
+        self._next = self._filled = 0
+
     def average_into(self, out: NDArray[np.float64]) -> None:
         """Write the average of the steps held into `out`, shape (width,); zeros before the first step."""
         np.divide(self._sums, max(self._filled, 1), out=out)

@@ -32,6 +32,11 @@ class Perception:
         self._width = width
         self._driven = STANDSTILL
 
+    def restart(self) -> None:
+        """Forget what was, as a robot that has just been switched on."""
+        self._history.forget()
+        self._driven = STANDSTILL
+
     def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
         """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
         recent = self._extract(senses.infrared_counts, self._driven)
