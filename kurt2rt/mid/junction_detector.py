@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.robot import HIGHEST_COUNTS, Senses
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
 from kurt2rt.mid.junction_event import JunctionEvent
 
@@ -17,21 +17,40 @@ _QUARTER_RAD = math.pi / 2
 
 
 class JunctionDetectorSettings(Settings):
-    """What counts as a street, and what as a junction."""
+    """What counts as a street, and what as a junction. Distances are those that the sensors see."""
 
     left: Sensors
     """Sensors that look to the left, from front to back."""
     right: Sensors
     wall_m: Metres
-    """A wall stands beside the robot where all sensors of that side see it nearer than this."""
-    open_m: Metres
-    """A side is open where none of its sensors sees anything nearer than this."""
-    steady_m: Metres
-    """Over so much way walls must stand on both sides until the robot is sure to be in a street."""
+    """A sensor that sees something nearer than this sees the wall of the street."""
+    open_sensors: Annotated[int, Field(ge=1, le=18)]
+    """A side is open where so many of its sensors see no wall."""
+    open_over_m: Metres
+    """Over so much way a side must be open for a junction to begin."""
+    parallel_rad: Annotated[float, Field(gt=0, le=1.5)]
+    """In a street the walls on both sides are no farther from parallel than this: else the robot is still turning."""
+    street_over_m: Metres
+    """Over so much way walls must stand on both sides for the robot to be sure that it is in a street again."""
+    heading_over_m: Metres
+    """Over so much way its heading between the walls is averaged."""
+
+
+class _Side:
+    """What the sensors of one side see."""
+
+    def __init__(self, infrared: InfraredSettings, names: tuple[str, ...]) -> None:
+        self.places = tuple(infrared.names.index(name) for name in names)
+        x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
+        self.baseline_m = x_m[names[0]] - x_m[names[-1]]
+        if self.baseline_m <= 0:
+            raise SettingsError(
+                f"junctions: {names[0]} does not sit ahead of {names[-1]}; give a side's sensors from front to back"
+            )
 
 
 class JunctionDetector:
-    """Follows the robot from street to street. Its memory does not grow, and a robot that stands changes nothing."""
+    """Follows the robot from street to street, in memory that does not grow; a robot that stands changes nothing."""
 
     def __init__(self, settings: JunctionDetectorSettings, robot: RobotSettings) -> None:
         """Raises SettingsError for a sensor that the robot does not have."""
@@ -41,57 +60,82 @@ class JunctionDetector:
             raise SettingsError(
                 f"junctions: the robot has no sensor {', '.join(missing)}; allowed: {', '.join(infrared.names)}"
             )
+        self._settings = settings
+        # Looked up by counts: this runs in every tick.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
-        self._left = tuple(infrared.names.index(name) for name in settings.left)
-        self._right = tuple(infrared.names.index(name) for name in settings.right)
-        self._wall_m = settings.wall_m
-        self._open_m = settings.open_m
-        self._steady_m = settings.steady_m
+        self._left, self._right = _Side(infrared, settings.left), _Side(infrared, settings.right)
         self._metres_per_tick = robot.geometry.metres_per_tick
         self._track_m = robot.geometry.effective_track_m
+        self._yaw_rad = 0.0
         self.restart()
 
     def restart(self) -> None:
-        """Forget what was: where the robot is now there is no way that it came."""
-        self._came_from_a_street = False
+        """Forget what was: nobody can say which way the robot came."""
+        self._street_rad: float | None = None
+        """Heading between the walls of the street it is in, or came from; by the encoders, free of how it wobbled."""
         self._inside = True
         self._left_open = self._right_open = False
-        self._turn_rad = self._way_m = self._walled_m = 0.0
+        self._open_m = self._between_m = self._way_m = 0.0
+        self._between_rad = 0.0
 
     def perceive(self, senses: Senses) -> JunctionEvent | None:
-        """Take in one tick; the junction that has been passed, in the tick in which the robot is sure of it."""
+        """Take in one tick; returns the junction that was passed, in the tick in which the robot is sure of it."""
         left_m = senses.encoder_left_ticks * self._metres_per_tick
         right_m = senses.encoder_right_ticks * self._metres_per_tick
         step_m = abs(left_m + right_m) / 2
-        self._turn_rad += (right_m - left_m) / self._track_m
+        self._yaw_rad += (right_m - left_m) / self._track_m
         self._way_m += step_m
-        distance_m, counts = self._distance_m, senses.infrared_counts
-        left = [distance_m[counts[place]] for place in self._left]
-        right = [distance_m[counts[place]] for place in self._right]
-        if max(left) < self._wall_m and max(right) < self._wall_m:
-            if not self._inside:
-                self._turn_rad = self._way_m = 0.0
-                return None
-            self._walled_m += step_m
-            if self._walled_m >= self._steady_m:
-                return self._arrive()
+        want, distance_m, counts = self._settings, self._distance_m, senses.infrared_counts
+        left = [distance_m[counts[place]] for place in self._left.places]
+        right = [distance_m[counts[place]] for place in self._right.places]
+        if max(left) < want.wall_m and max(right) < want.wall_m:
+            self._open_m = 0.0
+            left_rad = math.atan2(left[-1] - left[0], self._left.baseline_m)
+            right_rad = math.atan2(right[0] - right[-1], self._right.baseline_m)
+            if abs(left_rad) < want.parallel_rad and abs(right_rad) < want.parallel_rad:
+                return self._between_walls(step_m, self._yaw_rad - (left_rad + right_rad) / 2)
+            self._between_m = 0.0
             return None
-        self._walled_m = 0.0
-        left_open, right_open = min(left) > self._open_m, min(right) > self._open_m
+        self._between_m = 0.0
+        left_open = sum(each >= want.wall_m for each in left) >= want.open_sensors
+        right_open = sum(each >= want.wall_m for each in right) >= want.open_sensors
         if left_open or right_open:
-            self._inside = True
-            self._left_open |= left_open
-            self._right_open |= right_open
+            self._open_m += step_m
+            if self._open_m >= want.open_over_m:
+                self._inside = True
+                if self._street_rad is not None and abs(self._yaw_rad - self._street_rad) < want.parallel_rad:
+                    self._left_open |= left_open
+                    self._right_open |= right_open
+        elif not self._inside:
+            self._open_m = 0.0
         return None
 
+    def _between_walls(self, step_m: float, heading_rad: float) -> JunctionEvent | None:
+        """Walls stand on both sides, and this is how the street runs that they make."""
+        if not self._inside and self._street_rad is not None:
+            share = min(1.0, step_m / self._settings.heading_over_m)
+            self._street_rad += share * (heading_rad - self._street_rad)
+            self._way_m = 0.0
+            return None
+        if step_m == 0.0:
+            return None
+        # The mean over the way of this stretch.
+        self._between_m += step_m
+        self._between_rad += step_m / self._between_m * (heading_rad - self._between_rad)
+        if self._between_m < self._settings.street_over_m:
+            return None
+        return self._arrive()
+
     def _arrive(self) -> JunctionEvent | None:
-        """In a street again, and sure of it."""
-        quarters = round(self._turn_rad / _QUARTER_RAD) % 4
+        """In a street, and sure of it."""
+        came_rad, self._street_rad = self._street_rad, self._between_rad
         event = None
-        if self._came_from_a_street:
-            turned = -1 if quarters == 3 else quarters
-            event = JunctionEvent(turned, self._left_open, self._right_open, self._turn_rad, self._way_m)
-        self._came_from_a_street = True
+        if came_rad is not None:
+            turn_rad = self._street_rad - came_rad
+            quarters = round(turn_rad / _QUARTER_RAD) % 4
+            # A side that it took was open, though it may have turned there before it saw much of it.
+            left_open, right_open = self._left_open or quarters == 1, self._right_open or quarters == 3
+            event = JunctionEvent(-1 if quarters == 3 else quarters, left_open, right_open, turn_rad, self._way_m)
         self._inside = self._left_open = self._right_open = False
-        self._turn_rad = self._way_m = self._walled_m = 0.0
+        self._open_m = self._between_m = self._way_m = 0.0
         return event
