@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from kurt2rt.expectations.expectation import Expectation
+
 VALUES_INCLUDE = "rows that the values include"
 EDGE_WEIGHTS_INCLUDE = "rows that the edge weights include"
 """How many rows the journal had when that table was saved; what lessons behind them are worth is booked later."""
@@ -27,6 +29,8 @@ class Statistics:
     """(RLA id, follow-up RLA id) -> weight of the edge, where rewards changed it; the smaller the better."""
     numbers: Mapping[str, float] = field(default_factory=dict)
     """Single numbers by their names, those above."""
+    expectations: Mapping[int, Expectation] = field(default_factory=dict)
+    """RLA id -> the situation that follows it; of RLAs that have another action by now it says nothing."""
 
 
 def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:

@@ -4,6 +4,7 @@ import sqlite3
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.statistics import Statistics
 
 LATER_TABLES = {
@@ -12,6 +13,10 @@ LATER_TABLES = {
         from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
     ) STRICT, WITHOUT ROWID""",
     "number": "CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID",
+    "expectation": """CREATE TABLE expectation (
+        rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
+        mean BLOB NOT NULL, squares BLOB NOT NULL
+    ) STRICT""",
 }
 """Tables that files of an earlier kurt2rt lack: there they are read as empty. An earlier one leaves them alone."""
 
@@ -20,10 +25,12 @@ class Change(NamedTuple):
     """A statement, and the rows that it is carried out for."""
 
     statement: str
-    rows: Sequence[tuple[float | str, ...]]
+    rows: Sequence[tuple[float | str | bytes, ...]]
 
 
 class _Table(NamedTuple):
+    """One value behind its key."""
+
     name: str
     columns: tuple[str, ...]
     """Its key, the value behind it."""
@@ -58,8 +65,14 @@ _NUMBERS = _Table("number", ("name", "value"))
 
 def read_statistics(connection: sqlite3.Connection) -> Statistics:
     """The statistics as they stand in the file. Raises sqlite3.Error."""
-    tables = (_USES, _TRANSITIONS, _VALUES, _EDGE_WEIGHTS, _NUMBERS)
-    return Statistics(*(table.read(connection) for table in tables))
+    return Statistics(
+        _USES.read(connection),
+        _TRANSITIONS.read(connection),
+        _VALUES.read(connection),
+        _EDGE_WEIGHTS.read(connection),
+        _NUMBERS.read(connection),
+        _read_expectations(connection),
+    )
 
 
 def changes(before: Statistics, after: Statistics) -> list[Change]:
@@ -70,6 +83,7 @@ def changes(before: Statistics, after: Statistics) -> list[Change]:
         *_VALUES.changes(before.values, after.values),
         *_EDGE_WEIGHTS.changes(before.edge_weights, after.edge_weights),
         *_NUMBERS.changes(before.numbers, after.numbers),
+        *_expectation_changes(before.expectations, after.expectations),
     ]
 
 
@@ -81,3 +95,25 @@ def has_table(connection: sqlite3.Connection, name: str) -> bool:
 
 def _key(key: int | str | tuple[int, int]) -> tuple[int | str, ...]:
     return key if isinstance(key, tuple) else (key,)
+
+
+def _read_expectations(connection: sqlite3.Connection) -> dict[int, Expectation]:
+    if not has_table(connection, "expectation"):
+        return {}
+    rows = connection.execute("SELECT rla_id, lesson, count, ticks, mean, squares FROM expectation ORDER BY rla_id")
+    return {rla_id: Expectation(*values) for rla_id, *values in rows}
+
+
+def _expectation_changes(before: Mapping[int, Expectation], after: Mapping[int, Expectation]) -> list[Change]:
+    """Whose expectation is the same object has not changed: so a large table is gone through in microseconds."""
+    gone = [(rla_id,) for rla_id in before.keys() - after.keys()]
+    written = [
+        (rla_id, each.lesson, each.count, each.ticks, each.packed_mean, each.packed_squares)
+        for rla_id, each in after.items()
+        if before.get(rla_id) is not each and before.get(rla_id) != each
+    ]
+    both = [
+        Change("DELETE FROM expectation WHERE rla_id = ?", gone),
+        Change("INSERT OR REPLACE INTO expectation VALUES (?, ?, ?, ?, ?, ?)", written),
+    ]
+    return [change for change in both if change.rows]

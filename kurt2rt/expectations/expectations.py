@@ -1,0 +1,184 @@
+"""The expectations of all RLAs of one level: learned at each end of an RLA, from the situation that it ended in."""
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.expectations.expectation import Expectation, pack
+from kurt2rt.expectations.surprise import Surprise, SurpriseSettings
+from kurt2rt.rla.rla import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem, Space
+
+
+class _Learned:
+    """What was learned of one RLA. Its arrays are made once, at its first end, and filled in place from then on."""
+
+    __slots__ = ("count", "lesson", "mean", "squares", "ticks")
+
+    def __init__(self, lesson: str, dimensions: int) -> None:
+        self.lesson = lesson
+        self.count = 0
+        self.ticks = 0.0
+        self.mean = np.zeros(dimensions)
+        self.squares = np.zeros(dimensions)
+
+    def recall(self, saved: Expectation) -> None:
+        self.count, self.ticks = saved.count, saved.ticks
+        self.mean[:] = saved.mean
+        self.squares[:] = saved.squares
+
+    def take_in(self, deviation: NDArray[np.float64], situation: NDArray[np.float64], ticks: int) -> None:
+        """Welford's way to mean and spread: exact enough however long it goes on, without a list."""
+        self._count(ticks)
+        self.mean += deviation / self.count
+        self.squares += deviation * (situation - self.mean)
+
+    def take_in_symbols(self, differs: NDArray[np.float64], situation: NDArray[np.float64], ticks: int) -> None:
+        """The majority's symbols (Boyer and Moore): one that came less often than all others together gives way."""
+        outvoted = np.flatnonzero((differs > 0) & (2 * self.squares >= self.count))
+        self._count(ticks)
+        self.squares += differs
+        self.squares[outvoted] -= 1.0
+        self.mean[outvoted] = situation[outvoted]
+
+    def _count(self, ticks: int) -> None:
+        self.count += 1
+        self.ticks += (ticks - self.ticks) / self.count
+
+
+class End(NamedTuple):
+    """An RLA has ended, and another one took over."""
+
+    rla_id: int
+    follow_up: int
+    situation: NDArray[np.float64]
+    """That it ended in, shape (d,)."""
+    ticks: int
+    """How long it had driven."""
+
+
+class Expectations:
+    """Learns what follows each RLA of one level, and says how surprising it is. A robot that stands learns nothing."""
+
+    def __init__(
+        self,
+        level: str,
+        system: RlaSystem,
+        space: Space,
+        transitions: Mapping[tuple[int, int], int],
+        saved: Mapping[int, Expectation] | None = None,
+        settings: SurpriseSettings | None = None,
+    ) -> None:
+        """`transitions`: how often each RLA was followed by each other one, as counted up to now.
+
+        `saved`: goes on from these, as far as those RLAs live at this level with the same action.
+        """
+        self.level = level
+        self._system = system
+        self._transitions = transitions
+        self._settings = settings or SurpriseSettings()
+        self._dimensions = space.dimensions
+        self._symbols = space.metric != "euclidean"
+        weights = np.ones(space.dimensions) if space.weights is None else space.weights
+        self._squared_weights = weights * weights
+        self._least_usual = max(self._settings.least_usual_share * space.radius, 1e-9)
+        self._learned: dict[int, _Learned] = {}
+        self._saved: dict[int, Expectation] = {}
+        self._changed: set[int] = set()
+        for rla_id, expectation in (saved or {}).items():
+            if is_of(system, rla_id, expectation, level):
+                self._learned[rla_id] = _Learned(expectation.lesson, self._dimensions)
+                self._learned[rla_id].recall(expectation)
+                self._saved[rla_id] = expectation
+
+    def of(self, rla_id: int) -> Expectation | None:
+        """What is expected of an RLA now; None for one that was never seen to end."""
+        learned = self._learned.get(rla_id)
+        return None if learned is None else _kept(learned)
+
+    def learn(self, end: End) -> Surprise | None:
+        """Take in one end of an RLA; None where too few were seen before to be surprised."""
+        rla_id, situation = end.rla_id, end.situation
+        rla = self._system.get(rla_id)
+        if rla is None:
+            return None
+        learned = self._learned.get(rla_id)
+        if learned is None:
+            learned = self._learned[rla_id] = _Learned(rla.origin.command_id, self._dimensions)
+            learned.mean[:] = situation
+        self._changed.add(rla_id)
+        if self._symbols:
+            deviation = (situation != learned.mean).astype(np.float64)
+            surprise = self._surprise(learned, end, deviation)
+            learned.take_in_symbols(deviation, situation, end.ticks)
+        else:
+            deviation = situation - learned.mean
+            surprise = self._surprise(learned, end, deviation)
+            learned.take_in(deviation, situation, end.ticks)
+        return surprise
+
+    def hear(self, event: TeachingEvent) -> int | None:
+        """Forget what is expected of the RLA that an event, already applied, has ended or given another action.
+
+        Returns its id; None where the event changes no action.
+        """
+        if isinstance(event, LessonUndone):
+            record = self._system.lesson(event.lesson)
+            return None if record is None else self._forget(record.event)
+        return self._forget(event)
+
+    def to_save(self) -> dict[int, Expectation]:
+        """All of them as they are now: what has not changed since the last call is the same object."""
+        for rla_id in self._changed:
+            self._saved[rla_id] = _kept(self._learned[rla_id])
+        self._changed.clear()
+        return dict(self._saved)
+
+    def _surprise(self, learned: _Learned, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
+        count = learned.count
+        if count < self._settings.least:
+            return None
+        # Of symbols a square is 1 or 0: this is the number of places that differ, and how many usually do.
+        squared = float(self._squared_weights @ (deviation * deviation))
+        usual_squared = float(self._squared_weights @ learned.squares) / (count - 1)
+        distance, usual = (squared, usual_squared) if self._symbols else (squared**0.5, usual_squared**0.5)
+        usual = max(usual, self._least_usual)
+        seen = self._transitions.get((end.rla_id, end.follow_up), 0)
+        surprising = distance > self._settings.beyond * usual
+        return Surprise(self.level, end.rla_id, end.follow_up, distance, usual, count, seen, surprising)
+
+    def _forget(self, event: TeachingEvent) -> int | None:
+        rla_id = whose_action(event)
+        if rla_id is None:
+            return None
+        self._learned.pop(rla_id, None)
+        self._saved.pop(rla_id, None)
+        self._changed.discard(rla_id)
+        return rla_id
+
+
+def whose_action(event: TeachingEvent) -> int | None:
+    """Id of the RLA whose action an event gives, changes or ends; None where it does nothing of the kind."""
+    match event:
+        case RlaCreated(rla):
+            return rla.rla_id
+        case ActionReplaced(rla_id) | ActionWithdrawn(rla_id) | RlaDeleted(rla_id):
+            return rla_id
+    return None
+
+
+def still_valid(system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]) -> dict[int, Expectation]:
+    """Those of RLAs that live at one of these levels and have the action that they are about."""
+    return {rla_id: each for rla_id, each in saved.items() if any(is_of(system, rla_id, each, at) for at in levels)}
+
+
+def is_of(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
+    """Whether that RLA lives at that level and has the action that the expectation is about."""
+    rla = system.get(rla_id)
+    return rla is not None and rla.level == level and rla.origin.command_id == expectation.lesson
+
+
+def _kept(learned: _Learned) -> Expectation:
+    return Expectation(learned.lesson, learned.count, learned.ticks, pack(learned.mean), pack(learned.squares))
