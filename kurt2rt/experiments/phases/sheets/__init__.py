@@ -1,0 +1,1 @@
+"""The tables of a path of all phases, a file for each subject."""
