@@ -10,7 +10,7 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.statistics_tables import changes
 from tests.knowledge.lessons import BINDING, tamper
 
-MEAN = np.array([1 / 3, -0.0, 5e-324, 1e300])
+MEAN = np.array([1 / 3, -0.0, 5e-324, 1e150])
 
 
 def expectation(count: int = 7) -> Expectation:
