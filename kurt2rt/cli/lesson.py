@@ -1,6 +1,5 @@
 """`kurt2rt lesson`."""
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -10,7 +9,18 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Changes,
+    Jobs,
+    OutFolder,
+    Plain,
+    RobotName,
+    Seed,
+    TaskName,
+    WireName,
+    changes_of,
+)
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.fitting import require_course
@@ -35,7 +45,7 @@ def lesson(
             help="Teach and examine many robots, one per seed, e.g. 100-119; prints medians, quartiles and intervals."
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes to use with --seeds.")] = os.cpu_count() or 1,
+    jobs: Jobs = ALL_PROCESSORS,
     out: OutFolder = Path("results/lesson"),
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",

@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -29,6 +30,10 @@ WireName = Annotated[
     ),
 ]
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for what is made; created when absent.")]
+Jobs = Annotated[
+    int, typer.Option("--jobs", min=1, help="Processes to use where there are many robots; 1: this one alone.")
+]
+ALL_PROCESSORS = os.cpu_count() or 1
 Changes = Annotated[
     list[str] | None,
     typer.Option(

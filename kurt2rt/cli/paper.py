@@ -1,6 +1,5 @@
 """`kurt2rt paper`."""
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,6 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -38,7 +38,7 @@ def paper(
             show_default=False,
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes to use; 1: this one alone.")] = os.cpu_count() or 1,
+    jobs: Jobs = ALL_PROCESSORS,
     out: Annotated[
         Path | None,
         typer.Option(

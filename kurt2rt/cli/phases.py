@@ -1,6 +1,5 @@
 """`kurt2rt phases`."""
 
-import os
 from pathlib import Path
 from typing import Annotated
 
@@ -8,7 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import Changes, changes_of
+from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -32,7 +31,7 @@ def phases(
             show_default=False,
         ),
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes to use; 1: this one alone.")] = os.cpu_count() or 1,
+    jobs: Jobs = ALL_PROCESSORS,
     out: Annotated[
         Path | None,
         typer.Option(
