@@ -13,6 +13,7 @@ from kurt2rt.rla.rla import (
     Phase,
     SessionBegun,
     SessionEnded,
+    SituationNamed,
     TeachingEvent,
 )
 
@@ -76,7 +77,7 @@ class BestKnowledge:
         match event:
             case LessonUndone(lesson, _):
                 self._unproven = [each for each in self._unproven if each.lesson != lesson]
-            case Appraised() | SessionBegun() | SessionEnded():
+            case Appraised() | SituationNamed() | SessionBegun() | SessionEnded():
                 pass
             case _ if event.origin.teacher == CRITIC:
                 self._unproven.append(_Change(event.origin.command_id, rla_of(event), self._events))

@@ -20,15 +20,17 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     SessionBegun,
     SessionEnded,
+    SituationNamed,
     TeachingEvent,
 )
 
-EVENT_VERSION = 4
+EVENT_VERSION = 5
 """Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
 
 Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
 behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
 rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
+Up to version 4 no situation was named.
 """
 
 _ADDED: tuple[tuple[int, str, str, object], ...] = (
@@ -39,6 +41,9 @@ _ADDED: tuple[tuple[int, str, str, object], ...] = (
 )
 """Since which version an event of a kind has a field, and what that field is in older ones."""
 
+_SINCE = {"named": 5}
+"""Since which version there are events of a kind that older programs cannot read."""
+
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
     "created": ("rla_id", "condition", "action", "radius", "behaviour", "level", *_ORIGIN),
@@ -47,6 +52,7 @@ _FIELDS = {
     "deleted": ("rla_id", *_ORIGIN),
     "rewarded": ("rla_id", "value", "decided_at_tick", "credits", "said", *_ORIGIN),
     "appraised": ("appraisal", "value", "decided_at_tick", *_ORIGIN),
+    "named": ("name", "situation", "level", *_ORIGIN),
     "undone": ("lesson", *_ORIGIN),
     "session begun": ("name", *_ORIGIN),
     "session ended": ("lasted_ticks", *_ORIGIN),
@@ -102,6 +108,8 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
             }
         case Appraised(appraisal, value, decided_at_tick, _):
             own = {"kind": "appraised", "appraisal": appraisal, "value": value, "decided_at_tick": decided_at_tick}
+        case SituationNamed(name, situation, level, _):
+            own = {"kind": "named", "name": name, "situation": list(situation), "level": level}
         case LessonUndone(lesson, _):
             own = {"kind": "undone", "lesson": lesson}
         case SessionBegun(name, _):
@@ -120,6 +128,8 @@ def _event(content: object) -> TeachingEvent:
     if version > EVENT_VERSION:
         raise ValueError(f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}")
     kind = _text(content, "kind")
+    if version < _SINCE.get(kind, 1):
+        raise ValueError(f"there was no {kind} in version {version}")
     content = _as_of_now(content, kind, version)
     if kind not in _FIELDS:
         raise ValueError(f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
@@ -138,6 +148,10 @@ def _event(content: object) -> TeachingEvent:
         case "appraised":
             value = _opinion(content, "value")
             return Appraised(_text(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)
+        case "named":
+            return SituationNamed(
+                _text(content, "name"), _numbers(content, "situation"), _text(content, "level"), origin
+            )
         case "session begun":
             return SessionBegun(_text(content, "name"), origin)
         case "session ended":
@@ -160,10 +174,7 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
     rla_id = _whole(content, "rla_id", least=1)
     match kind:
         case "created":
-            condition = _value(content, "condition")
-            if not isinstance(condition, list):
-                raise ValueError("condition must be a list of numbers")  # noqa: TRY004
-            numbers = tuple(_number(each, "condition") for each in condition)
+            numbers = _numbers(content, "condition")
             radius = _value(content, "radius")
             own_radius = None if radius is None else _number(radius, "radius")
             behaviour, level = _text(content, "behaviour"), _text(content, "level")
@@ -220,6 +231,13 @@ def _whole(content: dict[str, Any], key: str, least: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < least:
         raise ValueError(f"{key} must be a whole number from {least}")
     return value
+
+
+def _numbers(content: dict[str, Any], key: str) -> tuple[float, ...]:
+    values = _value(content, key)
+    if not isinstance(values, list):
+        raise ValueError(f"{key} must be a list of numbers")  # noqa: TRY004
+    return tuple(_number(each, key) for each in values)
 
 
 def _number(value: object, key: str) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Container, Iterable
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla import BASIC, Rla, RlaCreated
+from kurt2rt.rla.rla import BASIC, RlaCreated, SituationNamed
 from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
 
 
@@ -22,7 +22,9 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
     for entry in entries:
         try:
             if isinstance(entry.event, RlaCreated):
-                _require_level(entry.event.rla, others)
+                _require_level(entry.event.rla.title, entry.event.rla.level, others)
+            if isinstance(entry.event, SituationNamed):
+                _require_level(f"the situation {entry.event.name!r}", entry.event.level, others)
             system.apply(entry.event)
         except UnfitEventError as error:
             raise KnowledgeError(
@@ -44,8 +46,6 @@ def check_knowledge(journal: Journal) -> list[str]:
     return []
 
 
-def _require_level(rla: Rla, levels: Container[str]) -> None:
-    if rla.level != BASIC and rla.level not in levels:
-        raise UnfitEventError(
-            f"{rla.title} is of the level {rla.level!r}, of which the file does not name the features"
-        )
+def _require_level(what: str, level: str, levels: Container[str]) -> None:
+    if level != BASIC and level not in levels:
+        raise UnfitEventError(f"{what} is of the level {level!r}, of which the file does not name the features")

@@ -13,7 +13,7 @@ from kurt2rt.knowledge.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.lesson_book import rla_of
-from kurt2rt.rla.rla import CRITIC, LessonUndone, Phase, Rla, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, LessonUndone, Phase, Rla, SituationNamed, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 
 
@@ -113,6 +113,7 @@ class SelfTeaching:
                 continue
             record = system.lesson(event.lesson)
             assert record is not None
+            assert not isinstance(record.event, SituationNamed)  # only teachers give names
             rla_id = rla_of(record.event)
             was = system.get(rla_id)
             yield event

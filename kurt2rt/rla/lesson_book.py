@@ -10,7 +10,9 @@ from kurt2rt.rla.rla import (
     Lesson,
     RlaCreated,
     RlaDeleted,
+    RlaLesson,
     RlaRewarded,
+    SituationNamed,
     rla_title,
 )
 
@@ -22,13 +24,15 @@ class LessonRecord:
     event: Lesson
     undone: bool = False
     behaviour: str = ""
-    """The taught behaviour of its RLA; empty where the task has only one."""
+    """The taught behaviour of its RLA; empty where the task has only one, or it is about none."""
     level: str = BASIC
-    """The level of its RLA."""
+    """The level that it is about."""
 
     @property
     def text(self) -> str:
         """In a few words, for a teacher."""
+        if isinstance(self.event, SituationNamed):
+            return f"situation named: {self.event.name}"
         rla = rla_title(rla_of(self.event), self.behaviour, self.level)
         match self.event:
             case RlaCreated(taught):
@@ -45,20 +49,28 @@ class LessonRecord:
                 return f"{rla} {'rewarded' if value > 0 else 'punished'}"
 
 
-def rla_of(lesson: Lesson) -> int:
+def rla_of(lesson: RlaLesson) -> int:
     """Id of the RLA that a lesson is about."""
     return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
 
 
+def _pile_of(lesson: Lesson) -> int | tuple[str, str]:
+    """Lessons of one pile are undone in the order of the pile: all about one RLA, or all that gave one name."""
+    return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_of(lesson)
+
+
 class LessonBook:
-    """All lessons by their command id. The lessons of one RLA are undone in the order of a pile, the newest first."""
+    """All lessons by their command id.
+
+    Those about one RLA, and those that gave one name, are undone in the order of a pile, the newest first.
+    """
 
     def __init__(self) -> None:
         self.standing = 0
         """Number of lessons that stand."""
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
-        self._standing_of: dict[int, list[int]] = {}
+        self._standing_of: dict[int | tuple[str, str], list[int]] = {}
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA that ever lived."""
         self._newest: list[int] = []
@@ -83,11 +95,11 @@ class LessonBook:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
-        self._standing_of.setdefault(rla_of(lesson), []).append(place)
+        self._standing_of.setdefault(_pile_of(lesson), []).append(place)
         self._newest.append(place)
         if isinstance(lesson, RlaCreated):
             self._home_of[lesson.rla.rla_id] = (lesson.rla.behaviour, lesson.rla.level)
-        behaviour, level = self._home_of[rla_of(lesson)]
+        behaviour, level = ("", lesson.level) if isinstance(lesson, SituationNamed) else self._home_of[rla_of(lesson)]
         self._records.append(LessonRecord(lesson, behaviour=behaviour, level=level))
         self.standing += 1
 
@@ -98,7 +110,7 @@ class LessonBook:
             return f"there is no lesson {command_id!r}"
         if record.undone:
             return f"lesson {command_id!r} was undone already"
-        newest = self._records[self._standing_of[rla_of(record.event)][-1]]
+        newest = self._records[self._standing_of[_pile_of(record.event)][-1]]
         if newest is not record:
             later = newest.event.origin.command_id
             return f"lesson {later!r} came after {command_id!r} ({newest.text}); undo that one first"
@@ -109,10 +121,10 @@ class LessonBook:
         place = self._place[command_id]
         record = self._records[place]
         lesson = record.event
-        pile = self._standing_of[rla_of(lesson)]
+        pile = self._standing_of[_pile_of(lesson)]
         pile.pop()
         if not pile:
-            del self._standing_of[rla_of(lesson)]
+            del self._standing_of[_pile_of(lesson)]
         self._records[place] = replace(record, undone=True)
         self.standing -= 1
         while self._newest and self._records[self._newest[-1]].undone:

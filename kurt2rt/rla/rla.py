@@ -11,9 +11,6 @@ BASIC = "basic"
 """The level whose RLAs drive the wheels."""
 
 MID = "mid"
-"""The level whose RLAs say which taught behaviour the basic level is to follow."""
-
-MID = "mid"
 """The level whose RLAs say which taught behaviour of the basic level is wanted."""
 
 CRITIC = "critic"
@@ -160,6 +157,18 @@ class Appraised:
 
 
 @dataclass(frozen=True, slots=True)
+class SituationNamed:
+    """The teacher gave a situation a name, so that the robot can be sent there: changes no RLA."""
+
+    name: str
+    """One that was given already means this situation from now on."""
+    situation: Condition
+    """A point in the feature space of its level."""
+    level: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
 class LessonUndone:
     """The teacher took one lesson back: what it made, changed, ended or rewarded is as before it."""
 
@@ -185,7 +194,10 @@ class SessionEnded:
     origin: Origin
 
 
-Lesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewarded
+RlaLesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewarded
+"""A lesson about one RLA."""
+
+Lesson = RlaLesson | SituationNamed
 """A teaching act that can be undone."""
 
 TeachingEvent = Lesson | LessonUndone | Appraised | SessionBegun | SessionEnded

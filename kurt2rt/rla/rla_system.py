@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from kurt2rt.rla.competitors import CompetitorGroups
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
 from kurt2rt.rla.matching import ConditionIndex
+from kurt2rt.rla.named_situations import NamedSituations
 from kurt2rt.rla.rla import (
     ASK,
     BASIC,
@@ -35,6 +36,7 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     SessionBegun,
     SessionEnded,
+    SituationNamed,
     TeachingEvent,
 )
 from kurt2rt.rla.symbol_index import SymbolIndex
@@ -156,6 +158,7 @@ class RlaSystem:
         self._count_at: Counter[str] = Counter()
         self._last_id = 0
         self._appraisals: dict[int, Appraisal] = {}
+        self._names = NamedSituations()
         self._book = LessonBook()
         self._before: dict[str, Rla] = {}
         """The RLA as it was before a lesson that stands, which changed its action or deleted it, by command id."""
@@ -180,6 +183,10 @@ class RlaSystem:
     def get(self, rla_id: int) -> Rla | None:
         """The living RLA of that id, of whatever level."""
         return self._rlas.get(rla_id)
+
+    def named_at(self, level: str) -> Mapping[str, Condition]:
+        """The situations of a level that teachers gave names to, by name."""
+        return self._names.at(level)
 
     def appraisal(self, rla_id: int) -> Appraisal:
         """What teachers thought of an RLA; none and none where nobody said so."""
@@ -311,6 +318,9 @@ class RlaSystem:
                 self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
                 self._before[origin.command_id] = self._leave(self._living(rla_id))
+            case SituationNamed(name, situation, level):
+                self._require_situation(name, situation, level)
+                self._names.enter(lesson)
             case RlaRewarded(rla_id, value):
                 self._living(rla_id)
                 if value not in (1, -1):
@@ -329,6 +339,18 @@ class RlaSystem:
                 self._enter(self._before.pop(origin.command_id))
             case RlaRewarded(rla_id, value):
                 self._count(rla_id, value, -1)
+            case SituationNamed():
+                self._names.leave(lesson)
+
+    def _require_situation(self, name: str, situation: Condition, level: str) -> None:
+        """A situation of a level that nothing is matched at here may be named all the same, as its RLAs are kept."""
+        space = self._spaces.get(level)
+        if not all(map(math.isfinite, situation)):
+            raise UnfitEventError(f"the situation named {name!r} holds a value that is not finite")
+        if space is not None and len(situation) != space.dimensions:
+            raise UnfitEventError(
+                f"the situation named {name!r} has {len(situation)} values, level {level} matches {space.dimensions}"
+            )
 
     def _count(self, rla_id: int, value: int, more: int) -> None:
         rewards, punishments = self.appraisal(rla_id)

@@ -11,6 +11,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.rla.rla import (
     CRITIC,
+    MID,
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
@@ -24,6 +25,7 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     SessionBegun,
     SessionEnded,
+    SituationNamed,
     TeachingEvent,
 )
 from tests.knowledge.lessons import (
@@ -58,10 +60,12 @@ events = st.one_of(
     ),
     st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
     st.builds(LessonUndone, texts, origins),
+    st.builds(SituationNamed, texts, conditions, texts, origins),
     st.builds(SessionBegun, texts, origins),
     st.builds(SessionEnded, st.integers(0, 2**62), origins),
 )
 
+NAMED = SituationNamed("door", (1.0, 2.0), MID, origin("name-1", 500))
 APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
 
 
@@ -97,7 +101,7 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("version", 5, "its version 5 is of a newer kurt2rt"),
+        ("version", 6, "its version 6 is of a newer kurt2rt"),
         ("version", True, "version must be a whole number"),
         (
             "kind",
@@ -150,6 +154,12 @@ def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
         (withdrawn(1), "action", "ask", "withdrawn has no 'action'"),
         (undone("create-1"), "lesson", 1, "lesson must be a text"),
         (undone("create-1"), "rla_id", 1, "undone has no 'rla_id'"),
+        (NAMED, "name", None, "name must be a text"),
+        (NAMED, "situation", "here", "situation must be a list of numbers"),
+        (NAMED, "situation", [float("nan")], "situation must be made of finite numbers"),
+        (NAMED, "level", 1, "level must be a text"),
+        (NAMED, "rla_id", 1, "named has no 'rla_id'"),
+        (NAMED, "version", 4, "there was no named in version 4"),
         (session(10)[0], "name", None, "name must be a text"),
         (session(10)[1], "lasted_ticks", -1, "lasted_ticks must be a whole number from 0"),
     ],
@@ -171,6 +181,11 @@ def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, versi
     assert decode_event(text, "row 1") == event
 
 
+@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
+def test_the_events_of_version_4_are_read_as_they_are(event: TeachingEvent) -> None:
+    assert decode_event(as_written_by(4, event), "row 1") == event
+
+
 def test_what_an_rla_belongs_to_is_kept() -> None:
     event = RlaCreated(replace(created(1).rla, behaviour="turn_left", level=CRITIC))
 
@@ -181,7 +196,7 @@ def test_what_an_rla_belongs_to_is_kept() -> None:
     "event",
     [
         *(created(1), replaced(1, "left", "forward"), withdrawn(1), deleted(1), rewarded(1), APPRAISED),
-        *(undone("create-1"), *session(10)),
+        *(undone("create-1"), NAMED, *session(10)),
     ],
 )
 def test_a_missing_field_is_named(event: TeachingEvent) -> None:

@@ -16,7 +16,7 @@ from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import CRITIC, Rla, RlaCreated
+from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed
 from tests.experiments.helpers import ROBOT, short_task
 from tests.knowledge.lessons import (
     BINDING,
@@ -160,6 +160,14 @@ def test_an_rla_of_a_level_that_the_file_does_not_know_is_found(path: Path) -> N
         (problem,) = check_knowledge(journal)
 
     assert "row 1: does not fit the lessons before it: appraisal RLA 1 is of the level 'critic', of which" in problem
+
+
+def test_a_name_given_at_a_level_that_the_file_does_not_know_is_found(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(SituationNamed("door", (1.0,), MID, origin("name-1", 9)), STAMP)])
+        (problem,) = check_knowledge(journal)
+
+    assert "row 1: does not fit the lessons before it: the situation 'door' is of the level 'mid', of which" in problem
 
 
 def test_knowledge_of_another_task_is_refused_but_not_that_of_another_robot(path: Path) -> None:

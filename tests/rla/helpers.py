@@ -13,6 +13,7 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     SessionBegun,
     SessionEnded,
+    SituationNamed,
 )
 
 
@@ -47,6 +48,10 @@ def deleted(rla_id: int, command_id: str | None = None) -> RlaDeleted:
 
 def rewarded(rla_id: int, value: int = 1, command_id: str | None = None) -> RlaRewarded:
     return RlaRewarded(rla_id, value, 2990, origin(command_id or f"reward-{rla_id}", 3000 + rla_id))
+
+
+def named(name: str, situation: tuple[float, ...], level: str = BASIC, command_id: str | None = None) -> SituationNamed:
+    return SituationNamed(name, situation, level, origin(command_id or f"naming-{name}", 3500))
 
 
 def undone(lesson: str) -> LessonUndone:
