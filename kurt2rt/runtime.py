@@ -12,7 +12,10 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.level import Level
+from kurt2rt.layers.mid_level import MidLevel
+from kurt2rt.layers.stack import LayerStack
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
@@ -20,12 +23,13 @@ from kurt2rt.perception.weights import weights_of
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.repertoire.of_task import repertoire_of
-from kurt2rt.rla.rla import CRITIC, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, MID, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.inbox import TeacherInbox
+from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import LessonKeeper, Tick
@@ -42,6 +46,8 @@ class Runtime:
     task: TaskSettings
     definition: SituationDefinition
     level: BasicLevel
+    mid: MidLevel | None
+    """Over the basic level; None where the task has none."""
     wanted: Wanted
     school: School
     reinforcement: Reinforcement
@@ -79,7 +85,7 @@ def build_runtime(
 
     `statistics` goes on from what was counted before, `saved` from what the RLAs were worth.
     `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
-    own policy, for instance, to see what it would reach.
+    own policy, for instance, to see what it would reach. A mid level commands that one, too.
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
     `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
     `asked`: False where nobody is there who could be asked: RLAs whose action was withdrawn are passed over.
@@ -91,7 +97,11 @@ def build_runtime(
     weights = weights_of(definition, changed, task.learning.past_weight, task.name)
     critic = load_critic(task.critic)
     appraisals = Space(len(Circumstances._fields), critic.learning.radius, critic.learning.weight_vector)
-    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others={CRITIC: appraisals})
+    others = {CRITIC: appraisals}
+    mid_settings = None if task.mid is None else load_mid(task.mid)
+    if mid_settings is not None:
+        others[MID] = mid_settings.space
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
     events = tuple(events)
     period_s = settings.can.cycle_s
     recent = RecentDecisions(definition.dimensions)
@@ -102,6 +112,8 @@ def build_runtime(
     level = BasicLevel(
         system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
     )
+    mid = None if mid_settings is None else MidLevel(system, mid_settings.build(settings), mid_settings, wanted)
+    at_the_wheels = level_override or level
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = repertoire_of(task, settings)
     agreement = Agreement(critic.agreement, critic.values, period_s)
@@ -117,6 +129,7 @@ def build_runtime(
         critic=Critic(system, critic),
         agreement=agreement,
         self_teaching=self_teaching,
+        mid=None if mid is None else MidLessons(mid),
         asked=asked,
     )
     inbox = TeacherInbox()
@@ -125,7 +138,7 @@ def build_runtime(
     tick = Tick(
         robot,
         Perception(definition, sensors),
-        level_override or level,
+        at_the_wheels if mid is None else LayerStack(at_the_wheels, mid),
         school,
         inbox,
         keeper,
@@ -141,6 +154,7 @@ def build_runtime(
         task,
         definition,
         level,
+        mid,
         wanted,
         school,
         reinforcement,

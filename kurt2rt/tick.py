@@ -6,13 +6,14 @@ from typing import NamedTuple, Protocol
 from behaviors.judges.judge import Circumstances
 from hal.robot import Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
-from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.layers.level import Level
+from kurt2rt.layers.mid_uses import MidUses
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
-from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.rla import BASIC, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.teaching.commands import CommandResult, Correct, Drive, Resume, Teach, Watch
+from kurt2rt.teaching.commands import Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
@@ -51,6 +52,11 @@ class TickRecord(NamedTuple):
     opinion: Opinion | None = None
     """What the critic thinks of it; None where it was taught nothing, or there is none."""
 
+    @property
+    def mid(self) -> MidDecision | None:
+        """What the mid level commanded; None where there is none."""
+        return self.decision.mid
+
 
 class Tick:
     """bus -> sense -> perceive -> decide -> guard -> bus, then learn and publish.
@@ -86,6 +92,7 @@ class Tick:
         self._inbox = inbox
         self._keeper = keeper
         self._statistics = statistics
+        self._mid_uses = MidUses(statistics)
         self._ledger = ledger
         self._now = now
         self._stale_infrared_s = stale_infrared_s
@@ -110,7 +117,7 @@ class Tick:
                 self._school.follow(command, tick)
                 continue
             new = not self._school.has_taken(command.command_id)
-            if new and blind and isinstance(command, Teach | Correct) and command.decision_tick is None:
+            if new and blind and _is_about_what_is_seen_now(command):
                 results.append(CommandResult(command.command_id, False, _BLIND))
                 continue
             result, event = self._school.attend(command, situation, tick)
@@ -137,11 +144,14 @@ class Tick:
         if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)
         self._statistics.count(decision.rla_id if self._driving else None)
+        self._mid_uses.count(decision, driving=self._driving)
         # A robot that stands blames nobody, also where it is the guard that has it stand.
         answered = decision if self._driving else decision._replace(action=None, answers=False)
         self._school.recent.remember(
             tick, situation, answered, behaviour, blind=blind, circumstances=circumstances, opinion=opinion
         )
+        if self._school.mid is not None:
+            self._school.mid.remember(tick, decision)
         events.extend(self._school.learn(tick, answered, opinion))
         mark(Stage.LEARN)
 
@@ -151,6 +161,12 @@ class Tick:
         return TickRecord(
             tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion
         )
+
+    def set_down(self) -> None:
+        """The robot was set down elsewhere: what the mid level comes to next does not follow what was."""
+        if self._school.mid is not None:
+            self._school.mid.mid.restart()
+        self._mid_uses.restart()
 
     def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
@@ -198,3 +214,10 @@ class Tick:
         if self._keeper.trouble is not None:
             return Cause.UNSAVED
         return None
+
+
+def _is_about_what_is_seen_now(command: Command) -> bool:
+    """The mid level has its situation also while the robot sees nothing."""
+    if not isinstance(command, Teach | Correct):
+        return False
+    return command.level == BASIC and command.decision_tick is None

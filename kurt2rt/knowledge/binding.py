@@ -26,7 +26,7 @@ class KnowledgeBinding:
     feature_names: tuple[str, ...]
     """One per dimension of a condition."""
     system: str
-    """Name of the task that the RLA system was taught for."""
+    """Name of the RLA system that was taught: the task's, or one that several tasks share."""
     robot: str
     """Robot that it was first taught on; told, not compared: the features decide whether another one can use it."""
     levels: Mapping[str, LevelFeatures] = field(default_factory=dict)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.features import features
+from kurt2rt.critic.features import features as critic_features
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import StoredEntry
@@ -13,8 +13,10 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.mid.features import features as mid_features
+from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.definition import load_situation
-from kurt2rt.rla.rla import CRITIC, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, MID, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -85,5 +87,7 @@ def read_lessons(
 def _binding(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    levels = {CRITIC: features(load_critic(task.critic))}
-    return KnowledgeBinding(definition.hash(sensors), definition.names, task.name, settings.name, levels)
+    levels = {CRITIC: critic_features(load_critic(task.critic))}
+    if task.mid is not None:
+        levels[MID] = mid_features(load_mid(task.mid))
+    return KnowledgeBinding(definition.hash(sensors), definition.names, task.system_name, settings.name, levels)

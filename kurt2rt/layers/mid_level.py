@@ -68,6 +68,10 @@ class MidLevel:
         self._wanted.pursue(behaviour)
         self._overridden = True
 
+    def release(self) -> None:
+        """What a teacher commanded counts no more: the mid level commands from the next decision on."""
+        self._overridden = False
+
     def restart(self) -> None:
         """Forget where the robot was: it has been set down elsewhere. What a teacher commanded goes on."""
         self.situation.restart()

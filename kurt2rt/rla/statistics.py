@@ -3,9 +3,11 @@
 from collections import Counter
 from collections.abc import Callable
 
+from kurt2rt.rla.rla import BASIC
+
 
 class StatisticsCounter:
-    """Counts activations of RLAs and transitions between them.
+    """Counts activations of RLAs and transitions between them, for each level by itself; ids run through.
 
     An RLA is used once each time it becomes the one that drives; standing still ends a chain of transitions.
     """
@@ -15,17 +17,22 @@ class StatisticsCounter:
     ) -> None:
         self.uses = Counter(uses)
         self.transitions = Counter(transitions)
-        self._previous: int | None = None
+        self._previous: dict[str, int | None] = {}
+        """By level."""
 
-    def count(self, current: int | None) -> None:
-        """Take in one tick: the RLA that drives, None while the robot stands."""
-        if current == self._previous:
+    def count(self, current: int | None, level: str = BASIC, *, anew: bool = False) -> None:
+        """Take in one tick: the RLA of a level that drives, None while none does.
+
+        `anew`: it was decided on once more, so it is another use though it be the same one.
+        """
+        previous = self._previous.get(level)
+        if current == previous and not anew:
             return
         if current is not None:
             self.uses[current] += 1
-            if self._previous is not None:
-                self.transitions[self._previous, current] += 1
-        self._previous = current
+            if previous is not None:
+                self.transitions[previous, current] += 1
+        self._previous[level] = current
 
     def drop_dead(self, lives: Callable[[int], bool]) -> None:
         """Forget the RLAs of which `lives` says no: in a day on its own a robot tries, and deletes, a great many."""
@@ -36,5 +43,6 @@ class StatisticsCounter:
             del self.uses[rla_id]
         for edge in [edge for edge in self.transitions if not dead.isdisjoint(edge)]:
             del self.transitions[edge]
-        if self._previous in dead:
-            self._previous = None
+        for level, previous in self._previous.items():
+            if previous in dead:
+                self._previous[level] = None

@@ -12,6 +12,7 @@ from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings
 from kurt2rt.experiments.phases.settings import PhasesSettings
+from kurt2rt.mid.settings import MidSettings
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
@@ -21,7 +22,10 @@ AnyCritic = Annotated[
     Annotated[Name, Tag("name")] | Annotated[CriticSettings, Tag("settings")],
     Discriminator(lambda critic: "settings" if isinstance(critic, dict | CriticSettings) else "name"),
 ]
-
+AnyMid = Annotated[
+    Annotated[Name, Tag("name")] | Annotated[MidSettings, Tag("settings")],
+    Discriminator(lambda mid: "settings" if isinstance(mid, dict | MidSettings) else "name"),
+]
 
 Place = Literal["starts", "in_sight"]
 """Where a hand sets the robot down: at a start pose, or anywhere free from where it sees something near (a post, where
@@ -143,10 +147,16 @@ class TaskSettings(Settings):
 
     name: Name
     """Files that hold what was taught and found are called after it."""
+    system: Name | None = None
+    """The RLA system that is taught, where it is not only this task's: tasks that name the same one have the same
+    situation and behaviours, and go on in each other's knowledge. Named as the task when absent."""
     situation: str
     repertoire: str
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)
     """What is taught, each with RLAs of its own; the first is wanted at the start. One without a name when absent."""
+    mid: AnyMid | None = None
+    """The mid level, which says which of the behaviours is wanted: of `config/mid_levels` by name, or its settings;
+    None: the teacher says it."""
     learning: LearningSettings
     plain: PlainSettings
     """What to take instead of `learning` for the plain reading of the paper."""
@@ -162,6 +172,20 @@ class TaskSettings(Settings):
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult
+
+    @property
+    def system_name(self) -> str:
+        """What knowledge of this task is bound to."""
+        return self.system or self.name
+
+    @field_validator("mid")
+    @classmethod
+    def _commands_what_has_a_name(cls, mid: AnyMid | None, others: ValidationInfo) -> AnyMid | None:
+        if mid is None:
+            raise ValueError("give a name or settings, or leave the key out where there is no mid level")
+        if others.data.get("behaviours") == ("",):
+            raise ValueError("a mid level commands behaviours by their names; give the task's in `behaviours`")
+        return mid
 
     @field_validator("judge", mode="before")
     @classmethod

@@ -6,7 +6,7 @@ Four kinds, as in the paper: motor commands, behaviours, reinforcements, and org
 
 from dataclasses import dataclass
 
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import BASIC, Phase
 
 # Motor commands and presence: streams.
 
@@ -55,8 +55,13 @@ class Teach:
     command_id: str
     teacher: str
     action: str
+    """A name in the repertoire; at the mid level a taught behaviour."""
     decision_tick: int | None = None
     """The situation of which tick; None: the present one."""
+    level: str = BASIC
+    """Whose situation it is: BASIC, or MID where the robot has a mid level."""
+    beside: bool = False
+    """At the mid level: this is possible there, too, beside what the RLAs say that know the situation already."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +77,8 @@ class Correct:
     action: str
     decision_tick: int | None = None
     """The decision of which tick was wrong; None: the present one."""
+    level: str = BASIC
+    """Whose decision it was, as in `Teach`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +141,10 @@ class Undo:
 
 @dataclass(frozen=True, slots=True)
 class Pursue:
-    """Follow another taught behaviour from now on: only its RLAs answer, and lessons are about it."""
+    """Follow another taught behaviour from now on: only its RLAs answer, and lessons are about it.
+
+    Where a mid level commands, this goes before it until the next junction has been passed.
+    """
 
     command_id: str
     teacher: str

@@ -9,7 +9,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.rla.rla import CRITIC, Origin, Phase, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
@@ -17,6 +17,7 @@ from kurt2rt.teaching.commands import (
     BeginSession,
     Command,
     CommandResult,
+    Correct,
     Drive,
     EndSession,
     HandOver,
@@ -26,9 +27,11 @@ from kurt2rt.teaching.commands import (
     SetPhase,
     Stop,
     Take,
+    Teach,
     Watch,
 )
 from kurt2rt.teaching.learning import Learning
+from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.refused import RefusedError, refuse
 from kurt2rt.teaching.tuition import Tuition, require_action
@@ -53,9 +56,12 @@ class School:
         critic: Critic | None = None,
         agreement: Agreement | None = None,
         self_teaching: SelfTeaching | None = None,
+        mid: MidLessons | None = None,
         asked: bool = True,
     ) -> None:
         """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
+
+        Without `mid` the teacher alone says what is wanted.
 
         `asked`: False where nobody is there who could be asked, as in an exam.
         """
@@ -66,6 +72,7 @@ class School:
         self.critic = critic
         self.agreement = agreement
         self.reinforcement = reinforcement
+        self.mid = mid
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._tuition = Tuition(
             level,
@@ -73,6 +80,7 @@ class School:
             insert_beyond_share=insert_beyond_share,
             reinforcement=reinforcement,
             appraising=None if critic is None else Appraising(critic, level.system, self.recent),
+            mid=mid,
         )
         self.learning = Learning(
             level,
@@ -100,8 +108,12 @@ class School:
 
     @property
     def corrections(self) -> int:
-        """How often a teacher has corrected."""
-        return self._tuition.corrections
+        """How often a teacher has corrected the basic level."""
+        return self.corrections_at(BASIC)
+
+    def corrections_at(self, level: str) -> int:
+        """How often a teacher has corrected a level."""
+        return self._tuition.corrections_at[level]
 
     def stop(self, because: str, by: str | None = None) -> None:
         """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
@@ -173,12 +185,18 @@ class School:
             text, event = self._carry_out(command, situation, tick)
             if event is not None:
                 self.learning.apply(event)
+            self._heed(command)
         except (RefusedError, UnfitEventError) as error:
             if nobody_taught and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # who was refused has not become the teacher by it
             return CommandResult(command.command_id, False, str(error)), None
         self.learning.taken.add(command.command_id)
         return CommandResult(command.command_id, True, text, lesson=event is not None), event
+
+    def _heed(self, command: Command) -> None:
+        """What was taught about the present goes before what the teacher had commanded for it."""
+        if self.mid is not None and isinstance(command, Teach | Correct) and command.level == MID:
+            self.mid.taught(command)
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
         """What is learnt from a tick when the wheels have been told; see `Learning.from_tick`."""
@@ -241,12 +259,19 @@ class School:
                 f"{self.wanted.behaviour or 'the only behaviour'} was asked for after this was said; "
                 "look at the robot, then say it again"
             )
+        mid = self.mid
+        if mid is not None and seen_tick < mid.passed_at_tick:
+            raise RefusedError("a junction was passed after this was said; look at the robot, then say it again")
         try:
-            self.wanted.pursue(command.behaviour)
+            if mid is None:
+                self.wanted.pursue(command.behaviour)
+            else:
+                mid.mid.override(command.behaviour)
         except ValueError as error:
             raise RefusedError(str(error)) from error
         self._pursued_seen_tick = seen_tick
-        return f"{command.behaviour or 'the only behaviour'} is wanted"
+        so_long = "" if mid is None else " until the next junction is passed"
+        return f"{command.behaviour or 'the only behaviour'} is wanted{so_long}"
 
     def _pass_on(self, before: str | None) -> None:
         """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""

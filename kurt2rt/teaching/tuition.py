@@ -1,15 +1,14 @@
 """What a teacher's command teaches: the event that changes the knowledge as he said."""
 
+from collections import Counter
 from collections.abc import Iterable
-
-import numpy as np
-from numpy.typing import NDArray
 
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.rla import (
     BASIC,
+    MID,
     ActionReplaced,
     LessonUndone,
     Origin,
@@ -19,8 +18,11 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     TeachingEvent,
 )
+from kurt2rt.rla.rla_system import Match
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
+from kurt2rt.teaching.meant import Meant
+from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.refused import RefusedError, refuse
 
@@ -42,8 +44,12 @@ class Tuition:
         insert_beyond_share: float,
         reinforcement: Reinforcement | None,
         appraising: Appraising | None,
+        mid: MidLessons | None = None,
     ) -> None:
-        """Without `reinforcement` rewards are only counted; without `appraising` there is no critic to teach."""
+        """Without `reinforcement` rewards are only counted; without `appraising` there is no critic to teach.
+
+        Without `mid` there is no mid level to teach.
+        """
         self._level = level
         self._system = level.system
         self._recent = recent
@@ -51,7 +57,9 @@ class Tuition:
         self._reinforcement = reinforcement
         self._appraising = appraising
         self._appraisals: tuple[str, ...] = () if appraising is None else appraising.appraisals
-        self.corrections = 0
+        self._mid = mid
+        self.corrections_at: Counter[str] = Counter()
+        """How often a teacher has corrected, by level."""
 
     def event_of(self, command: LessonCommand, situation: Situation, origin: Origin) -> Taught:
         """What a command teaches in the present `situation`. Raises RefusedError."""
@@ -60,7 +68,7 @@ class Tuition:
                 return self._lesson(command, situation, origin)
             case ReplaceAction(rla_id=rla_id, action=action):
                 rla = self._require_rla(rla_id)
-                require_action(action, self._level.repertoire if rla.level == BASIC else self._appraisals)
+                self._require_action_of(rla.level, action)
                 return self._replace(rla, action, origin)
             case DeleteRla(rla_id=rla_id):
                 return f"{self._require_rla(rla_id).title} deleted", RlaDeleted(rla_id, origin)
@@ -72,47 +80,79 @@ class Tuition:
                 return self._undo(lesson or self._system.last_standing_lesson, origin)
 
     def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> Taught:
-        require_action(command.action, self._level.repertoire)
-        meant, behaviour = situation.vector, self._level.wanted.behaviour
-        if command.decision_tick is not None:
-            self._require_known(command.decision_tick)
-            if not self._recent.saw(command.decision_tick):
-                raise RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
-            meant = self._recent.situation(command.decision_tick)
-            behaviour = self._recent.behaviour(command.decision_tick)
-        nearest = self._system.match(meant, behaviour)
+        if command.level == MID:
+            if self._mid is None:
+                raise RefusedError("this robot has no mid level to teach")
+            require_behaviour(command.action, self._level.wanted.behaviours)
+            meant = self._mid.meant(command.decision_tick)
+        elif command.level == BASIC:
+            require_action(command.action, self._level.repertoire)
+            meant = self._meant_at_the_basic_level(command.decision_tick, situation)
+        else:
+            raise RefusedError(f"nothing is taught at a level {command.level!r}; there are {BASIC} and {MID}")
+        nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
+        if isinstance(command, Teach) and command.beside:
+            return self._beside(command.action, meant, nearest, origin)
         # On the very condition of an RLA a second one would never win: the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
-            self.corrections += 1
-            replace_within_share = self._insert_beyond_share
+            self.corrections_at[command.level] += 1
+            replace_within_share = meant.insert_beyond_share
         elif nearest is not None and nearest.rla.asks:
-            replace_within_share = self._insert_beyond_share  # it waits for this answer
+            replace_within_share = meant.insert_beyond_share  # it waits for this answer
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
-            return self._create(command.action, meant, behaviour, origin)
-        rla = self._of_competitors(nearest.rla, command.decision_tick)
+            return self._create(command.action, meant, origin)
+        rla = self._of_competitors(nearest.rla, meant)
         if rla.action == command.action:
             return f"{rla.title} says {command.action} already", None
         return self._replace(rla, command.action, origin)
 
-    def _of_competitors(self, nearest: Rla, decision_tick: int | None) -> Rla:
+    def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> Meant:
+        share = self._insert_beyond_share
+        if decision_tick is None:
+            drove = self._recent.rla(self._recent.newest)
+            return Meant(situation.vector, self._level.wanted.behaviour, BASIC, drove, share)
+        self._require_known(decision_tick)
+        if not self._recent.saw(decision_tick):
+            raise RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
+        behaviour, drove = self._recent.behaviour(decision_tick), self._recent.rla(decision_tick)
+        return Meant(self._recent.situation(decision_tick), behaviour, BASIC, drove, share)
+
+    def _beside(self, action: str, meant: Meant, nearest: Match | None, origin: Origin) -> Taught:
+        """Another RLA on the very condition of those that know the situation; where none does, a first one."""
+        if meant.level != MID:
+            raise RefusedError("what is possible beside it is taught at the mid level; the basic one does one thing")
+        if nearest is None or not nearest.known:
+            return self._create(action, meant, origin)
+        for rla in self._system.competitors(nearest.rla):
+            if rla.action == action:
+                return f"{rla.title} says {action} already", None
+        return self._create(action, meant, origin, beside=nearest.rla)
+
+    def _of_competitors(self, nearest: Rla, meant: Meant) -> Rla:
         """Where several stand on one condition: the one that drove then, else the one that would answer."""
         group = self._system.competitors(nearest)
-        if len(group) == 1 or nearest.asks or self._reinforcement is None:
+        if len(group) == 1 or nearest.asks:
             return nearest
-        drove = self._recent.rla(self._recent.newest if decision_tick is None else decision_tick)
-        return next((rla for rla in group if rla.rla_id == drove), self._reinforcement.choice.best(group))
+        for rla in group:
+            if rla.rla_id == meant.drove:
+                return rla
+        if meant.level != BASIC or self._reinforcement is None:
+            return nearest
+        return self._reinforcement.choice.best(group)
 
-    def _create(self, action: str, meant: NDArray[np.float64], behaviour: str, origin: Origin) -> Taught:
+    def _create(self, action: str, meant: Meant, origin: Origin, beside: Rla | None = None) -> Taught:
         rla = Rla(
             rla_id=self._system.next_id,
-            condition=tuple(meant.tolist()),
+            condition=tuple(meant.vector.tolist()) if beside is None else beside.condition,
             action=action,
-            radius=None,
+            radius=None if beside is None else beside.radius,
             origin=origin,
-            behaviour=behaviour,
+            behaviour=meant.behaviour,
+            level=meant.level,
         )
-        return f"{rla.title} taught: {rla.action}", RlaCreated(rla)
+        others = "" if beside is None else f" beside {beside.title}"
+        return f"{rla.title} taught{others}: {rla.action}", RlaCreated(rla)
 
     def _replace(self, rla: Rla, action: str, origin: Origin) -> Taught:
         event = ActionReplaced(rla.rla_id, action, rla.action, origin)
@@ -153,6 +193,12 @@ class Tuition:
         self._require_known(meant)
         return meant
 
+    def _require_action_of(self, level: str, action: str) -> None:
+        if level == MID:
+            require_behaviour(action, self._level.wanted.behaviours)
+        else:
+            require_action(action, self._level.repertoire if level == BASIC else self._appraisals)
+
     def _require_rla(self, rla_id: int) -> Rla:
         rla = self._system.get(rla_id)
         if rla is None:
@@ -169,3 +215,10 @@ def require_action(action: str, repertoire: Iterable[str]) -> None:
     names = tuple(repertoire)
     if action not in names:
         raise RefusedError(f"there is no action {action!r}; the repertoire has: {', '.join(names)}")
+
+
+def require_behaviour(name: str, behaviours: Iterable[str]) -> None:
+    """Raises RefusedError, which lists those there are, for a behaviour that the task does not teach."""
+    names = tuple(behaviours)
+    if name not in names:
+        raise RefusedError(f"there is no taught behaviour {name!r}; this task has: {', '.join(names)}")

@@ -1,0 +1,48 @@
+"""What a teacher says of the way to go: lessons of the mid level, and commands in its place."""
+
+import numpy as np
+
+from kurt2rt.layers.decision import Decision
+from kurt2rt.layers.mid_level import MidLevel
+from kurt2rt.rla.rla import MID
+from kurt2rt.teaching.commands import Correct, Teach
+from kurt2rt.teaching.meant import Meant
+from kurt2rt.teaching.recent_mid import RecentMid
+from kurt2rt.teaching.refused import RefusedError
+
+
+class MidLessons:
+    """Remembers what the mid level decided, so that a teacher can mean it, and lets him go before it."""
+
+    def __init__(self, mid: MidLevel) -> None:
+        self.mid = mid
+        self.passed_at_tick = -1
+        """When a junction had been passed last: what was said before it was about that one."""
+        self._recent = RecentMid()
+
+    def remember(self, tick: int, decision: Decision) -> None:
+        """Keep what the mid level decided in a tick."""
+        decided = decision.mid
+        if decided is None:
+            return
+        self._recent.remember(tick, self.mid.vector, decided.rla_id)
+        if decided.event is not None:
+            self.passed_at_tick = tick
+
+    def meant(self, decision_tick: int | None) -> Meant:
+        """The situation of a tick; None: the present one. Raises RefusedError for one that is not remembered."""
+        share = self.mid.settings.learning.insert_beyond_share
+        if decision_tick is None:
+            newest = self._recent.newest
+            return Meant(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share)
+        moment = self._recent.at(decision_tick)
+        if moment is None:
+            raise RefusedError(f"the decision of tick {decision_tick} is not remembered any more")
+        return Meant(moment.vector, "", MID, moment.rla_id, share)
+
+    def taught(self, command: Teach | Correct) -> None:
+        """A lesson of the mid level was given just now: where it is about the present, it ends what went before it."""
+        if isinstance(command, Teach) and command.beside:
+            return  # what else is possible says nothing of what is to be done
+        if np.array_equal(self.meant(command.decision_tick).vector, self.mid.vector):
+            self.mid.release()
