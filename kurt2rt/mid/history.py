@@ -1,5 +1,6 @@
 """The mid level's situation as the paper has it (VI.B.2): the last differing symbols."""
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 import numpy as np
@@ -35,9 +36,14 @@ class HistorySettings(MidSituationSettings):
         """Symbols are equal or not."""
         return self.distance
 
-    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
+    def words(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
+        """The newest symbol first."""
+        named = dict(enumerate(("", *self.symbols.names)))
+        return tuple(named.get(int(symbol), str(int(symbol))) for symbol in vector)
+
+    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:  # noqa: ARG002 - by its detector
         """The history, empty."""
-        return SymbolHistory(self, self.symbols.build(robot), detector)
+        return SymbolHistory(self, self.symbols.build(), detector)
 
 
 class SymbolHistory:
@@ -54,7 +60,7 @@ class SymbolHistory:
     def perceive(self, senses: Senses, before: Decision) -> bool:
         """Take in one tick."""
         self.passed = self._detector.perceive(senses)
-        symbol = self._source.perceive(senses, before, self.passed)
+        symbol = self._source.perceive(before, self._detector, self.passed)
         if symbol == NONE:
             return False
         vector = np.empty_like(self.vector)

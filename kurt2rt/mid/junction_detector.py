@@ -14,6 +14,7 @@ Metres = Annotated[float, Field(gt=0, le=10)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=2)]
 
 _QUARTER_RAD = math.pi / 2
+_TURNED_BACK_RAD = 1.5 * _QUARTER_RAD
 
 
 class JunctionDetectorSettings(Settings):
@@ -28,6 +29,9 @@ class JunctionDetectorSettings(Settings):
     """A side is open where so many of its sensors see no wall."""
     open_over_m: Metres
     """Over so much way a side must be open for a junction to begin."""
+    way_m: Metres
+    """A way leads off where so many sensors of a side see nothing nearer than this; farther than `wall_m`, for a robot
+    that turns away from a wall sees it farther off, too."""
     parallel_rad: Annotated[float, Field(gt=0, le=1.5)]
     """In a street the walls on both sides are no farther from parallel than this: else the robot is still turning."""
     street_over_m: Metres
@@ -36,21 +40,12 @@ class JunctionDetectorSettings(Settings):
     """Over so much way its heading between the walls is averaged."""
 
 
-class _Side:
-    """What the sensors of one side see."""
-
-    def __init__(self, infrared: InfraredSettings, names: tuple[str, ...]) -> None:
-        self.places = tuple(infrared.names.index(name) for name in names)
-        x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
-        self.baseline_m = x_m[names[0]] - x_m[names[-1]]
-        if self.baseline_m <= 0:
-            raise SettingsError(
-                f"junctions: {names[0]} does not sit ahead of {names[-1]}; give a side's sensors from front to back"
-            )
-
-
 class JunctionDetector:
-    """Follows the robot from street to street, in memory that does not grow; a robot that stands changes nothing."""
+    """Follows the robot from street to street, in memory that does not grow; a robot that stands changes nothing.
+
+    Turns are measured between the walls of one street and those of the next: neither how the robot wobbled when it
+    left the one, nor how straight it came into the other, counts, only the encoders' drift within one junction.
+    """
 
     def __init__(self, settings: JunctionDetectorSettings, robot: RobotSettings) -> None:
         """Raises SettingsError for a sensor that the robot does not have."""
@@ -63,7 +58,8 @@ class JunctionDetector:
         self._settings = settings
         # Looked up by counts: this runs in every tick.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
-        self._left, self._right = _Side(infrared, settings.left), _Side(infrared, settings.right)
+        self._left, self._left_baseline_m = _side(infrared, settings.left)
+        self._right, self._right_baseline_m = _side(infrared, settings.right)
         self._metres_per_tick = robot.geometry.metres_per_tick
         self._track_m = robot.geometry.effective_track_m
         self._yaw_rad = 0.0
@@ -71,60 +67,79 @@ class JunctionDetector:
 
     def restart(self) -> None:
         """Forget what was: nobody can say which way the robot came."""
+        self.walled = self.opened = False
+        """Whether in this tick parallel walls stand on both sides, or a side is open; neither in between."""
+        self.turn_rad = self.rims_m = 0.0
+        """How far the robot has turned to the left in this tick, and how far its wheels have, the mean of both."""
         self._street_rad: float | None = None
-        """Heading between the walls of the street it is in, or came from; by the encoders, free of how it wobbled."""
+        """How the street runs that it is in, or came from, by the encoders."""
         self._inside = True
         self._left_open = self._right_open = False
-        self._open_m = self._between_m = self._way_m = 0.0
-        self._between_rad = 0.0
+        self._open_m = self._between_m = self._between_rad = self._way_m = 0.0
 
     def perceive(self, senses: Senses) -> JunctionEvent | None:
         """Take in one tick; returns the junction that was passed, in the tick in which the robot is sure of it."""
         left_m = senses.encoder_left_ticks * self._metres_per_tick
         right_m = senses.encoder_right_ticks * self._metres_per_tick
         step_m = abs(left_m + right_m) / 2
-        self._yaw_rad += (right_m - left_m) / self._track_m
+        self.turn_rad = (right_m - left_m) / self._track_m
+        self.rims_m = (abs(left_m) + abs(right_m)) / 2
+        self._yaw_rad += self.turn_rad
         self._way_m += step_m
-        want, distance_m, counts = self._settings, self._distance_m, senses.infrared_counts
-        left = [distance_m[counts[place]] for place in self._left.places]
-        right = [distance_m[counts[place]] for place in self._right.places]
-        if max(left) < want.wall_m and max(right) < want.wall_m:
-            self._open_m = 0.0
-            left_rad = math.atan2(left[-1] - left[0], self._left.baseline_m)
-            right_rad = math.atan2(right[0] - right[-1], self._right.baseline_m)
-            if abs(left_rad) < want.parallel_rad and abs(right_rad) < want.parallel_rad:
-                return self._between_walls(step_m, self._yaw_rad - (left_rad + right_rad) / 2)
-            self._between_m = 0.0
-            return None
+        wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, senses.infrared_counts
+        left = [distance_m[counts[place]] for place in self._left]
+        right = [distance_m[counts[place]] for place in self._right]
+        if max(left) < wall_m and max(right) < wall_m:
+            return self._pass_walls(left, right, step_m)
+        self.walled = False
         self._between_m = 0.0
-        left_open = sum(each >= want.wall_m for each in left) >= want.open_sensors
-        right_open = sum(each >= want.wall_m for each in right) >= want.open_sensors
-        if left_open or right_open:
-            self._open_m += step_m
-            if self._open_m >= want.open_over_m:
-                self._inside = True
-                if self._street_rad is not None and abs(self._yaw_rad - self._street_rad) < want.parallel_rad:
-                    self._left_open |= left_open
-                    self._right_open |= right_open
-        elif not self._inside:
-            self._open_m = 0.0
+        self._look_into_sides(left, right, step_m)
         return None
 
-    def _between_walls(self, step_m: float, heading_rad: float) -> JunctionEvent | None:
-        """Walls stand on both sides, and this is how the street runs that they make."""
-        if not self._inside and self._street_rad is not None:
-            share = min(1.0, step_m / self._settings.heading_over_m)
-            self._street_rad += share * (heading_rad - self._street_rad)
-            self._way_m = 0.0
+    def _look_into_sides(self, left: list[float], right: list[float], step_m: float) -> None:
+        """Somewhere no wall is seen."""
+        want = self._settings
+        self.opened = (
+            sum(each >= want.wall_m for each in left) >= want.open_sensors
+            or sum(each >= want.wall_m for each in right) >= want.open_sensors
+        )
+        if not self.opened:
+            if not self._inside:
+                self._open_m = 0.0
+            return
+        self._open_m += step_m
+        if self._open_m < want.open_over_m:
+            return
+        self._inside = True
+        # Once it has turned, its sides look elsewhere than along the sides of the street that it came from.
+        if self._street_rad is not None and abs(self._yaw_rad - self._street_rad) < want.parallel_rad:
+            self._left_open |= sum(each >= want.way_m for each in left) >= want.open_sensors
+            self._right_open |= sum(each >= want.way_m for each in right) >= want.open_sensors
+
+    def _pass_walls(self, left: list[float], right: list[float], step_m: float) -> JunctionEvent | None:
+        """Walls are seen on both sides, by all sensors."""
+        self.opened = False
+        self._open_m = 0.0
+        want = self._settings
+        left_rad = math.atan2(left[-1] - left[0], self._left_baseline_m)
+        right_rad = math.atan2(right[0] - right[-1], self._right_baseline_m)
+        self.walled = abs(left_rad) < want.parallel_rad and abs(right_rad) < want.parallel_rad
+        if not self.walled:
+            self._between_m = 0.0
             return None
         if step_m == 0.0:
             return None
-        # The mean over the way of this stretch.
+        heading_rad = self._yaw_rad - (left_rad + right_rad) / 2
+        if self._street_rad is not None and not self._inside:
+            off_rad = heading_rad - self._street_rad
+            if abs(off_rad) < _TURNED_BACK_RAD:
+                self._street_rad += min(1.0, step_m / want.heading_over_m) * off_rad
+                self._way_m = 0.0
+                return None
+            self._inside = True
         self._between_m += step_m
         self._between_rad += step_m / self._between_m * (heading_rad - self._between_rad)
-        if self._between_m < self._settings.street_over_m:
-            return None
-        return self._arrive()
+        return self._arrive() if self._between_m >= want.street_over_m else None
 
     def _arrive(self) -> JunctionEvent | None:
         """In a street, and sure of it."""
@@ -137,5 +152,16 @@ class JunctionDetector:
             left_open, right_open = self._left_open or quarters == 1, self._right_open or quarters == 3
             event = JunctionEvent(-1 if quarters == 3 else quarters, left_open, right_open, turn_rad, self._way_m)
         self._inside = self._left_open = self._right_open = False
-        self._open_m = self._between_m = self._way_m = 0.0
+        self._between_m = self._way_m = 0.0
         return event
+
+
+def _side(infrared: InfraredSettings, names: tuple[str, ...]) -> tuple[tuple[int, ...], float]:
+    """Places of a side's sensors, and how far ahead of the last the first one sits."""
+    x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
+    baseline_m = x_m[names[0]] - x_m[names[-1]]
+    if baseline_m <= 0:
+        raise SettingsError(
+            f"junctions: {names[0]} does not sit ahead of {names[-1]}; give a side's sensors from front to back"
+        )
+    return tuple(infrared.names.index(name) for name in names), baseline_m

@@ -1,24 +1,22 @@
 """One symbol per junction that was passed: what the robot did there."""
 
-from hal.robot import Senses
-from hal.robot_settings import RobotSettings
 from kurt2rt.layers.decision import Decision
-from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.mid.junction_detector import JunctionDetector
+from kurt2rt.mid.junction_event import NAMES, JunctionEvent
 from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource
 
-_SYMBOLS = {0: 1, 1: 2, -1: 3, 2: 4}
-"""By quarter turns to the left."""
+_SYMBOLS = {quarters: number for number, quarters in enumerate(NAMES, start=1)}
 
 
 class JunctionsSettings(SymbolSettings):
-    """Straight, left, right, back. Junctions are events, so all count, equal ones too."""
+    """Junctions are events: all count, equal ones too."""
 
     @property
     def names(self) -> tuple[str, ...]:
         """What can be done at a junction."""
-        return ("straight", "left", "right", "back")
+        return tuple(NAMES.values())
 
-    def build(self, robot: RobotSettings) -> SymbolSource:  # noqa: ARG002 - the junctions were found already
+    def build(self) -> SymbolSource:
         """The source."""
         return Junctions()
 
@@ -26,7 +24,7 @@ class JunctionsSettings(SymbolSettings):
 class Junctions:
     """Symbols of the junctions that are passed."""
 
-    def perceive(self, senses: Senses, before: Decision, passed: JunctionEvent | None) -> int:  # noqa: ARG002
+    def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
         """The symbol of the junction that was passed in this tick."""
         return NONE if passed is None else _SYMBOLS[passed.quarters]
 

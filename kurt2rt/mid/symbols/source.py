@@ -5,10 +5,9 @@ from typing import Annotated, Protocol
 
 from pydantic import PlainValidator, SerializeAsAny
 
-from hal.robot import Senses
-from hal.robot_settings import RobotSettings
 from hal.settings_by_kind import KindSettings, as_its_kind
 from kurt2rt.layers.decision import Decision
+from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 
 NONE = 0
@@ -16,10 +15,13 @@ NONE = 0
 
 
 class SymbolSource(Protocol):
-    """Says in each tick which symbol the robot is at."""
+    """Says in each tick which symbol is to be remembered."""
 
-    def perceive(self, senses: Senses, before: Decision, passed: JunctionEvent | None) -> int:
-        """The symbol that is new in this tick; NONE: none is. `before`: the decision of the tick before."""
+    def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:
+        """The symbol that is new in this tick; NONE: none is.
+
+        `before`: the decision of the tick before; `detector` has seen this tick, and `passed` is what it said.
+        """
         ...
 
     def restart(self) -> None:
@@ -33,11 +35,11 @@ class SymbolSettings(KindSettings):
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """How the symbols 1, 2, 3 ... are spoken of."""
+        """How the symbols 1, 2, 3 ... are spoken of; empty where they are numbers of RLAs."""
 
     @abstractmethod
-    def build(self, robot: RobotSettings) -> SymbolSource:
-        """The source, for this robot. Raises hal.settings.SettingsError."""
+    def build(self) -> SymbolSource:
+        """The source."""
 
 
 def _checked(given: object) -> SymbolSettings:
