@@ -153,7 +153,7 @@ async def examine(
 
     def say_what_is_wanted(now: str) -> None:
         nonlocal said
-        if getattr(task, "mid", None) is None and drive.course.behaviour != now:
+        if task.mid is None and drive.course.behaviour != now:
             said += 1
             runtime.inbox.put(Pursue(f"exam-{said}", "examiner", drive.course.behaviour))
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable
 
 from hal.settings import SettingsError
 from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.courses.course import Course, RouteCourse
 from kurt2rt.tasks.settings import TaskSettings
 
 
@@ -17,3 +18,13 @@ def require_course(stage: Stage, task: TaskSettings, worlds: Iterable[str]) -> N
             task.course.require(stage.plan_of(world), task.behaviours)
         except SettingsError as error:
             raise SettingsError(f"task {task.name}: {error}") from error
+
+
+def route_of(course: Course, task: TaskSettings) -> RouteCourse:
+    """The course, along whose route a mid level is taught. Raises hal.settings.SettingsError for another one."""
+    if isinstance(course, RouteCourse):
+        return course
+    raise SettingsError(
+        f"task {task.name}: course {task.course.kind} has no route, so nobody can say what the mid level is to want; "
+        "give the course route, or leave mid out"
+    )

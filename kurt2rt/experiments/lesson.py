@@ -11,17 +11,19 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
+from kurt2rt.experiments.fitting import route_of
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.load import Load, Minute
 from kurt2rt.experiments.primitives import primitives
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
+from kurt2rt.rla.rla import MID, Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import Command, DeleteRla, Resume, Reward
+from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Resume, Reward
 from kurt2rt.teaching.scripted_appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
+from kurt2rt.teaching.scripted_dispatcher import ScriptedDispatcher
 from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -79,6 +81,14 @@ class LessonResult:
     """Share of ticks in which the critic was trusted."""
     saved: Statistics = field(default_factory=Statistics, compare=False, repr=False)
     """All that was counted and valued, as it is saved."""
+    mid_rlas: tuple[Rla, ...] = ()
+    """Of the mid level; `rlas` are those of the basic one."""
+    mid_asks: int = 0
+    """Of the asks, those of the mid level."""
+    mid_corrections: int = 0
+    """Of the corrections, those of the mid level."""
+    missed_junctions: int = 0
+    """Those that the mid level did not notice."""
     alone: Statistics | None = field(default=None, compare=False, repr=False)
     """What phase 5 held RLAs to be worth at its end; None where the lesson ended in another phase."""
 
@@ -108,6 +118,11 @@ async def teach(
     runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics, saved=saved)
     session = f"{plan.purpose}-{seed}-after-{len(events)}"
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+    dispatcher = None
+    if task.mid is not None:
+        dispatcher = ScriptedDispatcher(
+            task.behaviours, task.teaching.teacher, period_s=period_s, seed=seed, session=session
+        )
     critics = runtime.school.agreement
     chance = random.Random(f"course of {session}")
     rescue_s = task.teaching.rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s
@@ -127,12 +142,14 @@ async def teach(
     agreement: list[float | None] = []
     asking = False
     rescues = unknown_rescues = alarms = latched_ticks = deletions = refused = unknown = trusted = praise = blame = 0
+    mid_asks = mid_corrections = 0
 
     def say(command: Command, tick: int) -> None:
-        nonlocal deletions, praise, blame
+        nonlocal deletions, praise, blame, mid_corrections
         runtime.inbox.put(command)
         load.note(tick, command)
         deletions += isinstance(command, DeleteRla)
+        mid_corrections += isinstance(command, Correct) and command.level == MID
         if isinstance(command, Reward):
             praise += command.value > 0
             blame += command.value < 0
@@ -143,21 +160,33 @@ async def teach(
         latched_ticks = 0
         alarms += 1
 
+    def enter(phase: Phase) -> None:
+        runtime.inbox.put(teacher.enter(phase))
+        if dispatcher is not None:
+            dispatcher.phase = phase
+            if not plan.corrects_basic:
+                teacher.only_answer()
+
     def after_tick(record: TickRecord) -> None:
-        nonlocal asking, rescues, unknown_rescues, latched_ticks, refused, unknown, trusted
+        nonlocal asking, mid_asks, rescues, unknown_rescues, latched_ticks, refused, unknown, trusted
         refused += require_carried_out(record, task, may_be_late=teacher.is_signal)
         if record.tick in begins:
-            runtime.inbox.put(teacher.enter(begins[record.tick]))
+            enter(begins[record.tick])
         latched_ticks = latched_ticks + 1 if record.grant.latched else 0
         for command in teacher.watch(record):
             say(command, record.tick)
             if isinstance(command, Resume) and record.grant.latched:  # what he had shown ended in an alarm
                 lift_alarm(record.tick)
+        if dispatcher is not None:
+            said = dispatcher.watch(record, route_of(drive.course, task).ahead)
+            if said is not None:
+                say(said, record.tick)
         if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
             runtime.inbox.put(teacher.go())
             lift_alarm(record.tick)
         if record.decision.asking and not asking:
             ask_positions.append(arena.position)
+            mid_asks += record.decision.asks_at == MID
         asking = record.decision.asking
         unknown += asking
         trusted += critics is not None and critics.trusted
@@ -178,7 +207,7 @@ async def teach(
             for command in teacher.show(record.tick, shown, plan.shown_share):
                 runtime.inbox.put(command)
                 load.note_hands(record.tick, "shown")
-        if drive.course.behaviour != record.behaviour:
+        if dispatcher is None and drive.course.behaviour != record.behaviour:
             runtime.inbox.put(teacher.pursue(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:
             trail.append(arena.position)
@@ -188,10 +217,10 @@ async def teach(
         if record.tick % (_AGREEMENT_EVERY_S * ticks_per_second) == 0:
             agreement.append(None if critics is None else critics.share)
 
-    if drive.course.behaviour != runtime.wanted.behaviour:
+    if dispatcher is None and drive.course.behaviour != runtime.wanted.behaviour:
         runtime.inbox.put(teacher.pursue(drive.course.behaviour))
     if plan.phases[0][0] is not teacher.phase:
-        runtime.inbox.put(teacher.enter(plan.phases[0][0]))
+        enter(plan.phases[0][0])
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
     return LessonResult(
@@ -224,6 +253,10 @@ async def teach(
         agreement=tuple(agreement),
         share_trusted=trusted / max(ticks, 1),
         saved=runtime.to_save(),
+        mid_rlas=system.rlas_at(MID),
+        mid_asks=mid_asks,
+        mid_corrections=mid_corrections,
+        missed_junctions=0 if dispatcher is None else dispatcher.missed,
         alone=runtime.reinforcement.worths_alone() if teacher.phase is Phase.AUTONOMOUS else None,
     )
 

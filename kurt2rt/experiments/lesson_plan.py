@@ -52,6 +52,9 @@ class LessonPlan:
     rescues_who_asks: bool = False
     """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
 
+    corrects_basic: bool = True
+    """Where there is a mid level: whether the basic level is corrected, too. It is answered in any case."""
+
     @property
     def duration_s(self) -> float:
         """Robot time of all of it."""
@@ -59,6 +62,7 @@ class LessonPlan:
 
 
 def plan_of(task: TaskSettings) -> LessonPlan:
-    """The lesson that the task describes: phases 1 and 2."""
+    """The lesson that the task describes: phases 1 and 2, or that one of them which it has time for."""
     teaching = task.teaching
-    return LessonPlan(((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s)))
+    phases = ((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s))
+    return LessonPlan(tuple(each for each in phases if each[1]) or phases[:1])

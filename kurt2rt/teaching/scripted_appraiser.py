@@ -137,6 +137,10 @@ class ScriptedAppraiser:
             self._answering.phase = Phase.SUPERVISED
         return command
 
+    def only_answer(self) -> None:
+        """Until the next phase begins nothing is corrected."""
+        self._answering.phase = Phase.SUPERVISED
+
     def pursue(self, behaviour: str) -> Command:
         """Another taught behaviour is wanted: what to tell the robot."""
         return self._answering.pursue(behaviour)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
@@ -20,6 +20,7 @@ class Picture(NamedTuple):
     """What a teacher sees of the robot."""
 
     asking: bool
+    """Whether its basic level does."""
     driving: bool
     action: str | None
     infrared_counts: tuple[int, ...]
@@ -43,7 +44,7 @@ def picture_of(record: TickRecord) -> Picture:
     if match is not None:
         nearest = share_of_radius(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
     return Picture(
-        decision.asking,
+        decision.asking and decision.asks_at == BASIC,
         decision.driving,
         decision.action,
         record.senses.infrared_counts,

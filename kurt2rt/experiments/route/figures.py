@@ -1,0 +1,95 @@
+"""Pictures of routes, and of the drives along them."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.route.outcome import LAYERS, Place, RouteOutcome
+from kurt2rt.experiments.shown.style import COLLIDED, START, legend_below, save
+from kurt2rt.experiments.trails import ASKED, columns, draw_trail
+
+_ROUTE = "#e8a33d"
+_MARKS = {"symbols": "v", "mid": "s", "basic": "o"}
+_COLUMNS = 4
+_BESIDE_M = 0.13
+"""So far to the right of the middle of a street its way is drawn, so that both ways through it are seen."""
+
+
+def draw_route(stage: Stage, world: str, outcome: RouteOutcome, path: Path) -> None:
+    """One robot: its route with the number of each decision, and its drive."""
+    figure = Figure(figsize=(7.2, 7.8), layout="constrained")
+    axes = figure.subplots()
+    _draw(axes, stage, world, outcome)
+    axes.set_title(_told(outcome), fontsize="medium")
+    legend_below(axes, columns=3)
+    save(figure, path)
+
+
+def draw_routes(stage: Stage, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
+    """A panel per robot."""
+    wide = min(_COLUMNS, len(outcomes))
+    rows = math.ceil(len(outcomes) / wide)
+    figure = Figure(figsize=(4.0 * wide, 4.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08))
+    panels = figure.subplots(rows, wide, squeeze=False).flatten().tolist()
+    for axes, outcome in zip(panels, outcomes, strict=False):
+        _draw(axes, stage, world, outcome)
+        axes.set_title(_told(outcome), fontsize="small")
+    for axes in panels[len(outcomes) :]:
+        axes.set_axis_off()
+    save(figure, path)
+
+
+def _draw(axes: Axes, stage: Stage, world: str, outcome: RouteOutcome) -> None:
+    stage.draw(axes, world)
+    route = [*outcome.route, outcome.route[0]]
+    label: str | None = f"the route, {len(outcome.route)} decisions"
+    for number, (here, there) in enumerate(pairwise(route), start=1):
+        (from_x, from_y), (to_x, to_y) = _beside(here, there)
+        arrow = {"arrowstyle": "-|>", "color": _ROUTE, "linewidth": 2.4, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", (to_x, to_y), (from_x, from_y), arrowprops=arrow, zorder=2)
+        place = (from_x + 0.14 * (to_x - from_x), from_y + 0.14 * (to_y - from_y))
+        axes.annotate(str(number), place, fontsize="x-small", ha="center", va="center", zorder=7, bbox=_BOX)
+    axes.plot([], [], color=_ROUTE, linewidth=2.4, label=label)
+    drive = outcome.drive
+    draw_trail(axes, drive.trail, f"the drive, {drive.duration_s:.0f} s", carried_m=0.5, width=0.8)
+    axes.plot(*columns([outcome.start]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
+    for layer in LAYERS:
+        wrong = [(each.x_m, each.y_m) for each in drive.wrong if each.layer == layer]
+        if wrong:
+            label = f"wrong: {layer} ({len(wrong)})"
+            axes.plot(*columns(wrong), _MARKS[layer], color=ASKED, markersize=7, zorder=5, label=label)
+    if drive.collided_at:
+        label = f"collided ({len(drive.collided_at)})"
+        axes.plot(*columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
+
+
+_BOX = {"boxstyle": "circle,pad=0.12", "facecolor": "white", "edgecolor": _ROUTE, "linewidth": 0.8}
+
+
+def _beside(here: Place, there: Place) -> tuple[Place, Place]:
+    """The way from junction to junction, to the right of the middle of the street, within its corners."""
+    (from_x, from_y), (to_x, to_y) = here, there
+    length_m = math.dist(here, there)
+    along_x, along_y = (to_x - from_x) / length_m, (to_y - from_y) / length_m
+    right_x, right_y = along_y * _BESIDE_M, -along_x * _BESIDE_M
+    cut_m = 2 * _BESIDE_M
+    return (
+        (from_x + right_x + cut_m * along_x, from_y + right_y + cut_m * along_y),
+        (to_x + right_x - cut_m * along_x, to_y + right_y - cut_m * along_y),
+    )
+
+
+def _told(outcome: RouteOutcome) -> str:
+    drive = outcome.drive
+    verdict = "without an error" if drive.without_error else "with errors"
+    collisions = f", {drive.collisions} collision{'' if drive.collisions == 1 else 's'}" if drive.collisions else ""
+    return (
+        f"robot {outcome.seed}: {drive.right} of {drive.junctions} decisions right{collisions}\n"
+        f"{drive.duration_s:.0f} s {verdict}, {outcome.mid_rlas} mid-level RLAs"
+    )

@@ -1,0 +1,148 @@
+"""One robot's work in two pieces: the streets, and then a route through them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.curriculum import Report, run_lesson
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.pool import Tell
+from kurt2rt.experiments.robot_time import RobotTime
+from kurt2rt.experiments.route.outcome import BasicOutcome, RouteOutcome
+from kurt2rt.experiments.route.teaching import copy_knowledge, route_of_task, teach_route
+from kurt2rt.experiments.route.variants import Variant
+from kurt2rt.tasks.settings import TaskSettings
+
+_BASIC = "basic"
+
+
+@dataclass(frozen=True, slots=True)
+class BasicJob:
+    """The task that teaches the streets, with its own lesson."""
+
+    stage: StudyStage
+    robot: RobotSettings
+    task: TaskSettings
+    seed: int
+    made_of: MadeOf
+    results: Results
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name}, seed {self.seed}"
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        return f"results/{_BASIC}/{self.task.name}-{self.seed}.json"
+
+    @property
+    def knowledge(self) -> Path:
+        """Where what it was taught is kept."""
+        return self.results.folder / self._kept
+
+    @property
+    def outcome(self) -> type[BasicOutcome]:
+        """Schema of its result."""
+        return BasicOutcome
+
+    @property
+    def robot_time_s(self) -> float:
+        """The lesson."""
+        return self.task.teaching.duration_s
+
+    def run(self, tell: Tell) -> None:
+        """Teach, keep the result and the knowledge."""
+        anyio.run(self._run, RobotTime(tell).report)
+
+    async def _run(self, report: Report) -> None:
+        with self.results.scratch() as folder:
+            knowledge = folder / "knowledge"
+            lesson, _ = await run_lesson(self.stage, self.robot, self.task, knowledge, seed=self.seed, report=report)
+            self.results.keep(knowledge, self._kept)
+        outcome = BasicOutcome(
+            made_of=self.made_of,
+            seed=self.seed,
+            teaching_s=lesson.teaching_s,
+            rlas=len(lesson.rlas),
+            knowledge_hash=lesson.knowledge_hash,
+        )
+        self.results.write(self, outcome)
+
+    @property
+    def _kept(self) -> str:
+        return f"knowledge/{_BASIC}/{self.task.name}-{self.seed}.knowledge"
+
+
+@dataclass(frozen=True, slots=True)
+class RouteJob:
+    """One route, taught in one way to one robot, and driven by it."""
+
+    stage: StudyStage
+    robot: RobotSettings
+    task: TaskSettings
+    """With the route of this robot."""
+    variant: Variant
+    seed: int
+    basic: Path
+    """Knowledge of the streets; it is copied."""
+    made_of: MadeOf
+    results: Results
+
+    @property
+    def decisions(self) -> int:
+        """Of its route."""
+        return route_of_task(self.task).decisions
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name} of {self.decisions}, {self.variant.name}, seed {self.seed}"
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        return f"results/{self._stem}.json"
+
+    @property
+    def knowledge(self) -> Path:
+        """Where what it was taught is kept."""
+        return self.results.folder / self._kept
+
+    @property
+    def outcome(self) -> type[RouteOutcome]:
+        """Schema of its result."""
+        return RouteOutcome
+
+    @property
+    def robot_time_s(self) -> float:
+        """Lesson and exam."""
+        return self.task.teaching.duration_s + self.task.exam.duration_s
+
+    def run(self, tell: Tell) -> None:
+        """Teach, examine, keep the result and the knowledge."""
+        anyio.run(self._run, tell)
+
+    async def _run(self, tell: Tell) -> None:
+        report = RobotTime(tell).report
+        with self.results.scratch() as folder:
+            knowledge = folder / "knowledge"
+            copy_knowledge(self.basic, knowledge)
+            taught = await teach_route(
+                self.stage, self.robot, self.task, self.variant, knowledge, seed=self.seed, report=report
+            )
+            self.results.keep(knowledge, self._kept)
+        self.results.write(self, taught.outcome(self.made_of))
+
+    @property
+    def _stem(self) -> str:
+        return f"{self.variant.name}/{self.task.name}-{self.decisions}-{self.seed}"
+
+    @property
+    def _kept(self) -> str:
+        return f"knowledge/{self._stem}.knowledge"

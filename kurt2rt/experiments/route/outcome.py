@@ -1,0 +1,81 @@
+"""What a job comes to, as it is kept in its file."""
+
+from typing import Literal
+
+from hal.settings import Settings
+from kurt2rt.experiments.kept.made_of import MadeOf
+
+Place = tuple[float, float]
+"""x and y in m, to the millimetre."""
+
+Layer = Literal["symbols", "mid", "basic"]
+"""Who failed: what the robot noticed of junctions, its mid level by what it had noticed, or its basic level, which was
+told what is right and did something else, or was told something else after a noise of the first."""
+
+LAYERS: tuple[Layer, ...] = ("symbols", "mid", "basic")
+
+
+class Wrong(Settings):
+    """One junction at which the robot did not do what is right."""
+
+    at_s: float
+    leg: int
+    """Which junction of the route, from 0."""
+    layer: Layer
+    x_m: float
+    y_m: float
+
+
+class RouteDrive(Settings):
+    """One exam."""
+
+    duration_s: float
+    junctions: int
+    right: int
+    wrong: tuple[Wrong, ...]
+    collisions: int
+    stuck: bool
+    alarm: str
+    share_unknown: float
+    way_m: float
+    trail: tuple[Place, ...]
+    collided_at: tuple[Place, ...]
+
+    @property
+    def without_error(self) -> bool:
+        """Whether every decision was right, nothing was touched, and it drove to the end."""
+        return not self.wrong and not self.collisions and not self.stuck and not self.alarm
+
+
+class RouteOutcome(Settings):
+    """One robot, taught one route and examined on it."""
+
+    made_of: MadeOf | None
+    """None: it was made for once, and is not kept."""
+    seed: int
+    route: tuple[Place, ...]
+    """Its junctions, from the first decision on."""
+    start: Place
+    teaching_s: float
+    mid_rlas: int
+    basic_rlas: int
+    mid_asks: int
+    mid_corrections: int
+    missed_junctions: int
+    """In the lesson; the teacher said what was wanted."""
+    asks: int
+    corrections: int
+    """At the basic level, these two."""
+    rescues: int
+    knowledge_hash: str
+    drive: RouteDrive
+
+
+class BasicOutcome(Settings):
+    """One robot that was taught the streets, and knows no route yet."""
+
+    made_of: MadeOf
+    seed: int
+    teaching_s: float
+    rlas: int
+    knowledge_hash: str

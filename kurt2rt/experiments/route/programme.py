@@ -1,0 +1,122 @@
+"""What is to be done: the streets once for each robot, then every length and way of teaching as a job."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.error import StudyError
+from kurt2rt.experiments.fitting import require_course
+from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.route.job import BasicJob, RouteJob
+from kurt2rt.experiments.route.teaching import route_of_task, with_route
+from kurt2rt.experiments.route.variants import Variant
+from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.tasks.settings import TaskSettings
+
+OWN = {f"kurt2rt/experiments/route/{name}.py" for name in ("job", "outcome", "teaching", "variants", "watching")}
+"""Modules that say what is done to robots here, and what of it is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """Routes of one length, taught in one way: a job per seed."""
+
+    decisions: int
+    variant: Variant
+    jobs: tuple[RouteJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything, in the order in which it is shown."""
+
+    task: TaskSettings
+    """Without the route, which is each robot's own."""
+    basic: TaskSettings
+    seeds: tuple[int, ...]
+    source: str
+    """Hash of the program's source."""
+    basic_jobs: tuple[BasicJob, ...]
+    """Empty where the streets were taught before."""
+    experiments: tuple[Experiment, ...]
+
+    @property
+    def waves(self) -> tuple[tuple[BasicJob | RouteJob, ...], ...]:
+        """Jobs that need none but those of the waves before."""
+        return self.basic_jobs, tuple(job for each in self.experiments for job in each.jobs)
+
+    @property
+    def jobs(self) -> list[BasicJob | RouteJob]:
+        """All of them."""
+        return [job for wave in self.waves for job in wave]
+
+
+def plan(
+    task: TaskSettings,
+    basic: TaskSettings,
+    seeds: Sequence[int],
+    decisions: Sequence[int],
+    variants: Sequence[Variant],
+    stage: StudyStage,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    basic_folder: Path | None = None,
+    source_of: Callable[[], str] = lambda: source_hash(OWN),
+) -> Programme:
+    """Look at tasks, worlds and routes, and make the jobs.
+
+    `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it, as `kurt2rt lesson`
+    leaves them. `source_of`: tells the hash of the program's source.
+    Raises hal.settings.SettingsError, StudyError, KnowledgeError.
+    """
+    worlds = (task.teaching.world, *task.exam.worlds[:1])
+    stage.require_worlds(*worlds, basic.teaching.world)
+    routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
+    for each in routes.values():
+        require_course(stage, each, worlds)
+    source = source_of()
+    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
+    made_basic = fingerprints.of(basic, (basic.teaching.world,))
+    basic_jobs = [BasicJob(stage, robot, basic, seed, made_basic, results) for seed in seeds]
+    files = {job.seed: job.knowledge for job in basic_jobs}
+    lessons = dict.fromkeys(seeds, made_basic.model_dump_json())
+    if basic_folder is not None:
+        files = {seed: basic_file(basic_folder, basic, seed) for seed in seeds}
+        lessons = {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()}
+
+    def experiment(count: int, variant: Variant) -> Experiment:
+        jobs = []
+        for seed in seeds:
+            own = routes[seed, count]
+            made = fingerprints.of(variant.task(own), worlds, lessons[seed], repr(variant))
+            jobs.append(RouteJob(stage, robot, own, variant, seed, files[seed], made, results))
+        return Experiment(count, variant, tuple(jobs))
+
+    return Programme(
+        task,
+        basic,
+        tuple(seeds),
+        source,
+        tuple(basic_jobs) if basic_folder is None else (),
+        tuple(experiment(count, variant) for variant in variants for count in decisions),
+    )
+
+
+def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
+    """Knowledge of the streets of one robot: `place` itself, or in that folder. Raises StudyError."""
+    file = place / f"{basic.name}-{seed}.knowledge" if place.is_dir() else place
+    if file.is_file():
+        return file
+    raise StudyError(
+        f"{file}: there is no such file; teach the streets with kurt2rt lesson --task {basic.name} --seed {seed}, or "
+        "leave --basic out"
+    )
+
+
+def decisions_of(task: TaskSettings, asked: Sequence[int]) -> tuple[int, ...]:
+    """Lengths of routes: those asked for, each once, or the task's own."""
+    return tuple(dict.fromkeys(asked)) or (route_of_task(task).decisions,)

@@ -1,0 +1,147 @@
+"""The tables of the results."""
+
+from collections.abc import Iterator, Sequence
+
+from kurt2rt.experiments.report import wilson_interval
+from kurt2rt.experiments.route.outcome import RouteOutcome
+from kurt2rt.experiments.route.study import Study, Summary
+from kurt2rt.experiments.route.verdict import verdicts
+from kurt2rt.experiments.shown.judging import reasons_of_robots
+from kurt2rt.experiments.shown.sheet import Sheet
+
+_LAYERS = (
+    "Which layer failed: symbols: what the robot had noticed of junctions was not what it had done there; mid: it had "
+    "noticed everything, and wanted something else or asked; basic: it was told what is right, and did not do it."
+)
+
+
+def sheets(study: Study) -> Iterator[Sheet]:
+    """All tables."""
+    if any(list(_verdicts(study))):
+        yield asked_sheet(study)
+    yield taught_sheet(study.summaries)
+    yield exam_sheet(study.summaries)
+    for summary in study.summaries:
+        if len(study.summaries) == 1 or summary.robots <= 2:
+            yield robots_sheet(summary)
+
+
+def asked_sheet(study: Study) -> Sheet:
+    """Each number that was asked for beside what came."""
+    reasons = list(reasons_of_robots(study.programme.seeds))
+    found = list(_verdicts(study))
+    met = sum(row[-1] == "met" for row in found)
+    rows = tuple((*row[:-1], "not judged") for row in found) if reasons else tuple(found)
+    return Sheet(
+        "What was asked",
+        ("route", "what", "asked", "came", "verdict"),
+        rows,
+        words=5,
+        note=" ".join(["Not judged.", *reasons]) if reasons else f"{met} of {len(found)} numbers asked for are met.",
+    )
+
+
+def taught_sheet(summaries: Sequence[Summary]) -> Sheet:
+    """What the lessons came to."""
+    rows = []
+    for each in summaries:
+        low, median, high = each.quartiles("mid_rlas")
+        numbers = ("mid_asks", "mid_corrections", "missed_junctions", "basic_rlas", "asks", "corrections", "rescues")
+        rows.append(
+            (
+                *_heading(each),
+                f"{median:g}",
+                f"{low:g} to {high:g}",
+                f"{max(outcome.teaching_s for outcome in each.outcomes):g}",
+                *(f"{each.quartiles(name)[1]:g}" for name in numbers),
+            )
+        )
+    return Sheet(
+        "What was taught",
+        (
+            *("taught how", "route", "mid-level RLAs", "quartiles", "teaching, s", "asks", "corrections", "missed"),
+            *("basic RLAs", "asks", "corrections", "rescues"),
+        ),
+        tuple(rows),
+        words=2,
+        note=f"Medians of {summaries[0].robots} robots. Asks and corrections first of the mid level, then of the basic "
+        "one. Missed: junctions that the mid level did not notice, where the teacher commanded. Robot time, without "
+        "the streets, which were taught before.",
+    )
+
+
+def exam_sheet(summaries: Sequence[Summary]) -> Sheet:
+    """Drives without a teacher."""
+    rows = []
+    for each in summaries:
+        low, high = wilson_interval(each.without_error, each.robots)
+        right = each.right
+        rows.append(
+            (
+                *_heading(each),
+                f"{each.without_error} of {each.robots}",
+                f"{low:.0%} to {high:.0%}",
+                f"{right.value:.2%} of {each.junctions}",
+                f"{right.low:.1%} to {right.high:.1%}",
+                *(str(number) for number in each.failures.values()),
+                str(sum(outcome.drive.collisions for outcome in each.outcomes)),
+                str(sum(outcome.drive.stuck or bool(outcome.drive.alarm) for outcome in each.outcomes)),
+            )
+        )
+    times_s = sorted({job.task.exam.duration_s for each in summaries for job in each.experiment.jobs})
+    return Sheet(
+        "Drives without a teacher",
+        (
+            *("taught how", "route", "without an error", "95 %", "decisions right", "95 %"),
+            *("symbols", "mid", "basic", "collisions", "stuck"),
+        ),
+        tuple(rows),
+        words=2,
+        note=f"{' or '.join(f'{time_s:g}' for time_s in times_s)} s each. Without an error: every decision right, no "
+        "collision, not stuck, not stopped by the guard. A robot that left its route is set down on it again, and "
+        f"goes on; one that is stuck ends there. {_LAYERS}",
+    )
+
+
+def robots_sheet(summary: Summary) -> Sheet:
+    """Each robot by itself."""
+    rows = tuple((str(each.seed), *_of_robot(each)) for each in summary.outcomes)
+    return Sheet(
+        f"Each robot: {', '.join(_heading(summary))}",
+        ("robot", "mid-level RLAs", "asks", "corrections", "right", "collisions", "drive, s", "errors"),
+        rows,
+        words=1,
+    )
+
+
+def errors_of(outcome: RouteOutcome) -> str:
+    """What went wrong in a drive, and when."""
+    drive = outcome.drive
+    said = [f"{each.layer} at {each.at_s:.0f} s (decision {each.leg + 1})" for each in drive.wrong]
+    said += [f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"] if drive.collisions else []
+    said += ["stuck"] if drive.stuck else []
+    said += [drive.alarm] if drive.alarm else []
+    return ", ".join(said)
+
+
+def _of_robot(outcome: RouteOutcome) -> tuple[str, ...]:
+    drive = outcome.drive
+    return (
+        str(outcome.mid_rlas),
+        str(outcome.mid_asks),
+        str(outcome.mid_corrections),
+        f"{drive.right} of {drive.junctions}",
+        str(drive.collisions),
+        f"{drive.duration_s:.0f}",
+        errors_of(outcome) or "none",
+    )
+
+
+def _verdicts(study: Study) -> Iterator[tuple[str, ...]]:
+    for each in study.summaries:
+        for verdict in verdicts(each, study.programme.task.paper):
+            yield _heading(each)[1], verdict.what, verdict.asked, verdict.came, verdict.word
+
+
+def _heading(summary: Summary) -> tuple[str, str]:
+    return summary.experiment.variant.title, f"{summary.experiment.decisions} decisions"

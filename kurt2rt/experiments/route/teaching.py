@@ -1,0 +1,134 @@
+"""Teaches a route to a robot that knows the streets, and examines it there."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.experiments.arena import Position, Stage
+from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.courses.route import RouteSettings
+from kurt2rt.experiments.courses.routes import Route
+from kurt2rt.experiments.curriculum import Report, run_lesson
+from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.experiments.route.outcome import Place, RouteDrive, RouteOutcome, Wrong
+from kurt2rt.experiments.route.variants import Variant
+from kurt2rt.experiments.route.watching import Watching
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.tasks.settings import TaskSettings
+
+_PLACE_STRIDE = 2
+"""Points of a drive's trail from one that is kept to the next: 0.2 s."""
+
+
+@dataclass(frozen=True, slots=True)
+class TaughtRoute:
+    """A lesson and its exam."""
+
+    route: Route
+    lesson: LessonResult
+    exam: ExamResult
+    wrong: tuple[Wrong, ...]
+
+    def outcome(self, made_of: MadeOf | None = None) -> RouteOutcome:
+        """What is kept of it."""
+        lesson, exam, legs = self.lesson, self.exam, self.route.legs
+        return RouteOutcome(
+            made_of=made_of,
+            seed=lesson.seed,
+            route=tuple((leg.junction.x_m, leg.junction.y_m) for leg in legs),
+            start=(legs[0].middle.x_m, legs[0].middle.y_m),
+            teaching_s=lesson.teaching_s,
+            mid_rlas=len(lesson.mid_rlas),
+            basic_rlas=len(lesson.rlas),
+            mid_asks=lesson.mid_asks,
+            mid_corrections=lesson.mid_corrections,
+            missed_junctions=lesson.missed_junctions,
+            asks=lesson.asks - lesson.mid_asks,
+            corrections=lesson.corrections - lesson.mid_corrections,
+            rescues=lesson.rescues,
+            knowledge_hash=lesson.knowledge_hash,
+            drive=RouteDrive(
+                duration_s=exam.duration_s,
+                junctions=round(exam.findings[JUNCTIONS]),
+                right=round(exam.findings[RIGHT]),
+                wrong=self.wrong,
+                collisions=exam.collisions,
+                stuck=exam.stuck,
+                alarm=exam.alarm,
+                share_unknown=exam.share_unknown,
+                way_m=exam.way_m,
+                trail=_places(exam.trail[::_PLACE_STRIDE]),
+                collided_at=_places(exam.collision_positions),
+            ),
+        )
+
+
+async def teach_route(
+    stage: Stage,
+    settings: RobotSettings,
+    task: TaskSettings,
+    variant: Variant,
+    knowledge: Path,
+    *,
+    seed: int,
+    report: Report,
+) -> TaughtRoute:
+    """Teach the task's route into a file that holds the streets, and examine it.
+
+    Raises KnowledgeError, SettingsError, LessonLostError.
+    """
+    task = variant.task(task)
+    world = task.exam.worlds[0]
+    lesson, events = await run_lesson(
+        stage, settings, task, knowledge, seed=seed, report=report, plan=variant.plan(task)
+    )
+    watching = Watching()
+    arena = stage.open(world, seed, "exam of a route")
+    try:
+        exam = await examine(
+            arena,
+            settings,
+            task,
+            world,
+            events,
+            seed=seed,
+            on_progress=lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
+            on_course=watching.look,
+        )
+    finally:
+        arena.close()
+    watching.end()
+    route = route_of_task(task).route_in(stage.plan_of(world), task.behaviours)
+    return TaughtRoute(route, lesson, exam, tuple(watching.wrong))
+
+
+def route_of_task(task: TaskSettings) -> RouteSettings:
+    """Settings of the route that a task teaches. Raises hal.settings.SettingsError for one that teaches none."""
+    if isinstance(task.course, RouteSettings):
+        return task.course
+    raise SettingsError(f"task {task.name}: its course is {task.course.kind}, and there is no route to teach")
+
+
+def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
+    """The task with the route of this robot; `decisions`: None: as many as the task says.
+
+    Raises hal.settings.SettingsError for a task that teaches no route.
+    """
+    update: dict[str, object] = {"seed": seed}
+    if decisions is not None:
+        update["decisions"] = decisions
+    return task.model_copy(update={"course": route_of_task(task).model_copy(update=update)})
+
+
+def copy_knowledge(source: Path, path: Path) -> None:
+    """A copy of a knowledge file, also while somebody writes it. Raises KnowledgeError."""
+    with Journal.read_only(source) as journal:
+        path.write_bytes(journal.image())
+
+
+def _places(positions: Iterable[Position]) -> tuple[Place, ...]:
+    return tuple((round(each.x_m, 3), round(each.y_m, 3)) for each in positions)
