@@ -34,7 +34,7 @@ class PlaceSettings(MidSituationSettings):
     heading_m: Annotated[float, Field(ge=0, le=100)]
     """Two places at one point with opposite headings count as twice so far apart."""
     blind_m: Annotated[float, Field(ge=0, le=100)] = 0.0
-    """A junction noticed after less way than this since the last one is none: a dent in a wall, a gap."""
+    """A junction gone straight through after less way than this since the last one is none, but a gap in a wall."""
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -91,11 +91,11 @@ class Place:
         told, self._told = self._told, False
         self._reckon(senses)
         self.passed = passed = self._detector.perceive(senses)
-        if passed is None or self._way_m < self._blind_m:
-            self.passed = None
+        if passed is not None and passed.quarters == 0 and self._way_m < self._blind_m:
+            self.passed = passed = None
+        if passed is None or self.lost:
             return told
-        if not self.lost:
-            self._arrive(passed)
+        self._arrive(passed)
         return True
 
     def restart(self) -> None:
