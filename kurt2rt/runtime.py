@@ -9,6 +9,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.expectations.expecting import Expecting
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.level import Level
@@ -54,16 +55,28 @@ class Runtime:
     self_teaching: SelfTeaching
     inbox: TeacherInbox
     statistics: StatisticsCounter
+    expecting: Expecting
     ledger: Ledger
     tick: Tick
     scheduler: Scheduler
+
+    def set_down(self) -> None:
+        """Somebody has set the robot down elsewhere, between two ticks: how it came there says nothing now."""
+        self.tick.set_down()
 
     def to_save(self) -> Statistics:
         """What was counted of the RLAs that live, and what they are worth, as it is now."""
         counted, system = self.statistics, self.level.system
         counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
-        worths = self.self_teaching.with_best(self.reinforcement.to_save())
-        return replace(worths, uses=dict(counted.uses), transitions=dict(counted.transitions))
+        led_elsewhere = self.expecting.take_led_elsewhere()
+        if led_elsewhere:
+            counted.drop_follow_ups(led_elsewhere)
+        return replace(
+            self.self_teaching.with_best(self.reinforcement.to_save()),
+            uses=dict(counted.uses),
+            transitions=dict(counted.transitions),
+            expectations=self.expecting.to_save(),
+        )
 
 
 def build_runtime(
@@ -83,7 +96,7 @@ def build_runtime(
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
-    `statistics` goes on from what was counted before, `saved` from what the RLAs were worth.
+    `statistics` goes on from what was counted before, `saved` from what the RLAs were worth and what was expected.
     `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
     own policy, for instance, to see what it would reach. A mid level commands that one, too.
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
@@ -134,6 +147,7 @@ def build_runtime(
     )
     inbox = TeacherInbox()
     statistics = statistics or StatisticsCounter()
+    expecting = Expecting(system, mid, statistics.transitions, None if saved is None else saved.expectations)
     ledger = Ledger()
     tick = Tick(
         robot,
@@ -147,6 +161,7 @@ def build_runtime(
         now=clock.now_s,
         stale_infrared_s=settings.guard.stale_infrared_s,
         circumstances=CircumstancesPerception(critic, settings),
+        expecting=expecting,
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
     return Runtime(
@@ -161,6 +176,7 @@ def build_runtime(
         self_teaching,
         inbox,
         statistics,
+        expecting,
         ledger,
         tick,
         scheduler,

@@ -6,6 +6,8 @@ from typing import NamedTuple, Protocol
 from behaviors.judges.judge import Circumstances
 from hal.robot import Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
+from kurt2rt.expectations.expecting import Expecting
+from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_uses import MidUses
@@ -51,6 +53,8 @@ class TickRecord(NamedTuple):
     """What the critic looks at; None where the robot sees nothing, or has no critic."""
     opinion: Opinion | None = None
     """What the critic thinks of it; None where it was taught nothing, or there is none."""
+    surprise: Surprise | None = None
+    """What came where an RLA ended in this tick, beside what was expected; None while none ends."""
 
     @property
     def mid(self) -> MidDecision | None:
@@ -79,10 +83,11 @@ class Tick:
         now: Callable[[], float],
         stale_infrared_s: float,
         circumstances: CircumstancesPerception | None = None,
+        expecting: Expecting | None = None,
     ) -> None:
         """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
 
-        `circumstances`: what the school's critic looks at.
+        `circumstances`: what the school's critic looks at. `expecting`: None: nothing is expected.
         """
         self._robot = robot
         self._perception = perception
@@ -93,6 +98,7 @@ class Tick:
         self._keeper = keeper
         self._statistics = statistics
         self._mid_uses = MidUses(statistics)
+        self._expecting = expecting
         self._ledger = ledger
         self._now = now
         self._stale_infrared_s = stale_infrared_s
@@ -143,6 +149,9 @@ class Tick:
         self._driving = decision.driving and not grant.latched
         if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)
+        surprise = None
+        if self._expecting is not None:
+            surprise = self._expecting.see(tick, decision, situation, behaviour, driving=self._driving)
         self._statistics.count(decision.rla_id if self._driving else None)
         self._mid_uses.count(decision, driving=self._driving)
         # A robot that stands blames nobody, also where it is the guard that has it stand.
@@ -157,9 +166,11 @@ class Tick:
 
         for event in events:
             self._keeper.submit(event)
+            if self._expecting is not None:
+                self._expecting.hear(event)
         mark(Stage.PUBLISH)
         return TickRecord(
-            tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion
+            tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion, surprise
         )
 
     def set_down(self) -> None:
@@ -167,6 +178,8 @@ class Tick:
         if self._school.mid is not None:
             self._school.mid.mid.restart()
         self._mid_uses.restart()
+        if self._expecting is not None:
+            self._expecting.restart()
 
     def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""

@@ -30,11 +30,15 @@ class BasicFollowing:
             return None
         return self.expectations.learn(End(before, rla_id, situation, tick - since_tick))
 
+    def restart(self) -> None:
+        """What comes now follows from nothing: the robot was set down elsewhere."""
+        self._driver = None
+
     def hear(self, event: TeachingEvent) -> int | None:
         """As `Expectations.hear`."""
         changed = self.expectations.hear(event)
         if changed is not None and changed == self._driver:
-            self._driver = None
+            self.restart()
         return changed
 
 

@@ -1,7 +1,7 @@
 """How often each RLA was used and what followed it: the counts behind the RLA network (paper, III.B)."""
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Container
 
 from kurt2rt.rla.rla import BASIC
 
@@ -46,3 +46,8 @@ class StatisticsCounter:
         for level, previous in self._previous.items():
             if previous in dead:
                 self._previous[level] = None
+
+    def drop_follow_ups(self, rla_ids: Container[int]) -> None:
+        """Forget what followed these RLAs: with another action they lead elsewhere."""
+        for edge in [edge for edge in self.transitions if edge[0] in rla_ids]:
+            del self.transitions[edge]
