@@ -5,10 +5,11 @@ from dataclasses import dataclass
 
 from kurt2rt.channel.channel import Channel
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.question import Question, ask
+from kurt2rt.teaching.question import Question, WayQuestion, ask, ask_the_way
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.quiet_gc import sweep
 
@@ -34,7 +35,7 @@ class Screen:
 
     status: Callable[[Status], None]
     """Once per status period."""
-    question: Callable[[Question], None]
+    question: Callable[[Question | WayQuestion], None]
     """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
     settled: Callable[[Acknowledgement], None]
     """A lesson is durable, or never can be, and why."""
@@ -108,5 +109,11 @@ class Rounds:
         elif not self._asking and record.tick - self._asked_at >= self._ticks_per_second:
             self._asking = True
             self._asked_at = record.tick
-            weights, names = self._runtime.level.system.weights, self._runtime.definition.names
-            self._screen.question(ask(record.decision.match, record.situation.vector, weights, names, record.behaviour))
+            self._screen.question(self._question_of(record))
+
+    def _question_of(self, record: TickRecord) -> Question | WayQuestion:
+        runtime, match = self._runtime, record.decision.match
+        if runtime.mid is not None and record.decision.asks_at == MID:
+            return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
+        weights, names = runtime.level.system.weights, runtime.definition.names
+        return ask(match, record.situation.vector, weights, names, record.behaviour)

@@ -167,7 +167,9 @@ class Tick:
         for event in events:
             self._keeper.submit(event)
             if self._expecting is not None:
-                self._expecting.hear(event)
+                led_elsewhere = self._expecting.hear(event)
+                if led_elsewhere is not None:
+                    self._statistics.drop_follow_ups(led_elsewhere)
         mark(Stage.PUBLISH)
         return TickRecord(
             tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion, surprise

@@ -21,7 +21,7 @@ from kurt2rt.cli.printer import Printer
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.recording.can_log import open_can_log
-from kurt2rt.rla.rla import rla_title
+from kurt2rt.rla.rla import MID, rla_title
 from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
 from kurt2rt.service_settings import ServiceSettings, load_service
@@ -234,6 +234,8 @@ def status_line(status: Status, health: Health) -> str:
         doing = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
     elif decision.driving:
         doing = f"{decision.action}, as the teacher says"
+    elif decision.asking and decision.asks_at == MID:
+        doing = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
     elif decision.asking:
         about = f" about {record.behaviour}" if record.behaviour else ""
         doing = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
@@ -241,6 +243,9 @@ def status_line(status: Status, health: Health) -> str:
         doing = f"stands until Go: {runtime.school.stopped_because or record.grant.reasons[0]}"
     else:
         doing = f"stands: {decision.cause.value}"
+    if decision.mid is not None and decision.driving:
+        by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
+        doing += f", sent by {by}"
     lateness = runtime.ledger.lateness()
     parts = [
         f"{record.tick * runtime.robot.can.cycle_s:8.1f} s",

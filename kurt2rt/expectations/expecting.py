@@ -10,7 +10,7 @@ from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import BASIC, MID, TeachingEvent
+from kurt2rt.rla.rla import BASIC, MID, RlaCreated, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, Space
 
 
@@ -39,7 +39,6 @@ class Expecting:
         if self._mid_following is not None:
             self._levels[MID] = self._mid_following.expectations
         self._others = {rla_id: each for rla_id, each in (saved or {}).items() if self._is_elsewhere(rla_id)}
-        self._led_elsewhere: set[int] = set()
 
     def see(
         self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
@@ -53,12 +52,15 @@ class Expecting:
             following.restart()
         return following.see(commanded, mid.vector, driving=driving) or surprise
 
-    def hear(self, event: TeachingEvent) -> None:
-        """An event that was applied: what an RLA did with another action is expected no more."""
-        for following in (self._basic_following, self._mid_following):
-            changed = None if following is None else following.hear(event)
-            if changed is not None:
-                self._led_elsewhere.add(changed)
+    def hear(self, event: TeachingEvent) -> int | None:
+        """An event that was applied: what an RLA did with another action is expected no more.
+
+        Returns the RLA of which that is so: what was counted as following it does so no more, either.
+        """
+        changed = self._basic_following.hear(event)
+        if self._mid_following is not None:
+            changed = self._mid_following.hear(event) or changed
+        return None if isinstance(event, RlaCreated) else changed
 
     def restart(self) -> None:
         """The robot was set down elsewhere: what comes next follows from nothing."""
@@ -71,11 +73,6 @@ class Expecting:
         rla = self._system.get(rla_id)
         expectations = None if rla is None else self._levels.get(rla.level)
         return None if expectations is None else expectations.of(rla_id)
-
-    def take_led_elsewhere(self) -> set[int]:
-        """The RLAs that got another action, or ended, since the last call: what followed them does so no more."""
-        led_elsewhere, self._led_elsewhere = self._led_elsewhere, set()
-        return led_elsewhere
 
     def to_save(self) -> dict[int, Expectation]:
         """All of them as they are now; what has not changed since the last call is the same object."""

@@ -1,6 +1,7 @@
 """What the mid level needs of its situation, whatever it is made of."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import Annotated, Protocol
 
 import numpy as np
@@ -65,6 +66,10 @@ class MidSituationSettings(KindSettings):
     @abstractmethod
     def metric(self) -> Metric:
         """How distances are measured."""
+
+    def words(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
+        """A situation or condition for people to read: a word per feature, empty where nothing is there yet."""
+        return tuple(f"{name} {value:.2f}" for name, value in zip(self.features, vector, strict=True))
 
     @abstractmethod
     def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:

@@ -43,11 +43,16 @@ class StatisticsCounter:
             del self.uses[rla_id]
         for edge in [edge for edge in self.transitions if not dead.isdisjoint(edge)]:
             del self.transitions[edge]
-        for level, previous in self._previous.items():
-            if previous in dead:
-                self._previous[level] = None
+        self._begin_anew(dead)
 
-    def drop_follow_ups(self, rla_ids: Container[int]) -> None:
-        """Forget what followed these RLAs: with another action they lead elsewhere."""
-        for edge in [edge for edge in self.transitions if edge[0] in rla_ids]:
+    def drop_follow_ups(self, rla_id: int) -> None:
+        """Forget what followed this RLA: with another action it leads elsewhere."""
+        for edge in [edge for edge in self.transitions if edge[0] == rla_id]:
             del self.transitions[edge]
+        self._begin_anew((rla_id,))
+
+    def _begin_anew(self, rla_ids: Container[int]) -> None:
+        """What comes next follows none of these."""
+        for level, previous in self._previous.items():
+            if previous in rla_ids:
+                self._previous[level] = None

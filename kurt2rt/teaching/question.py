@@ -1,11 +1,12 @@
 """The robot's question: "I don't know this situation, teach me"."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.rla.rla import ASK, rla_title
+from kurt2rt.rla.rla import ASK, MID, rla_title
 from kurt2rt.rla.rla_system import Match
 
 
@@ -44,6 +45,39 @@ class Question:
             f"I don't know this situation, teach me: nearest is {nearest} ({action}) "
             f"at {self.distance:.0f} of {self.radius:.0f}; {features}"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class WayQuestion:
+    """What the teacher sees when the mid level asks which taught behaviour is to be followed."""
+
+    nearest_rla: int | None
+    """None before the first lesson of the mid level."""
+    behaviour: str | None
+    """What the nearest RLA would command."""
+    distance: float
+    radius: float
+    here: tuple[str, ...]
+    """The mid level's situation in words, the newest first."""
+
+    def __str__(self) -> str:
+        came_by = f"; I came by {', '.join(self.here)}" if self.here else ""
+        if self.nearest_rla is None:
+            return f"I don't know any way yet, teach me which behaviour to follow{came_by}"
+        nearest = rla_title(self.nearest_rla, "", MID)
+        action = "its action was withdrawn" if self.behaviour == ASK else self.behaviour
+        return (
+            f"I don't know the way from here, teach me which behaviour to follow: nearest is {nearest} ({action}) "
+            f"at {self.distance:.3g} of {self.radius:.3g}{came_by}"
+        )
+
+
+def ask_the_way(match: Match | None, words: Iterable[str]) -> WayQuestion:
+    """Question of the mid level, whose nearest RLA is `match`; `words` of its situation, empty ones left out."""
+    here = tuple(word for word in words if word)
+    if match is None:
+        return WayQuestion(None, None, float("inf"), 0.0, here)
+    return WayQuestion(match.rla.rla_id, match.rla.action, match.distance, match.radius, here)
 
 
 def ask(
