@@ -14,7 +14,10 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.network.file import FORMATS, write_network
+from kurt2rt.network.network import read_network, without_rare
 from kurt2rt.rla.lesson_book import LessonRecord
+from kurt2rt.rla.rla import BASIC
 
 knowledge = typer.Typer(
     help="Look after what the robot was taught. Only undo changes the file, and only while no robot runs on it; "
@@ -98,3 +101,30 @@ def export(
     saved = export_table(file, out, utc_now())
     Console(highlight=False).print(f"table  {out / saved.name}", markup=False, soft_wrap=True)
     Console(highlight=False).print(f"sha256  {saved.sha256}", markup=False, soft_wrap=True)
+
+
+@knowledge.command()
+def graph(
+    file: KnowledgeFile,
+    out: Annotated[
+        Path, typer.Option(help="File to write: a picture (.svg, .png), or .graphml for other programs.")
+    ] = Path("results/network.svg"),
+    level: Annotated[str, typer.Option(help="Level whose RLAs are shown: basic or mid.")] = BASIC,
+    behaviour: Annotated[str | None, typer.Option(help="Only RLAs of this taught behaviour.")] = None,
+    at_least: Annotated[
+        float, typer.Option(min=0, max=100, metavar="PERCENT", help="Leave out what followed less often.")
+    ] = 5.0,
+) -> None:
+    """Draw the RLA network: which RLA followed which, with percentages; or write it as GraphML."""
+    if out.suffix not in FORMATS:
+        raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")
+    with Journal.read_only(file) as journal:
+        whole = read_network(journal, level=level, behaviour=behaviour)
+    shown = without_rare(whole, at_least)
+    what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
+    title = f"{file.stem}, level {level}: {what}, followed by each other in at least {at_least:g} % of all cases"
+    write_network(shown, title, out)
+    edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
+    Console(highlight=False).print(
+        f"network  {out}: {len(shown)} of {len(whole)} RLAs, {edges}", markup=False, soft_wrap=True
+    )
