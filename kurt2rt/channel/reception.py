@@ -10,6 +10,7 @@ from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
     AnswerRequest,
+    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -18,11 +19,16 @@ from kurt2rt.channel.requests import (
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
+    NameRequest,
     PlaceRequest,
     PursueRequest,
     Request,
     ResumeRequest,
     SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SituationsRequest,
     StopRequest,
     StreamRequest,
     TakeRequest,
@@ -44,7 +50,8 @@ STREAM_TICKS = 40
 """A message of a stream on an older picture is refused: it was held back on its way."""
 MOVING_TICKS = 100
 COMMAND_TICKS = 300
-_MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest)
+_SEEKING = (SeekRequest, SeekRlaRequest, SeekLikeRequest)
+_MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest, *_SEEKING)
 LONGEST_WAIT_S = 3.0
 """Then a lesson that is not durable yet is answered as unsaved."""
 
@@ -122,6 +129,8 @@ class Reception:
                 return Reply(Verdict.DONE, {**self._hello, "tick": self.tick})
             case LessonsRequest(count=count):
                 return Reply(Verdict.DONE, {"lessons": self._lessons(count)})
+            case SituationsRequest():
+                return Reply(Verdict.DONE, {"situations": []})
             case WorldRequest():
                 return self._world()
         return Reply(Verdict.NOT_HERE)
@@ -192,6 +201,8 @@ class Reception:
                 reply = self._change_world(device, request)
                 self._outcomes.begin(command_id).set_result(reply)
                 return None
+            case NameRequest() | SeekRequest() | SeekRlaRequest() | SeekLikeRequest() | BeAtRequest():
+                return refusal("refused", "this robot takes no goals", self.tick)
             case AnswerRequest(level=level) | CorrectRequest(level=level) if level != BASIC:
                 return refusal("refused", "this robot has no mid level", self.tick)
         held = self._runtime.school.authority.held_by_another(device)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from typing import Annotated, ClassVar, get_args, get_type_hints
 
-from kurt2rt.channel.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole
+from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
 from kurt2rt.rla.rla import BASIC, MID, Phase
 
 VERSION = 3
@@ -14,6 +14,8 @@ HIGHEST_SPEED_M_S = 2.0
 LONGEST_WAY_M = 100.0
 LONGEST_TEXT = 64
 MOST_LESSONS = 20
+MOST_GOAL_FEATURES = 16
+MOST_SITUATIONS = 512
 LARGEST_NUMBER = 2**53
 """Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
 LONGEST_BEHAVIOUR_TICKS = 60_000
@@ -28,6 +30,7 @@ _Way = Annotated[float, Real(LONGEST_WAY_M, "m")]
 _Angle = Annotated[float, Real(100.0, "rad")]
 _Name = Annotated[str, Text(LONGEST_TEXT, least=1)]
 _NameOrNone = Annotated[str | None, OrNone(Text(LONGEST_TEXT, least=1))]
+_FEATURE = Row((Text(LONGEST_TEXT, least=1), Real(1e6)))
 _Level = Annotated[str, OneWord((BASIC, MID))]
 
 
@@ -38,6 +41,8 @@ class Request:
     path: ClassVar[str]
     may_lack: ClassVar[int] = 0
     """How many of its last fields a device of an older version leaves out; their defaults stand then."""
+    depth: ClassVar[int] = 1
+    """How deep lists are nested in its body: nearly all are flat."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +203,59 @@ class PursueRequest(CommandRequest):
 
 
 @dataclass(frozen=True, slots=True)
+class NameRequest(CommandRequest):
+    """Give the mid level's situation a name, so that it can be a goal."""
+
+    path: ClassVar[str] = "/name"
+    name: _Name
+    decision_tick: _TickOrNone
+    """The situation of which tick; None: the present one."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeekRequest(CommandRequest):
+    """Go to a situation that has a name; None: seek nothing any more."""
+
+    path: ClassVar[str] = "/seek"
+    name: _NameOrNone
+
+
+@dataclass(frozen=True, slots=True)
+class SeekRlaRequest(CommandRequest):
+    """Go to the situation that an RLA of the mid level knows."""
+
+    path: ClassVar[str] = "/seek/rla"
+    rla_id: _Number
+
+
+@dataclass(frozen=True, slots=True)
+class SeekLikeRequest(CommandRequest):
+    """Go to any situation in which some features of the mid level are as wanted."""
+
+    path: ClassVar[str] = "/seek/like"
+    depth: ClassVar[int] = 3
+    features: Annotated[tuple[tuple[str, float], ...], ManyOf(_FEATURE, most=MOST_GOAL_FEATURES)]
+    """Names and values."""
+    tolerance: Annotated[float, Real(1e6)]
+    """How far each may be off."""
+
+
+@dataclass(frozen=True, slots=True)
+class BeAtRequest(CommandRequest):
+    """The robot was set down at a place that has a name."""
+
+    path: ClassVar[str] = "/here"
+    name: _Name
+
+
+@dataclass(frozen=True, slots=True)
+class SituationsRequest(Request):
+    """The situations that have a name."""
+
+    path: ClassVar[str] = "/situations"
+
+
+@dataclass(frozen=True, slots=True)
 class SessionRequest(CommandRequest):
     """Teaching begins under a name, or ends (None)."""
 
@@ -293,6 +351,12 @@ REQUESTS: tuple[type[Request], ...] = (
     UndoRequest,
     PhaseRequest,
     PursueRequest,
+    NameRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SeekLikeRequest,
+    BeAtRequest,
+    SituationsRequest,
     SessionRequest,
     ResumeRequest,
     TakeRequest,

@@ -56,6 +56,8 @@ class SurpriseState:
     level: str
     rla: int
     """Whose expectation it was."""
+    follow_up: int
+    """The RLA that took over."""
     times: float
     """Distance of what came from what was expected, in its usual ones: 1 is usual."""
     new: bool

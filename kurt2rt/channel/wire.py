@@ -45,8 +45,6 @@ MOST_REQUEST_BYTES = 1024
 MOST_ANSWER_BYTES = 65_507
 """The largest UDP datagram: a world may have many walls."""
 
-_REQUEST_DEPTH = 1
-"""A request is one flat list."""
 _STATE_DEPTH = 3
 _ANSWER_DEPTH = 8
 
@@ -66,7 +64,7 @@ def decode_request(path: str, payload: bytes) -> Request:
     kind = PATHS.get(path)
     if kind is None:
         raise WireError(f"there is no {path} here")
-    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
+    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=kind.depth)
     checks = _CHECKS[kind]
     if not isinstance(body, list) or not len(checks) - kind.may_lack <= len(body) <= len(checks):
         names = ", ".join(name for name, _ in checks)
@@ -159,7 +157,7 @@ _MID = (
     _WORDS,
 )
 """The fields of MidState."""
-_SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _ANY_REAL, Flag())
+_SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag())
 """The fields of SurpriseState."""
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 

@@ -16,7 +16,15 @@ from kurt2rt.page.mirror import Mirror
 from kurt2rt.page.orders import carry_out, lets_drive, oldest_picture_s
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.seat import Seat
-from kurt2rt.page.views import answer_view, hello_view, lessons_view, refusal_view, state_view, world_view
+from kurt2rt.page.views import (
+    answer_view,
+    hello_view,
+    lessons_view,
+    refusal_view,
+    situations_view,
+    state_view,
+    world_view,
+)
 from kurt2rt.page.visitor import Visitor
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import NoAnswerError
@@ -60,17 +68,25 @@ class Bridge:
         self._stopped_s = float("-inf")
         self._unseen_stop_due = False
         self._ending = 0
+        self._seeks = False
         self._said_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
         self._hello = Mirror(self._fetch_hello, partial(self._tell_all, about="hello"))
         self._world = Mirror(self._fetch_world, partial(self._tell_all, about="world"))
         self._lessons = Mirror(self._fetch_lessons, partial(self._tell_all, about="lessons"))
+        self._situations = Mirror(self._fetch_situations, partial(self._tell_all, about="situations"))
+        self._mirrors = (
+            (self._hello, "hello"),
+            (self._world, "world"),
+            (self._lessons, "lessons"),
+            (self._situations, "situations"),
+        )
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
         """Serve until cancelled; the wheels are let go at the end."""
         async with anyio.create_task_group() as tasks:
             self._tasks = tasks
-            for task in (self._hello.run, self._world.run, self._lessons.run, self._follow_pictures, self._keep_watch):
+            for task in (*(mirror.run for mirror, _ in self._mirrors), self._follow_pictures, self._keep_watch):
                 tasks.start_soon(task)
             self._hello.want(b"")
             task_status.started()
@@ -94,7 +110,7 @@ class Bridge:
         self._visitors[visitor.number] = visitor
         self._seat.arrive(visitor.number, self._now())
         self._seat_changed(before)
-        for mirror, about in ((self._hello, "hello"), (self._world, "world"), (self._lessons, "lessons")):
+        for mirror, about in self._mirrors:
             if mirror.copy is not None:
                 visitor.tell(mirror.copy, about=about)
         return visitor
@@ -309,14 +325,19 @@ class Bridge:
     def _want_lessons(self) -> None:
         if self._newest is not None:
             state = self._newest
-            self._lessons.want((state.boot, state.lessons, state.unsaved, self._carried_out))
+            mark = (state.boot, state.lessons, state.unsaved, self._carried_out)
+            self._lessons.want(mark)
+            if self._seeks:
+                self._situations.want(mark)
 
     def _tell_all(self, message: dict[str, Any], about: str) -> None:
         for visitor in self._visitors.values():
             visitor.tell(message, about=about)
 
     async def _fetch_hello(self) -> dict[str, Any]:
-        return hello_view(await self._robot.hello())
+        hello = await self._robot.hello()
+        self._seeks = hello.seeks
+        return hello_view(hello)
 
     async def _fetch_world(self) -> dict[str, Any]:
         world = await self._robot.world()
@@ -327,3 +348,6 @@ class Bridge:
     async def _fetch_lessons(self) -> dict[str, Any]:
         after = self._carried_out
         return {**lessons_view(await self._robot.lessons(_LESSONS)), "after": after}
+
+    async def _fetch_situations(self) -> dict[str, Any]:
+        return situations_view(await self._robot.situations())

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.schema import Check, OneOf, OrNone, Real, Text, Whole, WireError
-from kurt2rt.rla.rla import Phase
+from kurt2rt.channel.schema import Check, Flag, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
+from kurt2rt.rla.rla import BASIC, MID, Phase
 
 LONGEST_MESSAGE = 1024
 """In characters."""
@@ -16,6 +16,7 @@ _PICTURE = OrNone(_COUNTER)
 _SPEED_M_S = Real(2.0, "m/s")
 _PLACE_M = Real(100.0, "m")
 _NAME = Text(64, least=1)
+_LEVEL = OneWord((BASIC, MID))
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +73,18 @@ class Order:
 PageMessage = Beat | Hidden | Press | Release | StopNow | Order
 
 ORDERS: Mapping[str, Mapping[str, Check]] = {
-    "answer": {"action": _NAME},
-    "correct": {"action": _NAME},
+    "answer": {"action": _NAME, "level": _LEVEL, "beside": Flag()},
+    "correct": {"action": _NAME, "level": _LEVEL},
     "reward": {"value": OneOf((1, -1))},
     "appraise": {"appraisal": _NAME},
     # By name: "the last one" would mean another lesson by the time it arrives.
     "undo": {"lesson": Text(128, least=1)},
     "phase": {"phase": OneOf(tuple(each.value for each in Phase), Phase)},
     "pursue": {"behaviour": _NAME},
+    "name": {"name": _NAME},
+    "seek": {"name": _NAME},
+    "stop_seeking": {},
+    "be_at": {"name": _NAME},
     "begin_session": {"name": _NAME},
     "end_session": {},
     "resume": {},

@@ -5,13 +5,14 @@ from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer
 
+_MOVING = ("take", "place", "pursue", "seek", "stop_seeking")
 _MOVING_S = 1.0
 _OTHERS_S = 3.0
 
 
 def oldest_picture_s(order: Order) -> float:
     """How long ago the page's picture may have been sent, in s: the robot's own borders, for the page's own link."""
-    return _MOVING_S if lets_drive(order) or order.name in ("take", "place", "pursue") else _OTHERS_S
+    return _MOVING_S if lets_drive(order) or order.name in _MOVING else _OTHERS_S
 
 
 def lets_drive(order: Order) -> bool:
@@ -24,9 +25,9 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
     given = order.arguments
     match order.name:
         case "answer":
-            return await robot.answer(given["action"], of=of)
+            return await robot.answer(given["action"], of=of, level=given["level"], beside=given["beside"])
         case "correct":
-            return await robot.correct(given["action"], of=of)
+            return await robot.correct(given["action"], of=of, level=given["level"])
         case "reward":
             return await robot.reward(given["value"], of=of)
         case "appraise":
@@ -37,6 +38,14 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.set_phase(given["phase"])
         case "pursue":
             return await robot.pursue(given["behaviour"])
+        case "name":
+            return await robot.name_situation(given["name"], of=of)
+        case "seek":
+            return await robot.seek(given["name"])
+        case "stop_seeking":
+            return await robot.stop_seeking()
+        case "be_at":
+            return await robot.be_at(given["name"])
         case "begin_session":
             return await robot.begin_session(given["name"])
         case "end_session":

@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 from typing import Protocol
 
 from kurt2rt.channel.state import State
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -76,11 +76,11 @@ class RobotLink(Protocol):
         """The simulated world; None where the robot is a real one."""
         ...
 
-    async def answer(self, action: str, *, of: int | None = None) -> Answer:
-        """Answer the situation of a picture."""
+    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
+        """Answer the situation of a picture; `beside`: possible, too, beside what is known there."""
         ...
 
-    async def correct(self, action: str, *, of: int | None = None) -> Answer:
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
         """Another action is right in the situation of a picture."""
         ...
 
@@ -102,6 +102,26 @@ class RobotLink(Protocol):
 
     async def pursue(self, behaviour: str) -> Answer:
         """Follow another taught behaviour."""
+        ...
+
+    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
+        """Give the situation of a picture a name."""
+        ...
+
+    async def situations(self) -> tuple[str, ...]:
+        """The names of the situations that have one."""
+        ...
+
+    async def seek(self, name: str) -> Answer:
+        """Go to a situation that has a name."""
+        ...
+
+    async def stop_seeking(self) -> Answer:
+        """No goal any more."""
+        ...
+
+    async def be_at(self, name: str) -> Answer:
+        """The robot was set down at a situation that has a name."""
         ...
 
     async def begin_session(self, name: str) -> Answer:

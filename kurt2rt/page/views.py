@@ -56,6 +56,12 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "role": state.role,
         "bad_share": state.bad_share,
         "signals_missing": state.signals_missing,
+        "asks_at": state.asks_at,
+        "mid": plain(state.mid),
+        "surprise": plain(state.surprise),
+        "goal": state.goal,
+        "plan": state.plan,
+        "plan_says": state.plan_says,
         "place": None if place is None else asdict(place),
         "link": {
             "age_ms": round(age_s * 1000),
@@ -97,6 +103,11 @@ def world_view(world: World) -> dict[str, Any]:
 def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
     """The newest lessons."""
     return {"kind": "lessons", "lessons": [each._asdict() for each in lessons]}
+
+
+def situations_view(names: tuple[str, ...]) -> dict[str, Any]:
+    """The situations that have a name."""
+    return {"kind": "situations", "situations": names}
 
 
 def plain(value: Any) -> Any:

@@ -8,7 +8,7 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
 """
 
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from types import TracebackType
@@ -17,6 +17,7 @@ from typing import Self
 import anyio
 
 from kurt2rt.channel.requests import (
+    BeAtRequest,
     BehaviourRequest,
     ExportRequest,
     HelloRequest,
@@ -27,7 +28,11 @@ from kurt2rt.channel.requests import (
     ReleaseRequest,
     ResumeRequest,
     SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
     SessionRequest,
+    SituationsRequest,
     TakeRequest,
     WorldRequest,
 )
@@ -41,6 +46,7 @@ from kurt2rt.teaching.hello import Hello, hello_of
 from kurt2rt.teaching.lessons import Lessons
 from kurt2rt.teaching.link import Link
 from kurt2rt.teaching.pictures import Pictures
+from kurt2rt.teaching.situations import situations_of
 from kurt2rt.teaching.stopping import Stopping
 from kurt2rt.teaching.wheel import Wheel
 from kurt2rt.teaching.world import World, world_of
@@ -156,6 +162,36 @@ class TeacherClient(Lessons):
         return await self._stopping.move(
             behaviour, lambda: self._asking.command(PursueRequest, moves=True, behaviour=behaviour)
         )
+
+    async def situations(self) -> tuple[str, ...]:
+        """The names of the situations that have one."""
+        return await self._asking.told(SituationsRequest(), lambda response: situations_of(facts_of(response)))
+
+    async def seek(self, name: str) -> Answer:
+        """Go to a situation that has a name; the robot plans the way, and says when there is none."""
+        return await self._stopping.move(name, lambda: self._asking.command(SeekRequest, moves=True, name=name))
+
+    async def seek_rla(self, rla: int) -> Answer:
+        """Go to the situation that an RLA of the mid level knows."""
+        return await self._stopping.move(
+            f"RLA {rla}", lambda: self._asking.command(SeekRlaRequest, moves=True, rla_id=rla)
+        )
+
+    async def seek_like(self, features: Mapping[str, float], tolerance: float) -> Answer:
+        """Go to any situation in which these features of the mid level have these values, give or take `tolerance`."""
+        wanted = tuple(features.items())
+        return await self._stopping.move(
+            "a goal",
+            lambda: self._asking.command(SeekLikeRequest, moves=True, features=wanted, tolerance=tolerance),
+        )
+
+    async def stop_seeking(self) -> Answer:
+        """No goal any more; the mid level commands as it did before."""
+        return await self._stopping.move("no goal", lambda: self._asking.command(SeekRequest, moves=True, name=None))
+
+    async def be_at(self, name: str) -> Answer:
+        """The robot was set down at a situation that has a name."""
+        return await self._asking.command(BeAtRequest, name=name)
 
     async def begin_session(self, name: str) -> Answer:
         """Teaching begins: the teaching clock runs."""

@@ -9,6 +9,7 @@ from kurt2rt.channel.requests import (
     CorrectRequest,
     DeleteRequest,
     LessonsRequest,
+    NameRequest,
     ReplaceRequest,
     RewardRequest,
     UndoRequest,
@@ -56,6 +57,10 @@ class Lessons:
     async def delete(self, rla: int) -> Answer:
         """Delete one RLA."""
         return await self._asking.command(DeleteRequest, rla_id=rla)
+
+    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
+        """Give the mid level's situation a name, so that it can be a goal."""
+        return await self._asking.command(NameRequest, name=name, decision_tick=of)
 
     async def undo(self, lesson: str | None = None) -> Answer:
         """Take a lesson back by its command id; None: the last one that still stands."""

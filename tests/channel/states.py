@@ -57,7 +57,7 @@ COMMANDS = MidState(
 )
 """Mid-level RLA 12 has the robot turn left."""
 
-SURPRISED = SurpriseState(tick=1230, level="mid", rla=12, times=3.5, new=False)
+SURPRISED = SurpriseState(tick=1230, level="mid", rla=12, follow_up=15, times=3.5, new=False)
 
 
 def state(**changes: Any) -> State:

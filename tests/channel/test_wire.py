@@ -19,6 +19,7 @@ from kurt2rt.channel.requests import (
     PhaseRequest,
     Request,
     RewardRequest,
+    SeekLikeRequest,
     SessionRequest,
     checks_of,
 )
@@ -68,6 +69,10 @@ def values(check: Check) -> st.SearchStrategy[Any]:
             return st.text(PRINTABLE, min_size=least, max_size=most)
         case OrNone(check=inner):
             return st.none() | values(inner)
+        case ManyOf(check=inner, most=most):
+            return st.lists(values(inner), max_size=min(most, 6)).map(tuple)
+        case Row(checks=checks):
+            return st.tuples(*map(values, checks))
     raise AssertionError(f"no strategy for {check}")
 
 
@@ -134,7 +139,7 @@ STATES = st.builds(
         here=WORDS,
         there=WORDS,
     ),
-    surprise=st.none() | st.builds(SurpriseState, NUMBERS, LEVELS, NUMBERS, REALS, st.booleans()),
+    surprise=st.none() | st.builds(SurpriseState, NUMBERS, LEVELS, NUMBERS, NUMBERS, REALS, st.booleans()),
     goal=NAMES,
     plan=WORDS,
     plan_says=NAMES,
@@ -240,6 +245,13 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
         ("/reward", [BOOT, ID, 0, True, None], "value has to be one of 1, -1"),
         ("/appraise", [BOOT, ID, 0, "", None], "appraisal has to be text of 1 to 64 printable characters"),
         ("/appraise", [BOOT, ID, 0, -1, None], "appraisal has to be text of 1 to 64 printable characters"),
+        ("/name", [BOOT, ID, 0, "", None], "name has to be text of 1 to 64 printable characters"),
+        ("/seek", [BOOT, ID, 0, 12], "name has to be text of 1 to 64 printable characters"),
+        ("/seek/rla", [BOOT, ID, 0, "12"], "rla_id has to be a whole number from 0 to 9007199254740992"),
+        ("/seek/like", [BOOT, ID, 0, ["x"], 0.1], "features has to be a list of 2"),
+        ("/seek/like", [BOOT, ID, 0, [["x", math.nan]], 0.1], "features has to be a number from -1e+06 to 1e+06"),
+        ("/seek/like", [BOOT, ID, 0, [["x", 1]] * 17, 0.1], "features has to be a list of up to 16"),
+        ("/here", [BOOT, ID, 0, None], "name has to be text of 1 to 64 printable characters"),
         ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, "high", False], "level has to be one of basic, mid"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, None, False], "level has to be one of basic, mid"),
@@ -280,6 +292,8 @@ def test_the_bodies_are_the_lists_of_the_contract() -> None:
     assert cbor2.loads(encode_request(AppraiseRequest(BOOT, ID, 90, "bad", 88))) == [BOOT, ID, 90, "bad", 88]
     assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
     assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]
+    like = SeekLikeRequest(BOOT, ID, 90, (("x_m", 1.75), ("y_m", 0.5)), 0.25)
+    assert cbor2.loads(encode_request(like)) == [BOOT, ID, 90, [["x_m", 1.75], ["y_m", 0.5]], 0.25]
     assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
 
 

@@ -11,7 +11,7 @@ import anyio.lowlevel
 from hal.robot_settings import load_robot
 from kurt2rt.channel.requests import VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.hello import Hello, SensorPlace
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -90,6 +90,7 @@ class FakeRobot:
     state_age_s: float = math.inf
     state: State | None = None
     greeting: Hello = A_HELLO
+    named: tuple[str, ...] = ()
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
@@ -139,11 +140,11 @@ class FakeRobot:
         await self._answer("world")
         return A_WORLD
 
-    async def answer(self, action: str, *, of: int | None = None) -> Answer:
-        return await self._answer("answer", action, of)
+    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
+        return await self._answer("answer", action, of, *(() if level == BASIC else (level, beside)))
 
-    async def correct(self, action: str, *, of: int | None = None) -> Answer:
-        return await self._answer("correct", action, of)
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        return await self._answer("correct", action, of, *(() if level == BASIC else (level,)))
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         return await self._answer("reward", value, of)
@@ -159,6 +160,22 @@ class FakeRobot:
 
     async def pursue(self, behaviour: str) -> Answer:
         return await self._answer("pursue", behaviour)
+
+    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
+        return await self._answer("name_situation", name, of)
+
+    async def situations(self) -> tuple[str, ...]:
+        await self._answer("situations")
+        return self.named
+
+    async def seek(self, name: str) -> Answer:
+        return await self._answer("seek", name)
+
+    async def stop_seeking(self) -> Answer:
+        return await self._answer("stop_seeking")
+
+    async def be_at(self, name: str) -> Answer:
+        return await self._answer("be_at", name)
 
     async def begin_session(self, name: str) -> Answer:
         return await self._answer("begin_session", name)

@@ -120,7 +120,7 @@ async def test_one_page_drives_and_the_next_one_watches_until_it_takes_the_pad()
         await first.see()
         await second.see(teacher="phone")
         assert second.last("page")["seat"] == "elsewhere"
-        assert (await second.order("answer", action="forward"))["why"] == "watching"
+        assert (await second.order("answer", action="forward", level="basic", beside=False))["why"] == "watching"
         second.press()
         assert second.last("let_go")["text"]
         assert hall.told("press", "answer") == []
@@ -359,7 +359,7 @@ async def test_an_order_means_the_picture_that_the_page_showed() -> None:
         shown = page.picture
         await page.see(tick=600)
         page.picture = shown
-        await page.order("correct", action="spin_left")
+        await page.order("correct", action="spin_left", level="basic")
         await page.order("reward", value=-1)
         await page.order("appraise", appraisal="bad")
         assert hall.told("correct", "reward", "appraise") == [
@@ -373,11 +373,11 @@ async def test_an_order_on_no_picture_or_on_one_of_an_earlier_robot_is_not_sent(
     async with opened() as hall:
         page = Page(hall)
         page.beat()
-        assert (await page.order("answer", action="forward"))["why"] == "stale"
+        assert (await page.order("answer", action="forward", level="basic", beside=False))["why"] == "stale"
         await page.see(boot=b"old!")
         hall.robot.show(boot=b"new!")
         await anyio.wait_all_tasks_blocked()
-        assert (await page.order("answer", action="forward"))["why"] == "stale"
+        assert (await page.order("answer", action="forward", level="basic", beside=False))["why"] == "stale"
         assert hall.told("answer") == []
 
 
@@ -389,7 +389,7 @@ MOVING: list[tuple[str, dict[str, object]]] = [
     ("pursue", {"behaviour": "turn_left"}),
 ]
 OTHERS: list[tuple[str, dict[str, object]]] = [
-    ("correct", {"action": "forward"}),
+    ("correct", {"action": "forward", "level": "basic"}),
     ("appraise", {"appraisal": "bad"}),
     ("phase", {"phase": Phase.CRITIC}),
     ("hand_over", {"to": None}),
@@ -447,7 +447,7 @@ async def test_a_list_of_lessons_says_which_orders_it_knows_of() -> None:
     async with opened() as hall:
         page = Page(hall)
         await page.see()
-        answer = await page.order("answer", action="forward")
+        answer = await page.order("answer", action="forward", level="basic", beside=False)
         with anyio.fail_after(5):
             while page.last("lessons")["after"] < answer["done"]:
                 await anyio.wait_all_tasks_blocked()
@@ -455,10 +455,16 @@ async def test_a_list_of_lessons_says_which_orders_it_knows_of() -> None:
 
 
 ORDERS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
-    ("answer", {"action": "forward"}, ("answer", "forward", 102)),
+    ("answer", {"action": "forward", "level": "basic", "beside": False}, ("answer", "forward", 102)),
+    ("answer", {"action": "turn_left", "level": "mid", "beside": True}, ("answer", "turn_left", 102, "mid", True)),
+    ("correct", {"action": "turn_left", "level": "mid"}, ("correct", "turn_left", 102, "mid")),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
     ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),
+    ("name", {"name": "door"}, ("name_situation", "door", 102)),
+    ("seek", {"name": "door"}, ("seek", "door")),
+    ("stop_seeking", {}, ("stop_seeking",)),
+    ("be_at", {"name": "door"}, ("be_at", "door")),
     ("begin_session", {"name": "morning"}, ("begin_session", "morning")),
     ("end_session", {}, ("end_session",)),
     ("resume", {}, ("resume",)),

@@ -20,6 +20,10 @@ from kurt2rt.page.messages import (
 from kurt2rt.rla.rla import Phase
 
 
+def lesson(name: str, arguments: dict[str, object]) -> dict[str, object]:
+    return {"kind": "order", "number": 1, "name": name, "arguments": arguments, "picture": 4}
+
+
 @pytest.mark.parametrize(
     ("said", "understood"),
     [
@@ -30,8 +34,17 @@ from kurt2rt.rla.rla import Phase
         ({"kind": "release"}, Release()),
         ({"kind": "stop", "number": 3}, StopNow(3)),
         (
-            {"kind": "order", "number": 1, "name": "correct", "arguments": {"action": "forward"}, "picture": 4},
-            Order(1, "correct", {"action": "forward"}, 4),
+            lesson("correct", {"action": "turn_left", "level": "mid"}),
+            Order(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
+        ),
+        (
+            lesson("answer", {"action": "forward", "level": "basic", "beside": False}),
+            Order(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
+        ),
+        (lesson("seek", {"name": "door"}), Order(1, "seek", {"name": "door"}, 4)),
+        (
+            lesson("name", {"name": "door"}),
+            Order(1, "name", {"name": "door"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "phase", "arguments": {"phase": 2}, "picture": 4},
@@ -55,7 +68,7 @@ def test_what_a_page_says_is_understood(said: dict[str, Any], understood: object
     assert parse(json.dumps(said)) == understood
 
 
-def order(name: str, **arguments: object) -> str:
+def order(name: str, /, **arguments: object) -> str:
     return json.dumps({"kind": "order", "number": 1, "name": name, "arguments": arguments, "picture": 1})
 
 
@@ -84,11 +97,19 @@ def order(name: str, **arguments: object) -> str:
         '{"kind": "order", "number": 1, "name": "answer", "arguments": null, "picture": 1}',
         order("drive"),
         order("answer"),
-        order("answer", action=""),
+        order("answer", action="forward"),
+        order("answer", action="", level="basic", beside=False),
+        order("answer", action="forward", level="critic", beside=False),
+        order("answer", action="forward", level="mid", beside=1),
+        order("correct", action="forward", level=None),
+        order("correct", action="forward", level="mid", beside=False),
+        order("seek", name=""),
+        order("seek", goal="door"),
+        order("name", name=3),
         order("pursue", behaviour=""),
-        order("answer", action="x" * 65),
-        order("answer", action="for\nward"),
-        order("answer", action="forward", of=1),
+        order("answer", action="x" * 65, level="basic", beside=False),
+        order("answer", action="for\nward", level="basic", beside=False),
+        order("answer", action="forward", level="basic", beside=False, of=1),
         order("undo", lesson=None),
         order("appraise", appraisal=""),
         order("appraise", value=1),
@@ -123,7 +144,11 @@ def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
                 ("number", "hold", "picture", "at_ms", "left_m_s", "right_m_s"),
                 st.integers() | st.floats() | st.none() | st.booleans(),
             ),
-            "arguments": st.dictionaries(st.text(max_size=8), st.integers() | st.text(max_size=8), max_size=3),
+            "arguments": st.dictionaries(
+                st.sampled_from(("action", "level", "beside", "name")) | st.text(max_size=8),
+                st.integers() | st.booleans() | st.sampled_from(("basic", "mid", "door")) | st.text(max_size=8),
+                max_size=3,
+            ),
         },
     )
 )

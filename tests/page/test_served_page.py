@@ -170,7 +170,8 @@ async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
     async with served() as page, page.websocket() as socket:
         assert (await hear(socket, "page"))["seat"] == "here"
         number = await see(page, socket)
-        order = {"kind": "order", "number": 7, "name": "answer", "arguments": {"action": "forward"}, "picture": number}
+        lesson = {"action": "forward", "level": "basic", "beside": False}
+        order = {"kind": "order", "number": 7, "name": "answer", "arguments": lesson, "picture": number}
         await socket.send(json.dumps(order))
         answer = await hear(socket, "answer")
         assert (answer["number"], answer["accepted"]) == (7, True)

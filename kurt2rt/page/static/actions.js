@@ -2,6 +2,8 @@
 
 import { glyph } from "./glyphs.js";
 
+export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
+
 // Where a known action has its place: row, first column, columns. Left is left.
 const PLACES = {
   curve_left: [1, 1, 1], bear_left: [1, 2, 1], forward: [1, 3, 1], bear_right: [1, 4, 1], curve_right: [1, 5, 1],

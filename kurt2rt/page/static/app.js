@@ -1,19 +1,22 @@
 // The teacher's page: what comes from the robot is shown, what the teacher touches is sent.
 
-import { ActionPad, words } from "./actions.js";
+import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Critic, CRITIC } from "./critic.js";
+import { Goals } from "./goals.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
+import { BASIC, MID } from "./mid.js";
 import { Organising } from "./organising.js";
 import { drawRobot } from "./robot_view.js";
 import { Drive, stick } from "./stick.js";
-import { setText, Why, WITHDRAWN } from "./why.js";
+import { Ways } from "./ways.js";
+import { setText, Why } from "./why.js";
 import { WorldView } from "./world_view.js";
 
 const $ = (id) => document.getElementById(id);
-const TABS = ["teach", "drive", "lessons", "more"];
-const IN_CHARGE = [...TABS, "behaviours"]; // what only the teacher may touch
+const TABS = ["teach", "drive", "goals", "lessons", "more"];
+const IN_CHARGE = [...TABS, "behaviours", "levels"]; // what only the teacher may touch
 const FASTEST_BY_HAND_M_S = 0.6;
 const SAID_MS = 8000;
 const PICTURE_MS = 1000;
@@ -25,6 +28,8 @@ const drive = new Drive(link);
 const why = new Why();
 const pad = new ActionPad($("actions"), teach);
 const lessons = new Lessons((lesson) => tell("undo", { lesson }));
+const ways = new Ways(teachWay);
+const goals = new Goals(tell);
 const critic = new Critic(appraise);
 const organising = new Organising(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
@@ -34,7 +39,7 @@ let page = { seat: "elsewhere", device: "", robot: "" };
 
 // ---- Orders
 
-const TEACHES = ["answer", "correct", "reward", "appraise", "undo"];
+const TEACHES = ["answer", "correct", "reward", "appraise", "undo", "name"];
 let teaching = 0; // orders of these that are not answered yet
 let taught = 0; // number of the newest that was
 
@@ -65,21 +70,41 @@ function say(outcome, text) {
   if (outcome !== "pending") forgetting = setTimeout(() => setText(line, "\u00a0"), SAID_MS);
 }
 
-async function teach(action) {
+function teach(action) {
   if (!link.state) return;
   // Beyond R there is no RLA to correct, nor where its action was withdrawn, whether the robot asks just now or not.
   const { nearest, nearest_action: its, distance, radius } = link.state;
   const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
-  if (asking) {
-    // The question on the screen is answered already: a second answer would be a second RLA beside the first.
+  give(pad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
+}
+
+// At the mid level; `meant` says whether it is right here, possible too, or wanted only this once.
+function teachWay(behaviour, meant) {
+  if (!link.state?.mid) return;
+  if (meant === "once") {
+    tell("pursue", { behaviour }, `${words(behaviour)}, this once`);
+    return;
+  }
+  const { nearest, nearest_behaviour: its, distance, radius } = link.state.mid;
+  const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
+  const beside = !asks && meant === "beside";
+  if (asks || beside) give(ways, behaviour, "answer", { level: MID, beside }, asks);
+  else give(ways, behaviour, "correct", { level: MID }, false);
+}
+
+// A lesson from the buttons of a pad: `asks` where it answers a question.
+async function give(from, action, name, args, asks) {
+  if (asking || ways.justTurned) {
+    // The question on the screen is answered already, or another one than was looked at: a second answer would be a
+    // second RLA beside the first.
     say("busy", `${words(action)} was not sent: wait for the picture after the last answer`);
     return;
   }
   if (asks) busy(true);
-  pad.mark(action, "pending");
-  const answer = await tell(asks ? "answer" : "correct", { action }, `${asks ? "answer" : "correct"}: ${words(action)}`);
-  pad.mark(action, answer.accepted ? "saved" : "refused");
-  setTimeout(() => pad.mark(action, null), 900);
+  from.mark(action, "pending");
+  const answer = await tell(name, { action, ...args }, `${name}: ${words(action)}`);
+  from.mark(action, answer.accepted ? "saved" : "refused");
+  setTimeout(() => from.mark(action, null), 900);
   if (!asks) return;
   if (answer.accepted || answer.why === "unknown") await pictureAfter(answer.tick ?? -1);
   busy(false);
@@ -89,7 +114,7 @@ let asking = false;
 
 function busy(is) {
   asking = is;
-  $("actions").setAttribute("aria-busy", String(is));
+  for (const id of ["actions", "ways"]) $(id).setAttribute("aria-busy", String(is));
 }
 
 // A picture that came from now on and is newer than a tick; or for a second none did.
@@ -164,6 +189,8 @@ link.addEventListener("hello", ({ detail }) => {
   hello = detail;
   organising.build(hello);
   pad.build(hello.actions);
+  ways.build(hello);
+  goals.build(hello);
   critic.build(hello);
   world.greet(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
@@ -177,6 +204,7 @@ link.addEventListener("hello", ({ detail }) => {
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
+link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
 link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
 link.addEventListener("let_go", ({ detail }) => {
   drive.release();
@@ -218,8 +246,10 @@ function show() {
   const stopped = Boolean(state.stopped_because);
   $("go").disabled = !stopped || state.by_hand || !inCharge();
   showLink(state);
-  why.show(state);
+  why.show(state, hello);
   pad.show(state);
+  ways.show(state);
+  goals.show(state);
   critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
   setText($("health"), `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms, missed ${state.missed_ticks}`);
@@ -341,7 +371,7 @@ function showTab(name) {
     $(`tab-${each}`).setAttribute("aria-selected", String(each === name));
   }
 }
-TABS.forEach((name, i) => {
+TABS.forEach((name) => {
   $(`tab-${name}`).addEventListener("click", (event) => {
     showTab(name);
     if (event.detail > 0) event.currentTarget.blur(); // clicked: the arrow keys are for the wheels
@@ -351,7 +381,8 @@ TABS.forEach((name, i) => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     event.stopPropagation();
-    const next = TABS[(i + step + TABS.length) % TABS.length];
+    const tabs = TABS.filter((each) => !$(`tab-${each}`).hidden);
+    const next = tabs[(tabs.indexOf(name) + step + tabs.length) % tabs.length];
     showTab(next);
     $(`tab-${next}`).focus();
   });
@@ -374,7 +405,11 @@ keyboard({
   drive,
   stop,
   go: () => !$("go").disabled && go(),
-  act: (i) => inCharge() && pad.names[i] && teach(pad.names[i]),
+  act: (i) => {
+    if (!inCharge()) return;
+    if (ways.level === MID) ways.names[i] && ways.choose(ways.names[i]);
+    else if (pad.names[i]) teach(pad.names[i]);
+  },
   signal: (value) => inCharge() && signal(value),
   undo: () => inCharge() && $("undo-last").checkVisibility() && $("undo-last").click(),
   help,

@@ -10,6 +10,12 @@ const LEFT = {
   along_left_wall: ["M15 21V4", "M9.5 9.5 15 4 20.5 9.5", "M4 2V22"],
 };
 
+// What a robot does at a junction, and the behaviours that have it do so.
+const SAME_AS = {
+  straight: "forward", straight_on: "forward", left: "quarter_turn_left", turn_left: "quarter_turn_left",
+  right: "quarter_turn_right", turn_right: "quarter_turn_right",
+};
+
 const PATHS = {
   forward: ["M12 21V4", "M6 10 12 4 18 10"],
   back: ["M12 3V20", "M6 14 12 20 18 14"],
@@ -18,7 +24,8 @@ const PATHS = {
 };
 
 // Returns an <svg>, or null for an action without a picture.
-export function glyph(action) {
+export function glyph(name) {
+  const action = SAME_AS[name] ?? name;
   const mirrored = action.replace("right", "left");
   const flip = mirrored !== action && mirrored in LEFT;
   const paths = PATHS[flip ? mirrored : action];

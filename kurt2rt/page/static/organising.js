@@ -39,7 +39,7 @@ export class Organising {
   build(hello) {
     this.phaseNames = namesOf(hello.phases);
     $("phases").replaceChildren(...this.phaseNames.map((name, i) => this.#phase(i + 1, name)));
-    $("behaviours").hidden = hello.behaviours.length < 2;
+    $("behaviours").hidden = hello.behaviours.length < 2 || Boolean(hello.mid); // then the mid level's pad has them
     $("behaviours").replaceChildren(...hello.behaviours.map((name) => this.#behaviour(name)));
   }
 

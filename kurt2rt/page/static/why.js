@@ -1,10 +1,10 @@
 // Who moves the wheels and why: a sentence, the distance against R, and while it asks, what is different.
 
-import { words } from "./actions.js";
+import { WITHDRAWN, words } from "./actions.js";
+import { differs, MID, strip, surprise } from "./mid.js";
 import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
 const VALUES_FROM_PHASE = 3;
 const GAUGE_SHARE = 0.7; // where R stands on the gauge
 
@@ -36,6 +36,12 @@ export function sentence(state) {
         ? `${state.teacher ?? "A teacher"} lets it run ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "unknown":
+      if (state.asks_at === MID) {
+        if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
+          return `Which way? Mid-level RLA ${state.nearest} went wrong too often, teach me anew`;
+        }
+        return state.nearest === null ? "Which way? I know none yet, teach me" : "Which way? I don't know, teach me";
+      }
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
         return `RLA ${state.nearest}${of(state)} went wrong too often, teach me anew`;
       }
@@ -64,9 +70,11 @@ export class Why {
   #differences = document.getElementById("differences");
   #shown = "";
 
-  show(state) {
+  show(state, hello) {
     const asks = state.cause === "unknown";
+    const which = asks && state.asks_at === MID && state.mid; // the mid level asks which way
     this.#box.classList.toggle("asks", asks);
+    this.#box.classList.toggle("which", Boolean(which));
     setText(this.#sentence, sentence(state));
     const known = state.nearest !== null && state.distance !== null && state.radius > 0;
     const share = known ? state.distance / state.radius : 0;
@@ -74,12 +82,34 @@ export class Why {
     this.#gauge.classList.toggle("none", !known);
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
     const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
-    setText(this.#nearest, known ? `nearest: RLA ${state.nearest}, ${its}` : "touch the action that is right here");
+    const rla = which ? "mid-level RLA" : "RLA";
+    const untaught = which ? "touch the way that is right here" : "touch the action that is right here";
+    setText(this.#nearest, known ? `nearest: ${rla} ${state.nearest}, ${its}` : untaught);
     const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · worth ${signed(state.value)}`;
-    setText(this.#text, known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet");
-    this.#trace.see(state.tick, known ? share : null);
-    if (asks) this.#show(state.question);
+    const off = which ? differs(state, hello.mid) : known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
+    setText(this.#text, off);
+    this.#surprise(state);
+    this.#trace.see(state.tick, known && !which ? share : null);
+    if (which) this.#compare(state.mid);
+    else if (asks) this.#show(state.question);
     else this.#trace.draw();
+  }
+
+  #surprise(state) {
+    const it = surprise(state);
+    const line = document.getElementById("surprise");
+    line.hidden = !it;
+    if (!it) return;
+    line.classList.toggle("loud", it.loud);
+    setText(line, it.text);
+  }
+
+  // What the robot has come by, and below it the way that the nearest mid-level RLA knows.
+  #compare(mid) {
+    const key = JSON.stringify([mid.here, mid.there]);
+    if (key === this.#shown) return;
+    this.#shown = key;
+    this.#differences.replaceChildren(...strip(mid.here, mid.there));
   }
 
   // Pairs of bars: dark is here, hollow is the nearest RLA's condition.

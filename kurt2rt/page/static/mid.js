@@ -1,0 +1,60 @@
+// The mid level in words and arrows: which way it has the basic level go, why, what it has come by; and surprise.
+
+import { words } from "./actions.js";
+import { glyph } from "./glyphs.js";
+
+export const BASIC = "basic";
+export const MID = "mid";
+const HISTORY = "history";
+const LOUD_FROM = 4; // times the usual distance
+const SURPRISED_TICKS = 300;
+
+// How far off, in words: of histories how many symbols differ.
+export function differs({ distance, radius }, [kind, length]) {
+  if (distance === null) return "none is known yet";
+  return kind === HISTORY
+    ? `${distance.toFixed(0)} of ${length} differ, R ${radius.toFixed(0)}`
+    : `${distance.toFixed(2)} off, R ${radius.toFixed(2)}`;
+}
+
+export function waySentence(state, hello) {
+  const { mid, goal } = state;
+  const way = words(mid.behaviour || "the only behaviour");
+  if (mid.overridden) return `${way} because a teacher said so, until it has finished`;
+  if (mid.rla === null) return `${way}; the mid level has not said anything yet`;
+  const because = goal && state.plan.length ? `it leads to ${goal}, mid-level RLA ${mid.rla}` : `mid-level RLA ${mid.rla}`;
+  return `${way} because ${because}: ${differs(mid, hello.mid)}`;
+}
+
+// How surprised it is: nothing, a quiet word, or a loud one.
+export function surprise({ surprise: it, tick }) {
+  if (!it || tick - it.tick > SURPRISED_TICKS || tick < it.tick) return null;
+  const whose = `${it.level === MID ? "mid-level RLA" : "RLA"} ${it.rla}`;
+  const far = it.times === null ? "" : ` ${it.times.toFixed(1)} ×`; // as far off as usual
+  return { loud: it.times === null || it.times >= LOUD_FROM, text: `surprise${far} after ${whose}${it.new ? ", new" : ""}` };
+}
+
+// A symbol as an arrow, or by its first letters.
+export function symbol(word) {
+  const cell = document.createElement("i");
+  const picture = word && glyph(word);
+  if (picture) cell.append(picture);
+  else cell.textContent = word ? words(word).slice(0, 4) : "·";
+  cell.title = words(word) || "none yet";
+  return cell;
+}
+
+// The last symbols, time going to the right; below each, where wanted, what the nearest RLA has in its place.
+export function strip(here, there) {
+  return here
+    .map((word, i) => {
+      const pair = document.createElement("div");
+      pair.append(symbol(word));
+      if (there.length) {
+        pair.append(symbol(there[i] ?? ""));
+        pair.classList.toggle("differs", word !== there[i]);
+      }
+      return pair;
+    })
+    .reverse();
+}

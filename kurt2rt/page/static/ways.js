@@ -1,0 +1,122 @@
+// The pad that teaches the mid level which way is right, and what that one wants now.
+
+import { words } from "./actions.js";
+import { glyph } from "./glyphs.js";
+import { BASIC, MID, strip, symbol, waySentence } from "./mid.js";
+import { setText, when } from "./why.js";
+
+const TURNED_MS = 400;
+
+const $ = (id) => document.getElementById(id);
+
+export class Ways {
+  #choose;
+  #buttons = new Map();
+  #hello = null;
+  #chosen = MID; // by the teacher; a question goes before it
+  #level = BASIC;
+  #turnedMs = -Infinity;
+  #shown = "";
+  names = [];
+
+  // `choose` gets the behaviour and how it is meant: teach, beside, once.
+  constructor(choose) {
+    this.#choose = choose;
+    for (const button of $("levels").children) {
+      button.addEventListener("click", () => {
+        this.#chosen = button.dataset.level;
+        this.#turn(this.#chosen);
+        this.#turnedMs = -Infinity;
+      });
+    }
+    for (const button of $("meant").children) {
+      button.addEventListener("click", () => this.#mean(button.dataset.meant));
+    }
+  }
+
+  build(hello) {
+    this.#hello = hello;
+    this.names = hello.mid ? hello.behaviours : [];
+    $("levels").hidden = !hello.mid;
+    document.body.classList.toggle("has-mid", Boolean(hello.mid));
+    this.#buttons.clear();
+    $("ways").replaceChildren(...this.names.map((name) => this.#button(name)));
+    this.#turn(hello.mid ? this.#chosen : BASIC);
+    this.#turnedMs = -Infinity;
+    this.#mean("teach");
+  }
+
+  // The level that the pad teaches.
+  get level() {
+    return this.#level;
+  }
+
+  // Whether the question has turned the pad over just now: a touch may have been meant for what was there before.
+  get justTurned() {
+    return performance.now() - this.#turnedMs < TURNED_MS;
+  }
+
+  #button(name) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.dataset.way = name;
+    const picture = glyph(name);
+    if (picture) button.append(picture);
+    const label = document.createElement("b");
+    label.textContent = words(name);
+    button.append(label);
+    button.addEventListener("click", () => this.choose(name));
+    this.#buttons.set(name, button);
+    return button;
+  }
+
+  choose(name) {
+    const meant = $("meant").querySelector("[aria-pressed=true]").dataset.meant;
+    this.#choose(name, meant);
+    this.#mean("teach"); // the next one is a lesson again: not by a choice of long ago
+  }
+
+  #mean(meant) {
+    for (const each of $("meant").children) each.setAttribute("aria-pressed", String(each.dataset.meant === meant));
+  }
+
+  #turn(level) {
+    if (level !== this.#level) this.#turnedMs = performance.now();
+    this.#level = level;
+    for (const each of $("levels").children) each.setAttribute("aria-pressed", String(each.dataset.level === level));
+    $("teach").classList.toggle("ways", level === MID);
+  }
+
+  show(state) {
+    const { mid } = state;
+    $("mid").hidden = !mid || mid.asks; // then it is the question that says so
+    if (!mid || !this.#hello.mid) return;
+    this.#turn(state.cause === "unknown" ? state.asks_at : this.#chosen);
+    setText($("mid-sentence"), waySentence(state, this.#hello));
+    $("mid-sentence").title = [mid.taught_by && `taught by ${mid.taught_by}`, when(mid.taught_at)].filter(Boolean).join(", ");
+    const key = JSON.stringify([mid.here, mid.behaviour]);
+    if (key !== this.#shown) {
+      this.#shown = key;
+      $("strip").replaceChildren(...strip(mid.here, []), this.#next(mid));
+      $("strip").setAttribute("aria-label", `came by: ${[...mid.here].reverse().filter(Boolean).map(words).join(", ") || "nothing yet"}`);
+    }
+    for (const [name, button] of this.#buttons) {
+      button.classList.toggle("current", !mid.asks && name === mid.behaviour);
+      button.classList.toggle("nearest", mid.asks && name === mid.nearest_behaviour);
+    }
+  }
+
+  #next(mid) {
+    const pair = document.createElement("div");
+    pair.className = "next";
+    pair.append(symbol(mid.behaviour));
+    return pair;
+  }
+
+  mark(name, outcome) {
+    const button = this.#buttons.get(name);
+    if (!button) return;
+    button.classList.remove("pending", "saved", "refused");
+    if (outcome) button.classList.add(outcome);
+  }
+}

@@ -1,0 +1,218 @@
+"""The mid level on the page: it asks which way, it is corrected and overridden; goals are named and sought."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+
+import pytest
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+
+from kurt2rt.teaching.hello import MidIntroduction
+from tests.channel.states import COMMANDS, SURPRISED
+from tests.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.test_browser import assert_handy, show_on
+from tests.page.test_critic_on_the_page import ACTIONS
+from tests.page.test_served_page import TOKEN, served
+
+TURNS = ("straight_on", "turn_left", "turn_right")
+ASKS = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
+CALM = "return !document.querySelector('.pending, .saved:not(#said)') && !document.getAnimations().length;"
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+
+
+class Junction:
+    """A robot with a mid level at a junction, and the page that its teacher has open."""
+
+    def __init__(self, phone: Phone, portal: BlockingPortal, robot: FakeRobot) -> None:
+        self.phone = phone
+        self.robot = robot
+        self._portal = portal
+
+    def show(self, **changes: object) -> None:
+        """From the next picture on."""
+        self._portal.call(partial(self.robot.show, **changes))
+
+    def ask_which_way(self) -> None:
+        """The robot stands, for the mid level does not know this way."""
+        stands = {"cause": "unknown", "action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
+        near = {"nearest": 12, "nearest_action": "turn_right", "distance": 7.0, "radius": 6.0}
+        self.show(mid=ASKS, asks_at="mid", **stands, **near)
+        self.reads("#sentence", "Which way? I don't know, teach me")
+
+    def drive_on(self) -> None:
+        """It knows the way."""
+        drives = {"cause": "rla", "action": "forward", "rla": 1, "left_m_s": 0.3, "right_m_s": 0.3}
+        near = {"nearest": 1, "nearest_action": "forward", "distance": 300.0, "radius": 700.0}
+        self.show(mid=COMMANDS, asks_at="basic", **drives, **near)
+        self.reads("#sentence", "RLA 1 of turn left does forward")
+
+    def reads(self, selector: str, text: str) -> None:
+        """Wait until it stands there."""
+        self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
+
+    def told(self, name: str) -> list[tuple[object, ...]]:
+        """What the robot was told of one kind, without the tick that was meant."""
+        return [(each[1], *each[3:]) for each in self.robot.told if each[0] == name]
+
+    def touch_way(self, way: str) -> None:
+        """One of the big buttons, once it may be touched."""
+        self.phone.wait(lambda: self.phone.find("#ways").get_attribute("aria-busy") != "true", "it may be taught")
+        self.phone.touch(f"[data-way={way}]")
+
+    def look(self, name: str, tab: str = "teach") -> None:
+        """It can be read and touched on each screen."""
+        for size in SIZES:
+            self.phone.turn(size, touch=size != LAPTOP)
+            self.phone.wait(lambda: self.phone.run(CALM), "the colours of an answer are gone")
+            self.phone.show(f"13-{name}-{size[0]}x{size[1]}")
+            assert_handy(self.phone, size, tab)
+        self.phone.turn(PORTRAIT)
+
+
+@pytest.fixture
+def junction(a_phone: Phone) -> Iterator[Junction]:
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        page.robot.greeting = replace(
+            A_HELLO, actions=ACTIONS, behaviours=TURNS, mid=MidIntroduction("history", 12, 6.0), seeks=True
+        )
+        page.robot.newest_lessons = (A_LESSON,)
+        page.robot.named = ("door", "window")
+        junction = Junction(a_phone, portal, page.robot)
+        junction.show(teacher="local", place=A_PLACE, behaviour="turn_left", mid=COMMANDS)
+        pictures = portal.start_task_soon(show_on, page.robot)
+        try:
+            a_phone.turn(PORTRAIT)
+            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
+            junction.reads("#sentence", "RLA 1 of turn left does forward")
+            yield junction
+        finally:
+            pictures.cancel()
+
+
+def test_the_line_says_why_the_mid_level_wants_this_way_and_what_it_has_come_by(junction: Junction) -> None:
+    phone = junction.phone
+    junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 2 of 12 differ, R 6")
+    assert not phone.find("#behaviours").is_displayed()
+    assert phone.find("#strip").get_attribute("aria-label") == (
+        "came by: straight, left, left, straight, right, straight, left"
+    )
+    arrows = phone.run("return [...document.querySelectorAll('#strip i')].map((e) => e.title);")
+    assert arrows[-3:] == ["straight", "left", "turn left"]  # time goes to the right, what it wants now is last
+    junction.look("way-known")
+
+
+def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
+    phone = junction.phone
+    junction.ask_which_way()
+    assert phone.text("#nearest") == "nearest: mid-level RLA 12, turn right"
+    assert phone.text("#gauge-text") == "7 of 12 differ, R 6"
+    differing = phone.run("return document.querySelectorAll('#differences .differs').length;")
+    assert differing == 2
+    for each in TURNS:
+        box = phone.run(f"return document.querySelector('[data-way={each}]').getBoundingClientRect().toJSON();")
+        assert box["width"] > 90
+        assert box["height"] > 70
+    assert not phone.find("#actions").is_displayed()
+    junction.look("which-way")
+    junction.touch_way("turn_right")
+    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", False)], "an answer to the mid level")
+    assert junction.told("correct") == []
+
+
+def test_the_mid_level_is_corrected_told_what_is_also_possible_and_overridden(junction: Junction) -> None:
+    phone = junction.phone
+    junction.reads("#mid-sentence", "turn left because")
+    junction.touch_way("straight_on")
+    phone.wait(lambda: junction.told("correct") == [("straight_on", "mid")], "a correction of the mid level")
+    phone.touch("[data-meant=beside]")
+    junction.touch_way("turn_right")
+    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", True)], "a way beside the one it knows")
+    phone.touch("[data-meant=once]")
+    phone.show("13-once")
+    junction.touch_way("turn_right")
+    phone.wait(lambda: junction.told("pursue") == [("turn_right",)], "no lesson")
+    pressed = phone.text("#meant [aria-pressed=true]")
+    assert pressed.startswith("right")  # the next touch is a lesson again
+    junction.show(mid=replace(COMMANDS, behaviour="turn_right", rla=None, overridden=True))
+    junction.reads("#mid-sentence", "turn right because a teacher said so, until it has finished")
+    assert junction.told("correct") == [("straight_on", "mid")]
+
+
+def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junction) -> None:
+    phone = junction.phone
+    junction.show(cause="unknown", asks_at="basic", action=None, rla=None, distance=812.0)
+    phone.wait(lambda: phone.find("#actions").is_displayed(), "the actions are offered")
+    assert not phone.find("#ways").is_displayed()
+    junction.drive_on()
+    phone.wait(lambda: phone.find("#ways").is_displayed(), "the ways are back")
+    phone.touch("[data-level=basic]")
+    phone.wait(lambda: phone.find("#actions").is_displayed(), "the teacher wants to teach actions")
+    phone.touch("[data-action=back]")
+    phone.wait(lambda: ("back",) in junction.told("correct"), "a correction of the basic level")
+    junction.look("basic-level")
+
+
+def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) -> None:
+    phone = junction.phone
+    junction.reads("#mid-sentence", "turn left")
+    assert not phone.find("#surprise").is_displayed()
+    tick = junction.robot.show().tick
+    junction.show(surprise=replace(SURPRISED, tick=tick, times=2.5))
+    junction.reads("#surprise", "surprise 2.5 \N{MULTIPLICATION SIGN} after mid-level RLA 12")
+    assert "loud" not in str(phone.find("#surprise").get_attribute("class"))
+    phone.show("13-surprised")
+    junction.show(surprise=replace(SURPRISED, tick=tick + 10, times=6.0, new=True))
+    junction.reads("#surprise", "surprise 6.0 \N{MULTIPLICATION SIGN} after mid-level RLA 12, new")
+    assert "loud" in str(phone.find("#surprise").get_attribute("class"))
+    junction.look("very-surprised")
+    junction.show(tick=tick + 1000)
+    phone.wait(lambda: not phone.find("#surprise").is_displayed(), "it is over")
+
+
+def test_places_get_names_and_are_sought(junction: Junction) -> None:
+    phone = junction.phone
+    phone.touch("#tab-goals")
+    junction.reads("#goal-list", "window")
+    junction.reads("#goal-now", "seeks nothing")
+    phone.find("#situation-name").send_keys("lift")
+    phone.touch("#name-situation")
+    phone.wait(lambda: junction.told("name_situation") == [("lift",)], "this place has a name")
+    junction.robot.named = ("door", "lift", "window")
+    junction.show(lessons=2)
+    junction.reads("#goal-list", "lift")
+    phone.touch("[data-name=door] [aria-label='Seek door']")
+    phone.wait(lambda: junction.told("seek") == [("door",)], "it is to go there")
+    junction.show(goal="door", plan=("turn_left", "straight_on"), plan_says="on the way to door: 2 ways left")
+    junction.reads("#goal-now", "on the way to door: 2 ways left")
+    junction.reads("#mid-sentence", "turn left because it leads to door, mid-level RLA 12")
+    assert phone.text("#plan") == "then turn left, straight on"
+    junction.look("goals", "goals")
+    phone.touch("[data-name=lift] [aria-label='The robot stands at lift']")
+    assert junction.told("be_at") == []
+    phone.touch("[data-name=lift] [aria-label='The robot stands at lift']")
+    phone.wait(lambda: junction.told("be_at") == [("lift",)], "it was set down there")
+    phone.touch("#stop-seeking")
+    phone.wait(lambda: any(each[0] == "stop_seeking" for each in junction.robot.told), "no goal any more")
+    phone.touch("#tab-teach")
+    assert phone.complaints() == []
+
+
+def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> None:
+    phone = a_phone
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        page.robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=TURNS)
+        portal.call(partial(page.robot.show, teacher="local", behaviour="straight_on"))
+        pictures = portal.start_task_soon(show_on, page.robot)
+        try:
+            phone.turn(PORTRAIT)
+            phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
+            phone.wait(lambda: "RLA 1" in phone.text("#sentence"), "a picture")
+            for size in (PORTRAIT, LAPTOP):
+                phone.turn(size, touch=size != LAPTOP)
+                for name in ("#mid", "#levels", "#ways", "#meant", "#tab-goals", "#goals", "#surprise"):
+                    assert not phone.find(name).is_displayed(), name
+            assert phone.find("#behaviours").is_displayed()
+            assert phone.find("#actions").is_displayed()
+        finally:
+            pictures.cancel()
