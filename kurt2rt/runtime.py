@@ -21,6 +21,7 @@ from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
 from kurt2rt.perception.weights import weights_of
+from kurt2rt.planning.navigator import Navigator
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.repertoire.of_task import repertoire_of
@@ -29,6 +30,7 @@ from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.authority import Authority
+from kurt2rt.teaching.errands import Errands
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
@@ -49,6 +51,8 @@ class Runtime:
     level: BasicLevel
     mid: MidLevel | None
     """Over the basic level; None where the task has none."""
+    navigator: Navigator | None
+    """Has the mid level go to goals; None where there is no mid level."""
     wanted: Wanted
     school: School
     reinforcement: Reinforcement
@@ -126,6 +130,7 @@ def build_runtime(
     at_the_wheels = level_override or level
     statistics = statistics or StatisticsCounter()
     expecting = Expecting(system, mid, statistics.transitions, None if saved is None else saved.expectations)
+    navigator = None if mid is None else Navigator(mid, statistics.transitions, expecting.of)
     lessons = None if mid is None else MidLessons(mid)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = repertoire_of(task, settings)
@@ -143,6 +148,7 @@ def build_runtime(
         agreement=agreement,
         self_teaching=self_teaching,
         mid=lessons,
+        errands=None if navigator is None or lessons is None else Errands(navigator, lessons),
         asked=asked,
     )
     inbox = TeacherInbox()
@@ -150,7 +156,7 @@ def build_runtime(
     tick = Tick(
         robot,
         Perception(definition, sensors),
-        at_the_wheels if mid is None else LayerStack(at_the_wheels, mid),
+        at_the_wheels if mid is None else LayerStack(at_the_wheels, mid, navigator),
         school,
         inbox,
         keeper,
@@ -168,6 +174,7 @@ def build_runtime(
         definition,
         level,
         mid,
+        navigator,
         wanted,
         school,
         reinforcement,

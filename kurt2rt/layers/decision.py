@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
 from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.planning.step import PlanStep
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.rla.rla_system import Match
 
@@ -28,6 +29,10 @@ class Cause(StrEnum):
     """The robot knows what to do, but needs a teacher who is there, and none is."""
     UNSAVED = "unsaved"
     """Lessons cannot be saved at the moment: the robot stands until they are."""
+    AT_GOAL = "at goal"
+    """The robot has come to where it was sent."""
+    NO_WAY = "no way"
+    """From here nothing that was taught leads to where the robot was sent."""
 
 
 class MidDecision(NamedTuple):
@@ -42,7 +47,7 @@ class MidDecision(NamedTuple):
     asks: bool
     """Whether no RLA is near enough, and nobody overrides it: the robot stands and asks."""
     overridden: bool
-    """Whether a teacher has commanded the behaviour, until the next junction has been passed."""
+    """Whether a teacher has commanded a behaviour that no RLA says here, until the next junction has been passed."""
     event: JunctionEvent | None
     """The junction that has been passed in this very tick."""
 
@@ -64,6 +69,8 @@ class Decision(NamedTuple):
     """The level that does not know its situation, where one does not; `match` is that level's."""
     mid: MidDecision | None = None
     """What the mid level commands; None where there is none."""
+    plan: PlanStep | None = None
+    """How it stands with the goal; None while there is none."""
 
     @property
     def driving(self) -> bool:

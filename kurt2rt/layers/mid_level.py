@@ -48,7 +48,7 @@ class MidLevel:
         self.settings = settings
         self.chooser: Chooser | None = None
         self._wanted = wanted
-        self._overridden = False
+        self._overridden = self._answered_overridden = False
         self._match: Match | None = None
         self._changes = -1
         self._last = self._answer()
@@ -59,12 +59,20 @@ class MidLevel:
         return self.situation.vector
 
     @property
+    def overridden(self) -> bool:
+        """Whether a teacher commands until the next junction has been passed."""
+        return self._overridden
+
+    @property
     def insert_beyond(self) -> float:
         """Farther than this from the nearest condition a correction is inserted, else it replaces."""
         return self.settings.learning.insert_beyond
 
     def override(self, behaviour: str) -> None:
-        """A teacher commands a behaviour until the next junction has been passed. Raises ValueError as `Wanted`."""
+        """A teacher commands a behaviour until the next junction has been passed. Raises ValueError as `Wanted`.
+
+        Where one of the RLAs that know this very situation says so, too, it commands: what comes of it is its doing.
+        """
         self._wanted.pursue(behaviour)
         self._overridden = True
 
@@ -93,12 +101,16 @@ class MidLevel:
         return self._last if event is None else self._last._replace(event=event)
 
     def _still_holds(self) -> bool:
-        last = self._last
-        return last.overridden == self._overridden and last.behaviour == self._wanted.behaviour
+        return self._answered_overridden == self._overridden and self._last.behaviour == self._wanted.behaviour
 
     def _answer(self) -> MidDecision:
         wanted, match = self._wanted, self._match
+        self._answered_overridden = self._overridden
         if self._overridden:
+            if match is not None and match.known:
+                for rla in self.system.competitors(match.rla):
+                    if rla.action == wanted.behaviour:
+                        return MidDecision(rla.action, rla.rla_id, match, False, False, None)
             return MidDecision(wanted.behaviour, None, match, False, True, None)
         if match is None or not match.known:
             return MidDecision(wanted.behaviour, None, match, True, False, None)

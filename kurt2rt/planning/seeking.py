@@ -1,27 +1,13 @@
 """Going to a goal: plan, follow the plan, plan anew when surprised, and say so where there is no way."""
 
 from collections.abc import Callable
-from enum import StrEnum
 
 from kurt2rt.planning.chart import Chart, GroupAt
 from kurt2rt.planning.goal import Goal
 from kurt2rt.planning.plan import Plan, plan_to
+from kurt2rt.planning.step import Course
 from kurt2rt.planning.target import Target, Vector
 from kurt2rt.rla.rla import Rla
-
-
-class Course(StrEnum):
-    """How it stands with the goal."""
-
-    NONE = "none"
-    """There is none: the mid level commands as ever."""
-    UNDER_WAY = "under way"
-    ARRIVED = "arrived"
-    """The robot stands there."""
-    NO_WAY = "no way"
-    """From where it is nothing that it knows leads there; the robot stands."""
-    LOST = "lost"
-    """It is at no place that it knows; the robot stands."""
 
 
 class Seeking:
@@ -67,7 +53,7 @@ class Seeking:
         left = 0 if self.plan is None else len(self.plan.ways)
         way = None if self.plan is None else self.plan.next
         if way is None:
-            return f"on the way to {self.goal.text}"
+            return f"on the way to {self.goal.text}: the plan begins behind the next junction"
         ways = "1 way" if left == 1 else f"{left} ways"
         return f"on the way to {self.goal.text}: {ways} left, now {way.action} (RLA {way.rla_id})"
 

@@ -6,6 +6,7 @@ Four kinds, as in the paper: motor commands, behaviours, reinforcements, and org
 
 from dataclasses import dataclass
 
+from kurt2rt.planning.goal import Goal
 from kurt2rt.rla.rla import BASIC, Phase
 
 # Motor commands and presence: streams.
@@ -156,6 +157,48 @@ class Pursue:
 
 
 @dataclass(frozen=True, slots=True)
+class NameSituation:
+    """Give a situation of the mid level a name, so that the robot can be sent there: door, this junction."""
+
+    command_id: str
+    teacher: str
+    name: str
+    """One that was given already means this situation from now on."""
+    decision_tick: int | None = None
+    """The situation of which tick; None: the present one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seek:
+    """Go to a goal, by whatever ways were taught; stand there."""
+
+    command_id: str
+    teacher: str
+    goal: Goal
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a stop after it goes before. None: he stands by."""
+
+
+@dataclass(frozen=True, slots=True)
+class StopSeeking:
+    """Seek no goal any more: the mid level commands as ever."""
+
+    command_id: str
+    teacher: str
+    seen_tick: int | None = None
+    """As in `Seek`: a robot that has arrived may drive on."""
+
+
+@dataclass(frozen=True, slots=True)
+class BeAt:
+    """The robot was set down at a place that has a name: its reckoning goes on from there."""
+
+    command_id: str
+    teacher: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
 class SetPhase:
     """The training phase from now on."""
 
@@ -233,6 +276,10 @@ Command = (
     | Appraise
     | Undo
     | Pursue
+    | NameSituation
+    | Seek
+    | StopSeeking
+    | BeAt
     | SetPhase
     | BeginSession
     | EndSession

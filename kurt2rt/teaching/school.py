@@ -14,6 +14,7 @@ from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
+    BeAt,
     BeginSession,
     Command,
     CommandResult,
@@ -21,15 +22,19 @@ from kurt2rt.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    NameSituation,
     Pursue,
     Resume,
     RunBehaviour,
+    Seek,
     SetPhase,
     Stop,
+    StopSeeking,
     Take,
     Teach,
     Watch,
 )
+from kurt2rt.teaching.errands import ErrandCommand, Errands
 from kurt2rt.teaching.learning import Learning
 from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
@@ -57,11 +62,12 @@ class School:
         agreement: Agreement | None = None,
         self_teaching: SelfTeaching | None = None,
         mid: MidLessons | None = None,
+        errands: Errands | None = None,
         asked: bool = True,
     ) -> None:
         """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
 
-        Without `mid` the teacher alone says what is wanted.
+        Without `mid` the teacher alone says what is wanted; without `errands` there are no goals.
 
         `asked`: False where nobody is there who could be asked, as in an exam.
         """
@@ -73,6 +79,7 @@ class School:
         self.agreement = agreement
         self.reinforcement = reinforcement
         self.mid = mid
+        self._errands = errands
         self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._tuition = Tuition(
             level,
@@ -233,6 +240,13 @@ class School:
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
             case Pursue():
                 return self._pursue(command, tick), None
+            case Seek() | StopSeeking():
+                refuse(self._stopped_since(command))
+                return self._errands_of(command).carry_out(command), None
+            case BeAt():
+                return self._errands_of(command).carry_out(command), None
+            case NameSituation():
+                return self._errands_of(command).name(command, self._origin(command, tick))
             case RunBehaviour():
                 return self._run(command, tick), None
             case BeginSession() | EndSession():
@@ -273,6 +287,11 @@ class School:
         so_long = "" if mid is None else " until the next junction is passed"
         return f"{command.behaviour or 'the only behaviour'} is wanted{so_long}"
 
+    def _errands_of(self, command: ErrandCommand) -> Errands:
+        if self._errands is None:
+            raise RefusedError(f"{type(command).__name__}: this robot has no mid level that could go anywhere")
+        return self._errands
+
     def _pass_on(self, before: str | None) -> None:
         """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""
         if before is not None:
@@ -306,7 +325,7 @@ class School:
         others = sorted(self._stopped_by - {teacher})
         return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
 
-    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase | Pursue) -> str | None:
+    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase | Pursue | Seek | StopSeeking) -> str | None:
         """What was said before a stop, and comes after it, must not lift it, nor change what comes after it."""
         if command.seen_tick is None or command.seen_tick >= self.stopped_at_tick:
             return None

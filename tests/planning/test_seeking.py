@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.planning.seeking import Course, Seeking
+from kurt2rt.planning.seeking import Seeking
+from kurt2rt.planning.step import Course
 from kurt2rt.planning.target import NoSuchGoalError, Target, target_of
 from kurt2rt.rla.rla import MID
 from tests.planning.town import FEATURES, RADIUS, Town

@@ -1,0 +1,46 @@
+"""What a teacher says of places and goals: names for situations, where the robot is, where it is to go."""
+
+from kurt2rt.planning.navigator import Navigator
+from kurt2rt.planning.target import NoSuchGoalError
+from kurt2rt.rla.rla import MID, Origin, SituationNamed, TeachingEvent
+from kurt2rt.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
+from kurt2rt.teaching.mid_lessons import MidLessons
+from kurt2rt.teaching.refused import RefusedError
+
+ErrandCommand = NameSituation | Seek | StopSeeking | BeAt
+
+LONGEST_NAME = 64
+
+
+class Errands:
+    """Carries these commands out, with the navigator."""
+
+    def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:
+        self._navigator = navigator
+        self._lessons = lessons
+
+    def name(self, command: NameSituation, origin: Origin) -> tuple[str, TeachingEvent]:
+        """The event that gives a situation its name. Raises RefusedError."""
+        name = command.name
+        if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
+            raise RefusedError(f"{name!r} is no name for a situation; give 1 to {LONGEST_NAME} letters on one line")
+        situation = tuple(self._lessons.meant(command.decision_tick).vector.tolist())
+        return f"situation named: {name}", SituationNamed(name, situation, MID, origin)
+
+    def carry_out(self, command: Seek | StopSeeking | BeAt) -> str:
+        """What was done, in words. Raises RefusedError."""
+        match command:
+            case Seek(goal=goal):
+                try:
+                    return self._navigator.seek(goal)
+                except NoSuchGoalError as error:
+                    raise RefusedError(str(error)) from error
+            case StopSeeking():
+                self._navigator.stop()
+                return "no goal is sought"
+            case BeAt(name=name):
+                try:
+                    self._navigator.be_at(name)
+                except ValueError as error:
+                    raise RefusedError(str(error)) from error
+                return f"the robot is at {name}"
