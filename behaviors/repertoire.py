@@ -10,6 +10,7 @@ from behaviors.repertoire_settings import (
     KeepDistanceAction,
     MotorAction,
     RepertoireSettings,
+    TaskAction,
     TaughtAction,
     TurnByAngleAction,
 )
@@ -22,7 +23,7 @@ Repertoire = Mapping[str, Behaviour]
 """Behaviours by the name that stands in an RLA's action part."""
 
 
-BuildTaught = Callable[[TaughtAction, Path], Behaviour]
+BuildTaught = Callable[[TaughtAction | TaskAction, Path], Behaviour]
 """Builds an action that was taught, which stands in the repertoire of that file. Raises ValueError."""
 
 
@@ -38,7 +39,7 @@ def load_repertoire(
     repertoire: dict[str, Behaviour] = {}
     for position, action in enumerate(settings.actions):
         place = f"{path}: actions.{position} ({action.name})"
-        if isinstance(action, TaughtAction):
+        if isinstance(action, TaughtAction | TaskAction):
             repertoire[action.name] = _build_taught(action, path, place, build_taught)
             continue
         try:
@@ -49,7 +50,7 @@ def load_repertoire(
     return repertoire
 
 
-def _build_taught(action: TaughtAction, path: Path, place: str, build: BuildTaught | None) -> Behaviour:
+def _build_taught(action: TaughtAction | TaskAction, path: Path, place: str, build: BuildTaught | None) -> Behaviour:
     if build is None:
         raise SettingsError(f"{place}: is of kind {action.kind}, and nothing taught can act here; leave it out")
     try:

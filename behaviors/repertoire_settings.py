@@ -66,8 +66,19 @@ class TaughtAction(Settings):
     """Which one of the task; left out where it has only one."""
 
 
+class TaskAction(Settings):
+    """A complete task with all its layers, and with what a knowledge file holds of it."""
+
+    kind: Literal["task"]
+    name: ActionName
+    task: str
+    """By name (config/tasks), or path to its YAML file."""
+    knowledge: Annotated[str, Field(min_length=1)]
+    """The file; a path that is not absolute begins at the folder of this repertoire."""
+
+
 ActionSettings = Annotated[
-    MotorAction | KeepDistanceAction | TurnByAngleAction | TaughtAction, Field(discriminator="kind")
+    MotorAction | KeepDistanceAction | TurnByAngleAction | TaughtAction | TaskAction, Field(discriminator="kind")
 ]
 
 
