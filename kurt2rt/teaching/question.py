@@ -40,6 +40,9 @@ class Question:
             return f"I know nothing{of} yet, teach me"
         features = ", ".join(f"{each.name} {each.here:.0f} not {each.in_condition:.0f}" for each in self.differing)
         nearest = rla_title(self.nearest_rla, self.behaviour)
+        if self.action != ASK and self.distance <= self.radius:
+            # It was chosen, and is a taught system itself, in which no RLA is near enough.
+            return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"
         action = "its action was withdrawn" if self.action == ASK else self.action
         return (
             f"I don't know this situation, teach me: nearest is {nearest} ({action}) "

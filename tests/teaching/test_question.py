@@ -68,3 +68,8 @@ def test_a_withdrawn_action_is_told_in_words() -> None:
     assert str(question).startswith(
         "I don't know this situation, teach me: nearest is RLA 1 (its action was withdrawn) at 0 of 300"
     )
+
+
+def test_where_the_action_itself_is_lost_it_says_so() -> None:
+    question = asked((100,) * 7, (110, *(100,) * 6))
+    assert str(question) == "RLA 1 says curve_left, which does not know how to go on here; teach me another action"
