@@ -12,6 +12,7 @@ from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
+from kurt2rt.knowledge.show_rla import render_rla
 from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.network.file import FORMATS, write_network
@@ -32,11 +33,17 @@ KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt 
 @knowledge.command()
 def show(
     file: KnowledgeFile,
-    limit: Annotated[int | None, typer.Option(min=1, help="Show only the oldest so many RLAs.")] = None,
+    limit: Annotated[
+        int | None, typer.Option(min=1, help="Show only the oldest so many RLAs; with --rla so many features.")
+    ] = None,
+    rla: Annotated[int | None, typer.Option(help="Show this RLA whole, with what is expected to follow it.")] = None,
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
         console = console_of(_WIDE)
+        if rla is not None:
+            console.print(render_rla(journal, rla, limit))
+            return
         console.print(render_knowledge(journal, limit, wide=console.width >= _WIDE))
 
 

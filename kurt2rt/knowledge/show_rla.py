@@ -1,0 +1,74 @@
+"""One RLA, whole: condition, action, and what is expected to follow it (paper, III.A), for `knowledge show --rla`."""
+
+import math
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from kurt2rt.expectations.expectation import Expectation
+from kurt2rt.expectations.expectations import is_of
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import fold_entries
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.show import TICK_S
+from kurt2rt.knowledge.shown import plain
+from kurt2rt.knowledge.statistics import follow_ups
+from kurt2rt.perception.definition import AVERAGED
+from kurt2rt.rla.rla import BASIC, Rla
+
+
+def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> RenderableType:
+    """What one RLA says, and what followed it: the features that change most come first, at most `limit` of them.
+
+    Raises KnowledgeError where no such RLA lives.
+    """
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    system = fold_entries(journal, journal.entries(), radius=math.inf)
+    rla = system.get(rla_id)
+    if rla is None:
+        raise KnowledgeError(f"{journal.path}: holds no RLA {rla_id}; kurt2rt knowledge show lists them")
+    statistics = journal.statistics()
+    binding = journal.binding
+    names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
+    known = statistics.expectations.get(rla_id)
+    expectation = known if known is not None and is_of(system, rla_id, known, rla.level) else None
+    origin = rla.origin
+    uses = statistics.uses.get(rla_id, 0)
+    parts: list[RenderableType] = [
+        plain(f"{rla.title}: {rla.action}, taught by {origin.teacher} in phase {origin.phase.value}, used {uses} times")
+    ]
+    shares = follow_ups(statistics).get(rla_id, {})
+    if shares:
+        parts.append(Text("followed by " + ", ".join(f"{each} ({share:.0f} %)" for each, share in shares.items())))
+    if expectation is None:
+        parts.append(Text("Nothing is expected yet: it was never seen to end with another RLA taking over."))
+    else:
+        seconds = f"{expectation.ticks * TICK_S:.2f} s"
+        parts.append(Text(f"expected, of {expectation.count} ends seen, {seconds} after it began:"))
+    parts.append(_features(rla, names, expectation, limit))
+    return Group(*parts)
+
+
+def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None, limit: int | None) -> RenderableType:
+    mean = None if expectation is None else expectation.mean.tolist()
+    spread = None if expectation is None else expectation.spread.tolist()
+    # Averages over seconds say little of what one RLA changed.
+    farthest = rla.condition if mean is None else [then - now for then, now in zip(mean, rla.condition, strict=True)]
+    order = sorted(range(len(names)), key=lambda place: (names[place].endswith(AVERAGED), -abs(farthest[place])))
+    table = Table(box=SIMPLE_HEAD)
+    for heading in ("feature", "condition", *(("expected", "spread") if mean is not None else ())):
+        table.add_column(heading, justify="left" if heading == "feature" else "right")
+    for place in order[:limit]:
+        cells = [_number(rla.condition[place])]
+        if mean is not None and spread is not None:
+            cells += [_number(mean[place]), f"±{_number(spread[place])}"]
+        table.add_row(plain(names[place]), *cells)
+    hidden = len(names) - table.row_count
+    return Group(table, Text(f"and {hidden} more features")) if hidden else table
+
+
+def _number(value: float) -> str:
+    """Counts whole, metres and shares with their decimals."""
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")
