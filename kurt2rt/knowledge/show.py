@@ -12,11 +12,13 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show_level import level_table
+from kurt2rt.knowledge.show_mid import mid_table
 from kurt2rt.knowledge.shown import answer, appraised, instead_of, plain, valued, when_and_who
 from kurt2rt.knowledge.statistics import follow_ups
 from kurt2rt.perception.definition import AVERAGED
 from kurt2rt.rla.rla import (
     CRITIC,
+    MID,
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
@@ -75,7 +77,10 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
     for level, features in journal.binding.levels.items():
         of_level = system.rlas_at(level)
         if of_level:
-            parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
+            if level == MID:
+                parts.append(mid_table(of_level[:limit], features, taught, statistics.uses, shares))
+            else:
+                parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
             more = len(of_level) - len(of_level[:limit])
             parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
     return Group(*parts)
@@ -165,10 +170,11 @@ def _names(teachers: Iterable[str]) -> str:
 
 def _how_many(system: RlaSystem) -> str:
     asking = sum(rla.asks for rla in system.rlas)
-    appraisals = len(system.rlas_at(CRITIC))
+    ways, appraisals = len(system.rlas_at(MID)), len(system.rlas_at(CRITIC))
     return (
         f"{len(system)} RLAs"
         + (f", {asking} of which ask again," if asking else "")
+        + (f" and {ways} mid-level RLAs" if ways else "")
         + (f" and {appraisals} appraisal RLAs" if appraisals else "")
     )
 

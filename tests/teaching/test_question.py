@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from kurt2rt.rla.rla_system import RlaSystem
-from kurt2rt.teaching.question import Question, ask
+from kurt2rt.rla.rla import MID
+from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.teaching.question import Question, WayQuestion, ask, ask_the_way
 from tests.rla.helpers import created, withdrawn
 
 NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
@@ -73,3 +74,27 @@ def test_a_withdrawn_action_is_told_in_words() -> None:
 def test_where_the_action_itself_is_lost_it_says_so() -> None:
     question = asked((100,) * 7, (110, *(100,) * 6))
     assert str(question) == "RLA 1 says curve_left, which does not know how to go on here; teach me another action"
+
+
+def of_the_way(*conditions: tuple[float, ...]) -> WayQuestion:
+    system = RlaSystem(1, 1.0, others={MID: Space(3, 1.0, metric="hamming")})
+    for number, condition in enumerate(conditions, 1):
+        system.apply(created(number, condition, "turn_left", level=MID))
+    return ask_the_way(system.match(np.array([1.0, 2.0, 0.0]), level=MID), ("straight", "left", ""))
+
+
+def test_the_mid_level_asks_which_behaviour_to_follow_and_says_how_it_came_there() -> None:
+    question = of_the_way((2.0, 1.0, 0.0))
+    assert (question.nearest_rla, question.behaviour, question.distance, question.radius) == (1, "turn_left", 2.0, 1.0)
+    assert question.here == ("straight", "left")
+    assert str(question) == (
+        "I don't know the way from here, teach me which behaviour to follow: "
+        "nearest is mid-level RLA 1 (turn_left) at 2 of 1; I came by straight, left"
+    )
+
+
+def test_the_mid_level_knows_no_way_before_its_first_lesson() -> None:
+    assert str(of_the_way()) == (
+        "I don't know any way yet, teach me which behaviour to follow; I came by straight, left"
+    )
+    assert str(ask_the_way(None, ("", ""))) == "I don't know any way yet, teach me which behaviour to follow"

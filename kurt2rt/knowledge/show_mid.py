@@ -1,0 +1,58 @@
+"""RLAs of the mid level as a table: which taught behaviour is to be followed where, and who taught it."""
+
+from collections.abc import Iterable, Mapping
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from kurt2rt.knowledge.binding import LevelFeatures
+from kurt2rt.knowledge.entry import StoredEntry
+from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
+from kurt2rt.mid.settings import MidSettings
+from kurt2rt.mid.shipped import shipped_mid
+from kurt2rt.rla.rla import Rla
+
+_FOLLOW_UPS = 3
+
+
+def mid_table(
+    rlas: Iterable[Rla],
+    features: LevelFeatures,
+    taught: Mapping[str, StoredEntry],
+    uses: Mapping[int, int],
+    follow_ups: Mapping[int, Mapping[int, float]],
+) -> Table:
+    """A row per RLA. `taught`: the entry of each command id; `follow_ups`: shares in percent, most frequent first.
+
+    A history is told in words, the newest symbol first, where its settings are shipped; else in numbers.
+    """
+    settings = shipped_mid(features.feature_hash)
+    table = Table(box=SIMPLE_HEAD)
+    table.add_column("mid-level RLA", justify="right")
+    for heading in ("behaviour", "instead of", "taught (UTC), by"):
+        table.add_column(heading, overflow="fold")
+    table.add_column("uses", justify="right")
+    table.add_column("where: the newest first", overflow="fold")
+    table.add_column("followed by", overflow="fold")
+    for rla in rlas:
+        entry = taught[rla.origin.command_id]
+        following = list(follow_ups.get(rla.rla_id, {}).items())[:_FOLLOW_UPS]
+        table.add_row(
+            str(rla.rla_id),
+            answer(rla),
+            instead_of(entry),
+            when_and_who(entry.stamped_at, rla.origin.teacher),
+            str(uses.get(rla.rla_id, 0)),
+            plain(_where(rla, settings, features.feature_names)),
+            ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in following),
+        )
+    return table
+
+
+def _where(rla: Rla, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:
+    if settings is not None:
+        words = [word for word in settings.situation.words(rla.condition) if word]
+    else:
+        named = zip(feature_names, rla.condition, strict=True)
+        words = [f"{name} {value:.3g}" for name, value in named if value]
+    return ", ".join(words) or "at the beginning"
