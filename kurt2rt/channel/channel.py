@@ -90,6 +90,7 @@ class Channel:
                 self._texts[result.command_id] = result.text
             else:
                 reception.settle(result.command_id, done(tick, result.text))
+        self._telling.follow(record)
         self._ticks += 1
         if self._ticks % self._every_ticks == 0:
             self._site.show(encode_state(self._telling.picture(record)))
@@ -145,6 +146,7 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
     """What robot this is, for a page that has never seen one."""
     robot, sensors = runtime.robot, runtime.robot.infrared.sensors
     critic = None if runtime.school.critic is None else runtime.school.critic.settings
+    mid = None if runtime.mid is None else runtime.mid.settings
     actions: Sequence[str] = list(runtime.level.repertoire)
     return {
         "v": VERSION,
@@ -157,8 +159,8 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "behaviours": list(runtime.wanted.behaviours),
         "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],
         "trusted_from": 1.0 if critic is None else critic.agreement.bound,
-        "mid": None,
-        "seeks": False,
+        "mid": None if mid is None else [mid.situation.kind, len(mid.features), mid.learning.radius],
+        "seeks": runtime.navigator is not None,
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,

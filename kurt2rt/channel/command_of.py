@@ -3,34 +3,44 @@
 from kurt2rt.channel.requests import (
     AnswerRequest,
     AppraiseRequest,
+    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
     DeleteRequest,
+    NameRequest,
     PhaseRequest,
     PursueRequest,
     ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
     RewardRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
     SessionRequest,
     TakeRequest,
     UndoRequest,
 )
+from kurt2rt.planning.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.teaching.commands import (
     Appraise,
+    BeAt,
     BeginSession,
     Command,
     Correct,
     DeleteRla,
     EndSession,
     HandOver,
+    NameSituation,
     Pursue,
     ReplaceAction,
     Resume,
     Reward,
     RunBehaviour,
+    Seek,
     SetPhase,
+    StopSeeking,
     Take,
     Teach,
     Undo,
@@ -42,10 +52,10 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
     match request:
         case BehaviourRequest(action=action, ticks=ticks):
             return RunBehaviour(command_id, device, action, ticks, request.seen)
-        case AnswerRequest(action=action, decision_tick=tick):
-            return Teach(command_id, device, action, tick)
-        case CorrectRequest(action=action, decision_tick=tick):
-            return Correct(command_id, device, action, tick)
+        case AnswerRequest(action=action, decision_tick=tick, level=level, beside=beside):
+            return Teach(command_id, device, action, tick, level, beside)
+        case CorrectRequest(action=action, decision_tick=tick, level=level):
+            return Correct(command_id, device, action, tick, level)
         case RewardRequest(value=value, decision_tick=tick):
             return Reward(command_id, device, value, tick)
         case AppraiseRequest(appraisal=appraisal, decision_tick=tick):
@@ -60,6 +70,18 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return SetPhase(command_id, device, phase, request.seen)
         case PursueRequest(behaviour=behaviour):
             return Pursue(command_id, device, behaviour, request.seen)
+        case NameRequest(name=name, decision_tick=tick):
+            return NameSituation(command_id, device, name, tick)
+        case SeekRequest(name=None):
+            return StopSeeking(command_id, device, request.seen)
+        case SeekRequest(name=str(name)):
+            return Seek(command_id, device, NamedGoal(name), request.seen)
+        case SeekRlaRequest(rla_id=rla_id):
+            return Seek(command_id, device, RlaGoal(rla_id), request.seen)
+        case SeekLikeRequest(features=features, tolerance=tolerance):
+            return Seek(command_id, device, PartialGoal(features, tolerance), request.seen)
+        case BeAtRequest(name=name):
+            return BeAt(command_id, device, name)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
         case SessionRequest(name=str(name)):

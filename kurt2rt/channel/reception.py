@@ -9,17 +9,14 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
-    AnswerRequest,
-    BeAtRequest,
+    MOST_SITUATIONS,
     BehaviourRequest,
     CommandRequest,
-    CorrectRequest,
     DriveRequest,
     ExportRequest,
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
-    NameRequest,
     PlaceRequest,
     PursueRequest,
     Request,
@@ -36,7 +33,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
-from kurt2rt.rla.rla import BASIC
+from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
     Command,
@@ -130,7 +127,7 @@ class Reception:
             case LessonsRequest(count=count):
                 return Reply(Verdict.DONE, {"lessons": self._lessons(count)})
             case SituationsRequest():
-                return Reply(Verdict.DONE, {"situations": []})
+                return Reply(Verdict.DONE, {"situations": self._situations()})
             case WorldRequest():
                 return self._world()
         return Reply(Verdict.NOT_HERE)
@@ -201,10 +198,6 @@ class Reception:
                 reply = self._change_world(device, request)
                 self._outcomes.begin(command_id).set_result(reply)
                 return None
-            case NameRequest() | SeekRequest() | SeekRlaRequest() | SeekLikeRequest() | BeAtRequest():
-                return refusal("refused", "this robot takes no goals", self.tick)
-            case AnswerRequest(level=level) | CorrectRequest(level=level) if level != BASIC:
-                return refusal("refused", "this robot has no mid level", self.tick)
         held = self._runtime.school.authority.held_by_another(device)
         if held is not None and not isinstance(request, TakeRequest):
             return refusal("held", held, self.tick)
@@ -235,6 +228,7 @@ class Reception:
                 self._ground.move_wall(request.name, request.dx_m, request.dy_m)
                 return done(self.tick, f"{request.name} moved")
             self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
+            self._runtime.set_down()
         except ValueError as error:
             return refusal("refused", str(error), self.tick)
         return done(self.tick, "the robot stands elsewhere")
@@ -284,6 +278,9 @@ class Reception:
                     ]
                 )
         return rows
+
+    def _situations(self) -> list[str]:
+        return sorted(self._runtime.level.system.named_at(MID))[:MOST_SITUATIONS]
 
     def _world(self) -> Reply:
         if self._ground is None:

@@ -141,7 +141,9 @@ class State:
     signals_missing: tuple[int, int] = (0, 0)
     """How many bad and how many good signals the teacher still has to give before agreement is known."""
     asks_at: str = BASIC
-    """While the robot asks: the level that does, BASIC or MID; nearest, distance and radius are of that level."""
+    """The level that does not know its situation, where one does not: BASIC or MID. Nearest, distance and radius are of
+    that level.
+    """
     mid: MidState | None = None
     """None where the robot has no mid level."""
     surprise: SurpriseState | None = None

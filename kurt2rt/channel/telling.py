@@ -4,7 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.channel.ground import Ground
-from kurt2rt.channel.state import State
+from kurt2rt.channel.mid_telling import mid_state, surprise_state
+from kurt2rt.channel.state import MidState, State, SurpriseState
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.question import FeatureDifference, ask
 from kurt2rt.tick import TickRecord
@@ -41,6 +43,11 @@ class Telling:
         self._ground = ground
         self._pictures = 0
         self._late_p99_ms = 0.0
+        self._surprise: SurpriseState | None = None
+
+    def follow(self, record: TickRecord) -> None:
+        """Every tick, also of those that become no picture: a surprise is over in one."""
+        self._surprise = surprise_state(record) or self._surprise
 
     def picture(self, record: TickRecord) -> State:
         """The robot after a tick."""
@@ -50,9 +57,10 @@ class Telling:
             self._late_p99_ms = runtime.ledger.lateness().p99_us / 1000.0
         self._pictures += 1
         question: tuple[FeatureDifference, ...] = ()
-        if decision.asking and match is not None:
+        if decision.asking and match is not None and decision.asks_at == BASIC:
             question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
         nearest = None if match is None else match.rla
+        plan = decision.plan
         opinion, agreement = record.opinion, school.agreement
         of = None if opinion is None or not opinion.known else opinion.rla
         return State(
@@ -70,7 +78,7 @@ class Telling:
             nearest=None if nearest is None else nearest.rla_id,
             nearest_action=None if nearest is None else nearest.action,
             distance=float("inf") if match is None else match.distance,
-            radius=system.radius if match is None else match.radius,
+            radius=self._radius(decision.asks_at) if match is None else match.radius,
             taught_by="" if nearest is None else nearest.origin.teacher,
             taught_at="" if nearest is None else self._safekeeping.stamp_of(nearest.origin.command_id),
             question=question,
@@ -96,7 +104,21 @@ class Telling:
             role=school.learning.critics_role.value,
             bad_share=school.learning.bad_share,
             signals_missing=self._signals_missing(),
+            asks_at=decision.asks_at,
+            mid=self._mid(record),
+            surprise=self._surprise,
+            goal="" if plan is None else plan.goal,
+            plan=() if plan is None else plan.behaviours,
+            plan_says="" if plan is None else plan.says,
         )
+
+    def _radius(self, level: str) -> float:
+        mid = self._runtime.mid
+        return self._runtime.level.system.radius if mid is None or level == BASIC else mid.settings.learning.radius
+
+    def _mid(self, record: TickRecord) -> MidState | None:
+        mid, decided = self._runtime.mid, record.mid
+        return None if mid is None or decided is None else mid_state(mid, decided, self._safekeeping.stamp_of)
 
     def _signals_missing(self) -> tuple[int, int]:
         critic, agreement = self._runtime.school.critic, self._runtime.school.agreement

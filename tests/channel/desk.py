@@ -88,15 +88,16 @@ class Desk:
         keeper: LessonKeeper | None = None,
         longest_wait_s: float = LONGEST_WAIT_S,
         behaviours: tuple[str, ...] = ("",),
+        mid: str | None = None,
     ) -> None:
-        """`keeper` takes the lessons in place of the notebook; `behaviours` is what the task teaches."""
+        """`keeper` takes the lessons in place of the notebook; `behaviours` is what the task teaches, `mid` by name."""
         self.robot = WideRobot()
         self.notebook = Notebook()
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
         clock = LockstepClock(lambda: None)
-        task = TASK.model_copy(update={"behaviours": behaviours})
+        task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
         self.runtime: Runtime = build_runtime(
             self.robot, ROBOT, task, (), keeper or self.notebook, clock, attended=True
         )

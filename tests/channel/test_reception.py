@@ -9,6 +9,7 @@ from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import (
     AnswerRequest,
     AppraiseRequest,
+    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -17,6 +18,7 @@ from kurt2rt.channel.requests import (
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
+    NameRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
@@ -25,7 +27,11 @@ from kurt2rt.channel.requests import (
     ResumeRequest,
     RewardRequest,
     SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
     SessionRequest,
+    SituationsRequest,
     StopRequest,
     StreamRequest,
     TakeRequest,
@@ -46,6 +52,9 @@ MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
     PursueRequest: ("turn_left",),
     ResumeRequest: (),
     TakeRequest: (),
+    SeekRequest: ("door",),
+    SeekRlaRequest: (1,),
+    SeekLikeRequest: ((("x_m", 1.0),), 0.1),
 }
 LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     AnswerRequest: ("forward", None),
@@ -55,6 +64,8 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     ReplaceRequest: (1, "forward"),
     DeleteRequest: (1,),
     UndoRequest: (None,),
+    NameRequest: ("door", None),
+    BeAtRequest: ("door",),
     PhaseRequest: (Phase.CORRECTIONS,),
     SessionRequest: ("morning",),
     ReleaseRequest: (None,),
@@ -64,6 +75,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
 }
 COMMANDS = {**MOVING, **LASTING}
+READING = {HelloRequest, LessonsRequest, SituationsRequest, WorldRequest}
 
 
 @pytest.fixture
@@ -73,7 +85,7 @@ def desk() -> Desk:
 
 def test_every_path_has_a_rule_here() -> None:
     streams = {kind for kind in PATHS.values() if issubclass(kind, StreamRequest)}
-    assert set(COMMANDS) | streams | {StopRequest, HelloRequest, LessonsRequest, WorldRequest} == set(PATHS.values())
+    assert set(COMMANDS) | streams | READING | {StopRequest} == set(PATHS.values())
 
 
 # Streams.

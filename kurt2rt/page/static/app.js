@@ -73,8 +73,9 @@ function say(outcome, text) {
 function teach(action) {
   if (!link.state) return;
   // Beyond R there is no RLA to correct, nor where its action was withdrawn, whether the robot asks just now or not.
-  const { nearest, nearest_action: its, distance, radius } = link.state;
-  const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
+  const { nearest, nearest_action: its, distance, radius, asks_at: at } = link.state;
+  // While the mid level asks, these are of that level; a correction is right however near the basic one's RLAs are.
+  const asks = at === BASIC && (nearest === null || its === WITHDRAWN || distance === null || distance > radius);
   give(pad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
 }
 

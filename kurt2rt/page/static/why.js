@@ -52,6 +52,10 @@ export function sentence(state) {
       return "Stands: no teacher looks at it";
     case "blind":
       return "Stands: its infra-red sensors are silent";
+    case "at goal":
+      return `Stands: it has come to ${state.goal}`;
+    case "no way":
+      return `Stands: no way from here to ${state.goal}`;
     case "unsaved":
       return "Stands: lessons cannot be saved";
     default:
