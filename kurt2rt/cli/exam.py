@@ -10,9 +10,11 @@ from rich.console import Console
 from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskName, WireName, changes_of
 from kurt2rt.cli.progress import job_bars
+from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_exams
+from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import load_task
 
@@ -44,6 +46,8 @@ def exam(
 
     settings = load_robot(robot_settings)
     taught = load_task(task, plain=plain, changes=changes_of(changes))
+    if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
+        taught = with_route(taught, seed)
     worlds = tuple(world) if world else taught.exam.worlds
     stage = SimulatedStage(settings, wire)
     stage.require_worlds(*worlds)

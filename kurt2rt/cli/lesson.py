@@ -1,23 +1,29 @@
 """`kurt2rt lesson`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import anyio
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from hal.robot_settings import load_robot
+from hal.robot_settings import RobotSettings, load_robot
+from kurt2rt.cli.lesson_route import (
+    ROUTES,
+    RouteOptions,
+    many_routes,
+    one_route,
+    require_no_route_options,
+    teaches_route,
+)
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     Changes,
     Jobs,
-    OutFolder,
     Plain,
     RobotName,
     Seed,
-    TaskName,
     WireName,
     changes_of,
 )
@@ -27,11 +33,21 @@ from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.set_aside import set_aside
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.tasks.settings import TaskSettings, load_task
+
+if TYPE_CHECKING:
+    from kurt2rt.simulated import SimulatedStage
+
+_TASK = "wall_following"
+_FOLDER = Path("results/lesson")
 
 
 def lesson(
-    task: TaskName = "wall_following",
+    task: Annotated[
+        str | None,
+        typer.Argument(help=f"Task by name (config/tasks) or a path to its YAML file. Default: {_TASK}."),
+    ] = None,
+    task_option: Annotated[str | None, typer.Option("--task", help="The same.")] = None,
     plain: Plain = False,
     changes: Changes = None,
     seed: Seed = 1,
@@ -46,9 +62,31 @@ def lesson(
         ),
     ] = None,
     jobs: Jobs = ALL_PROCESSORS,
-    out: OutFolder = Path("results/lesson"),
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help=f"Folder for what is made; created when absent. Default: {_FOLDER}, of routes {ROUTES}.",
+            show_default=False,
+        ),
+    ] = None,
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",
+    decisions: Annotated[
+        list[int] | None,
+        typer.Option(
+            help="Of a route: how many junctions its loop has; with --seeds repeat for several. Default: the task's."
+        ),
+    ] = None,
+    basic: Annotated[
+        Path | None,
+        typer.Option(
+            help="Of a route: knowledge of the streets, or a folder with one file per seed, as kurt2rt lesson streets "
+            "leaves them. Without it the streets are taught first."
+        ),
+    ] = None,
+    controls: Annotated[
+        bool, typer.Option("--controls", help="Of routes, with --seeds: also teach them in other ways, to compare.")
+    ] = False,
 ) -> None:
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
@@ -56,45 +94,94 @@ def lesson(
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; results
     are reported on others:
 
-        kurt2rt lesson --seeds 100-119
+        kurt2rt lesson streets --seeds 100-119
+
+    The task route teaches the mid level a fixed route through the streets, a closed
+    loop that the robot's seed draws, and then lets it drive without a teacher. With
+    --seeds results are kept in --out with hashes of what made them; a run that was
+    interrupted goes on where it was:
+
+        kurt2rt lesson route
+        kurt2rt lesson route --seeds 0-9 --decisions 8 --decisions 12
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage
 
+    name = _one_of(task, task_option)
     settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain, changes=changes_of(changes))
+    taught = load_task(name, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
-    worlds = (taught.teaching.world, *(taught.exam.worlds if seeds is not None else ()))
+    if seeds is not None and knowledge is not None:
+        raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
+    options = RouteOptions(tuple(decisions or ()), basic, controls)
+    if not teaches_route(taught):
+        require_no_route_options(taught, options)
+        _lesson(stage, settings, taught, seed=seed, knowledge=knowledge, seeds=seeds, jobs=jobs, out=out or _FOLDER)
+    elif seeds is None:
+        one_route(stage, settings, taught, options, seed=seed, knowledge=knowledge, out=out or ROUTES)
+    else:
+        command = _command(name, seeds, options, plain=plain, changes=changes or [])
+        many_routes(
+            stage, settings, taught, options, seeds=parse_seeds(seeds), jobs=jobs, out=out or ROUTES, command=command
+        )
+
+
+def _lesson(
+    stage: "SimulatedStage",
+    settings: RobotSettings,
+    task: TaskSettings,
+    *,
+    seed: int,
+    knowledge: Path | None,
+    seeds: str | None,
+    jobs: int,
+    out: Path,
+) -> None:
+    worlds = (task.teaching.world, *(task.exam.worlds if seeds is not None else ()))
     stage.require_worlds(*worlds)
-    require_course(stage, taught, worlds)
+    require_course(stage, task, worlds)
     out.mkdir(parents=True, exist_ok=True)
     console = Console()
     if seeds is None:
-        file = knowledge or out / f"{taught.name}-{seed}.knowledge"
+        file = knowledge or out / f"{task.name}-{seed}.knowledge"
         if knowledge is None:
             set_aside(file)
 
         async def run(report: Report) -> CurriculumResult:
-            result, _ = await run_lesson(stage, settings, taught, file, seed=seed, report=report)
+            result, _ = await run_lesson(stage, settings, task, file, seed=seed, report=report)
             return CurriculumResult(result, ())
 
         with job_bars() as report:
             result = anyio.run(run, report)
-        console.print(render_curriculum(result, taught))
+        console.print(render_curriculum(result, task))
         console.print(f"knowledge  {file}", markup=False, highlight=False, soft_wrap=True)
         return
-    if knowledge is not None:
-        raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     work = []
     for each in parse_seeds(seeds):
-        file = out / f"{taught.name}-{each}.knowledge"
+        file = out / f"{task.name}-{each}.knowledge"
         set_aside(file)
-        work.append(SeedJob(stage, settings, taught, taught.exam.worlds, each, file))
+        work.append(SeedJob(stage, settings, task, task.exam.worlds, each, file))
     columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))
         results = run_seeds(work, jobs, lambda _seed: progress.advance(bar))
-    console.print(render_seeds(results, taught))
+    console.print(render_seeds(results, task))
+
+
+def _one_of(task: str | None, task_option: str | None) -> str:
+    """The task, which may be said in two ways. Raises typer.BadParameter where they differ."""
+    if task is not None and task_option not in (None, task):
+        raise typer.BadParameter(f"{task_option!r} or {task!r}? Say it once", param_hint="--task")
+    return task or task_option or _TASK
+
+
+def _command(name: str, seeds: str, options: RouteOptions, *, plain: bool, changes: list[str]) -> str:
+    """What was typed as far as it decides the numbers; no paths of this machine."""
+    words = [f"kurt2rt lesson {Path(name).name}", *(["--plain"] if plain else []), f"--seeds {seeds}"]
+    words += [f"--decisions {each}" for each in options.decisions]
+    words += ["--basic FOLDER"] if options.basic is not None else []
+    words += ["--controls"] if options.controls else []
+    return " ".join([*words, *(f"--set {each}" for each in changes)])
 
 
 def parse_seeds(text: str) -> list[int]:

@@ -21,7 +21,7 @@ from kurt2rt.rla.rla import MID, Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Resume, Reward
+from kurt2rt.teaching.commands import Command, DeleteRla, Resume, Reward
 from kurt2rt.teaching.scripted_appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
 from kurt2rt.teaching.scripted_dispatcher import ScriptedDispatcher
 from kurt2rt.teaching.scripted_teacher import teacher_of
@@ -86,7 +86,7 @@ class LessonResult:
     mid_asks: int = 0
     """Of the asks, those of the mid level."""
     mid_corrections: int = 0
-    """Of the corrections, those of the mid level."""
+    """`corrections` are those of the basic level."""
     missed_junctions: int = 0
     """Those that the mid level did not notice."""
     alone: Statistics | None = field(default=None, compare=False, repr=False)
@@ -142,14 +142,13 @@ async def teach(
     agreement: list[float | None] = []
     asking = False
     rescues = unknown_rescues = alarms = latched_ticks = deletions = refused = unknown = trusted = praise = blame = 0
-    mid_asks = mid_corrections = 0
+    mid_asks = 0
 
     def say(command: Command, tick: int) -> None:
-        nonlocal deletions, praise, blame, mid_corrections
+        nonlocal deletions, praise, blame
         runtime.inbox.put(command)
         load.note(tick, command)
         deletions += isinstance(command, DeleteRla)
-        mid_corrections += isinstance(command, Correct) and command.level == MID
         if isinstance(command, Reward):
             praise += command.value > 0
             blame += command.value < 0
@@ -255,7 +254,7 @@ async def teach(
         saved=runtime.to_save(),
         mid_rlas=system.rlas_at(MID),
         mid_asks=mid_asks,
-        mid_corrections=mid_corrections,
+        mid_corrections=runtime.school.corrections_at(MID),
         missed_junctions=0 if dispatcher is None else dispatcher.missed,
         alone=runtime.reinforcement.worths_alone() if teacher.phase is Phase.AUTONOMOUS else None,
     )

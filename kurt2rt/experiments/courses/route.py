@@ -34,8 +34,11 @@ class RouteSettings(CourseSettings):
 
     decisions: Annotated[int, Field(ge=4, le=64)] = 8
     """Junctions of the loop; at each of them one way on is right."""
-    seed: Annotated[int, Field(ge=0)] = 0
-    """Which loop of all that there are."""
+    seed: Annotated[int, Field(ge=0)] | None = None
+    """Which loop of all that there are; None: the one of the robot's seed, where a robot is taught it."""
+    starts: Annotated[int, Field(ge=1, le=100)] = 1
+    """So often in its lesson it is switched on anew at the start: what it decides there, before it has a history, is
+    corrected only where it comes there again."""
 
     def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
         """Streets with such a loop, and behaviours that mean a way through."""
@@ -53,7 +56,7 @@ class RouteSettings(CourseSettings):
 
     def route_in(self, plan: Plan, behaviours: tuple[str, ...]) -> Route:
         """The loop in a world. Raises hal.settings.SettingsError where there is none."""
-        chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed}")
+        chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed or 0}")
         return random_route(StreetMap(plan), self.decisions, [QUARTERS[each] for each in behaviours], chance)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
 from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
@@ -14,7 +15,7 @@ from kurt2rt.experiments.route.job import BasicJob, RouteJob
 from kurt2rt.experiments.route.teaching import route_of_task, with_route
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tasks.settings import TaskSettings, load_task
 
 OWN = {f"kurt2rt/experiments/route/{name}.py" for name in ("job", "outcome", "teaching", "variants", "watching")}
 """Modules that say what is done to robots here, and what of it is kept."""
@@ -104,6 +105,16 @@ def plan(
         tuple(basic_jobs) if basic_folder is None else (),
         tuple(experiment(count, variant) for variant in variants for count in decisions),
     )
+
+
+def basic_task_of(task: TaskSettings) -> TaskSettings:
+    """The task that teaches the streets: the one whose RLA system this one shares, and is named after.
+
+    Raises hal.settings.SettingsError.
+    """
+    if task.system is None:
+        raise SettingsError(f"task {task.name}: it does not say what was taught before; add `system: streets`")
+    return load_task(task.system)
 
 
 def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:

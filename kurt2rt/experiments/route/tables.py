@@ -8,6 +8,7 @@ from kurt2rt.experiments.route.study import Study, Summary
 from kurt2rt.experiments.route.verdict import verdicts
 from kurt2rt.experiments.shown.judging import reasons_of_robots
 from kurt2rt.experiments.shown.sheet import Sheet
+from kurt2rt.tasks.settings import TaskSettings
 
 _LAYERS = (
     "Which layer failed: symbols: what the robot had noticed of junctions was not what it had done there; mid: it had "
@@ -112,6 +113,28 @@ def robots_sheet(summary: Summary) -> Sheet:
         rows,
         words=1,
     )
+
+
+def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Sheet:
+    """One robot, beside what the paper reports."""
+    drive, paper = outcome.drive, task.paper
+    rows = (
+        ("mid-level RLAs", str(outcome.mid_rlas), str(paper.rlas)),
+        ("teaching, s of robot time", f"{outcome.teaching_s:.0f}", paper.teaching_told),
+        ("questions of the mid level", str(outcome.mid_asks), ""),
+        ("corrections of the mid level", str(outcome.mid_corrections), ""),
+        ("junctions that it did not notice", str(outcome.missed_junctions), ""),
+        ("RLAs of the basic level", str(outcome.basic_rlas), ""),
+        ("its questions", str(outcome.asks), ""),
+        ("its corrections", str(outcome.corrections), ""),
+        ("rescues by hand", str(outcome.rescues), ""),
+        (f"drive without a teacher, s of {task.exam.duration_s:.0f}", f"{drive.duration_s:.0f}", ""),
+        ("decisions right", f"{drive.right} of {drive.junctions}", ""),
+        ("collisions", str(drive.collisions), ""),
+        ("errors", errors_of(outcome) or "none", ""),
+    )
+    title = f"Route of {len(outcome.route)} decisions: robot {outcome.seed}"
+    return Sheet(title, ("", "here", "paper"), rows, words=1)
 
 
 def errors_of(outcome: RouteOutcome) -> str:

@@ -14,6 +14,7 @@ from kurt2rt.experiments.curriculum import Report, run_lesson
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.route.outcome import Place, RouteDrive, RouteOutcome, Wrong
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.experiments.route.watching import Watching
@@ -29,28 +30,33 @@ class TaughtRoute:
     """A lesson and its exam."""
 
     route: Route
-    lesson: LessonResult
+    lessons: tuple[LessonResult, ...]
+    """Its parts, one after the other."""
     exam: ExamResult
     wrong: tuple[Wrong, ...]
 
     def outcome(self, made_of: MadeOf | None = None) -> RouteOutcome:
         """What is kept of it."""
-        lesson, exam, legs = self.lesson, self.exam, self.route.legs
+        last, exam, legs = self.lessons[-1], self.exam, self.route.legs
+
+        def of_all(name: str) -> int:
+            return sum(getattr(each, name) for each in self.lessons)
+
         return RouteOutcome(
             made_of=made_of,
-            seed=lesson.seed,
+            seed=last.seed,
             route=tuple((leg.junction.x_m, leg.junction.y_m) for leg in legs),
             start=(legs[0].middle.x_m, legs[0].middle.y_m),
-            teaching_s=lesson.teaching_s,
-            mid_rlas=len(lesson.mid_rlas),
-            basic_rlas=len(lesson.rlas),
-            mid_asks=lesson.mid_asks,
-            mid_corrections=lesson.mid_corrections,
-            missed_junctions=lesson.missed_junctions,
-            asks=lesson.asks - lesson.mid_asks,
-            corrections=lesson.corrections - lesson.mid_corrections,
-            rescues=lesson.rescues,
-            knowledge_hash=lesson.knowledge_hash,
+            teaching_s=sum(each.teaching_s for each in self.lessons),
+            mid_rlas=len(last.mid_rlas),
+            basic_rlas=len(last.rlas),
+            mid_asks=of_all("mid_asks"),
+            mid_corrections=of_all("mid_corrections"),
+            missed_junctions=of_all("missed_junctions"),
+            asks=of_all("asks") - of_all("mid_asks"),
+            corrections=of_all("corrections"),
+            rescues=of_all("rescues"),
+            knowledge_hash=last.knowledge_hash,
             drive=RouteDrive(
                 duration_s=exam.duration_s,
                 junctions=round(exam.findings[JUNCTIONS]),
@@ -83,9 +89,12 @@ async def teach_route(
     """
     task = variant.task(task)
     world = task.exam.worlds[0]
-    lesson, events = await run_lesson(
-        stage, settings, task, knowledge, seed=seed, report=report, plan=variant.plan(task)
-    )
+    lessons = []
+    for plan in variant.plans(task, route_of_task(task).starts):
+        lesson, events = await run_lesson(
+            stage, settings, task, knowledge, seed=seed, report=_named(report, plan), plan=plan
+        )
+        lessons.append(lesson)
     watching = Watching()
     arena = stage.open(world, seed, "exam of a route")
     try:
@@ -103,7 +112,7 @@ async def teach_route(
         arena.close()
     watching.end()
     route = route_of_task(task).route_in(stage.plan_of(world), task.behaviours)
-    return TaughtRoute(route, lesson, exam, tuple(watching.wrong))
+    return TaughtRoute(route, tuple(lessons), exam, tuple(watching.wrong))
 
 
 def route_of_task(task: TaskSettings) -> RouteSettings:
@@ -114,20 +123,26 @@ def route_of_task(task: TaskSettings) -> RouteSettings:
 
 
 def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
-    """The task with the route of this robot; `decisions`: None: as many as the task says.
+    """The task with the route of this robot, unless it says which one; `decisions`: None: as many as the task says.
 
     Raises hal.settings.SettingsError for a task that teaches no route.
     """
-    update: dict[str, object] = {"seed": seed}
+    course = route_of_task(task)
+    update: dict[str, object] = {"seed": seed if course.seed is None else course.seed}
     if decisions is not None:
         update["decisions"] = decisions
-    return task.model_copy(update={"course": route_of_task(task).model_copy(update=update)})
+    return task.model_copy(update={"course": course.model_copy(update=update)})
 
 
 def copy_knowledge(source: Path, path: Path) -> None:
     """A copy of a knowledge file, also while somebody writes it. Raises KnowledgeError."""
     with Journal.read_only(source) as journal:
         path.write_bytes(journal.image())
+
+
+def _named(report: Report, plan: LessonPlan) -> Report:
+    """Each part of a lesson has a bar of its own."""
+    return lambda what, done_s, whole_s: report(f"{what}: {plan.purpose}", done_s, whole_s)
 
 
 def _places(positions: Iterable[Position]) -> tuple[Place, ...]:

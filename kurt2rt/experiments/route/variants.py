@@ -7,6 +7,8 @@ from kurt2rt.mid.settings import load_mid
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings
 
+Phases = tuple[tuple[Phase, float], ...]
+
 
 @dataclass(frozen=True, slots=True)
 class Variant:
@@ -32,11 +34,31 @@ class Variant:
             mid = mid.model_copy(update={"learning": mid.learning.model_copy(update={"radius": self.radius})})
         return task.model_copy(update={"mid": mid})
 
-    def plan(self, task: TaskSettings) -> LessonPlan:
-        """Its lesson."""
-        plan = plan_of(task)
-        phases = ((Phase.SUPERVISED, plan.duration_s),) if self.only_answers else plan.phases
-        return LessonPlan(phases, purpose="route", corrects_basic=self.corrects_basic)
+    def plans(self, task: TaskSettings, starts: int) -> tuple[LessonPlan, ...]:
+        """Its lesson, in as many parts of the same length as it is begun anew; the phases go on through all of them."""
+        whole = plan_of(task)
+        phases = ((Phase.SUPERVISED, whole.duration_s),) if self.only_answers else whole.phases
+        part_s = whole.duration_s / starts
+        return tuple(
+            LessonPlan(
+                _part(phases, part * part_s, (part + 1) * part_s),
+                purpose=f"route-{part + 1}",
+                corrects_basic=self.corrects_basic,
+            )
+            for part in range(starts)
+        )
+
+
+def _part(phases: Phases, from_s: float, to_s: float) -> Phases:
+    """What of the phases lies between two moments."""
+    part, begins_s = [], 0.0
+    for phase, lasts_s in phases:
+        ends_s = begins_s + lasts_s
+        within_s = min(ends_s, to_s) - max(begins_s, from_s)
+        if within_s > 0:
+            part.append((phase, within_s))
+        begins_s = ends_s
+    return tuple(part)
 
 
 TAUGHT = Variant("taught", "as shipped")

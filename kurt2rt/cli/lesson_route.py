@@ -1,0 +1,135 @@
+"""`kurt2rt lesson route`: robots that know the streets are taught routes through them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+import typer
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.cli.printed import console_of, print_study
+from kurt2rt.cli.progress import job_bars, one_bar
+from kurt2rt.experiments.courses.route import RouteSettings
+from kurt2rt.experiments.curriculum import Report, run_lesson
+from kurt2rt.experiments.fitting import require_course
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.route.figures import draw_route
+from kurt2rt.experiments.route.programme import basic_file, basic_task_of, decisions_of, plan
+from kurt2rt.experiments.route.report import draw_pictures, write_report
+from kurt2rt.experiments.route.study import conduct, read_study, robot_time_s
+from kurt2rt.experiments.route.tables import robot_sheet, sheets
+from kurt2rt.experiments.route.teaching import TaughtRoute, copy_knowledge, teach_route, with_route
+from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
+from kurt2rt.experiments.shown.judging import reasons_of_robots
+from kurt2rt.experiments.shown.sheet import as_rich
+from kurt2rt.knowledge.set_aside import set_aside
+from kurt2rt.tasks.settings import TaskSettings
+
+ROUTES = Path("results/route")
+"""Where what is made goes, unless said otherwise."""
+_WIDTH = 150
+
+
+@dataclass(frozen=True, slots=True)
+class RouteOptions:
+    """What is said of routes alone."""
+
+    decisions: tuple[int, ...] = ()
+    """Empty: as many as the task says."""
+    basic: Path | None = None
+    """Knowledge of the streets, or a folder of such files; None: the streets are taught first."""
+    controls: bool = False
+
+
+def teaches_route(task: TaskSettings) -> bool:
+    """Whether it is one of these."""
+    return isinstance(task.course, RouteSettings)
+
+
+def require_no_route_options(task: TaskSettings, options: RouteOptions) -> None:
+    """Raises typer.BadParameter where something is said of routes for a task that teaches none."""
+    said = {"--decisions": options.decisions, "--basic": options.basic, "--controls": options.controls}
+    for name, value in said.items():
+        if value:
+            raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
+
+
+def one_route(
+    stage: StudyStage,
+    robot: RobotSettings,
+    task: TaskSettings,
+    options: RouteOptions,
+    *,
+    seed: int,
+    knowledge: Path | None,
+    out: Path,
+) -> None:
+    """Teach one robot one route, examine it, print the numbers and draw the drive."""
+    if len(options.decisions) > 1 or options.controls:
+        raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
+    task = with_route(task, seed, *options.decisions)
+    worlds = (task.teaching.world, *task.exam.worlds[:1])
+    stage.require_worlds(*worlds)
+    require_course(stage, task, worlds)
+    (decisions,) = decisions_of(task, options.decisions)
+    basic = basic_task_of(task)
+    given = None if options.basic is None else basic_file(options.basic, basic, seed)
+    out.mkdir(parents=True, exist_ok=True)
+    stem = f"{task.name}-{decisions}-{seed}"
+    file = knowledge or out / f"{stem}.knowledge"
+    if knowledge is None:
+        set_aside(file)
+
+    async def run(report: Report) -> TaughtRoute:
+        if not file.exists():
+            streets = given or out / f"{basic.name}-{seed}.knowledge"
+            if given is None:
+                set_aside(streets)
+                await run_lesson(stage, robot, basic, streets, seed=seed, report=report)
+            copy_knowledge(streets, file)
+        return await teach_route(stage, robot, task, TAUGHT, file, seed=seed, report=report)
+
+    with job_bars() as report:
+        outcome = anyio.run(run, report).outcome()
+    picture = out / f"{stem}.png"
+    draw_route(stage, task.exam.worlds[0], outcome, picture)
+    console = console_of(_WIDTH)
+    console.print(as_rich(robot_sheet(outcome, task)))
+    for what, path in (("knowledge", file), ("picture", picture)):
+        console.print(f"{what}  {path}", markup=False, highlight=False, soft_wrap=True)
+
+
+def many_routes(
+    stage: StudyStage,
+    robot: RobotSettings,
+    task: TaskSettings,
+    options: RouteOptions,
+    *,
+    seeds: Sequence[int],
+    jobs: int,
+    out: Path,
+    command: str,
+) -> None:
+    """Teach and examine many robots; what is done already is kept. Prints tables and writes a report."""
+    results = Results(out)
+    programme = plan(
+        task,
+        basic_task_of(task),
+        seeds,
+        decisions_of(task, options.decisions),
+        (TAUGHT, *(CONTROLS if options.controls else ())),
+        stage,
+        robot,
+        results,
+        basic_folder=options.basic,
+    )
+    with results.held(), one_bar(robot_time_s(programme, results)) as bar:
+        conduct(programme, results, jobs, bar.look)
+        bar.say("pictures and report")
+        study = read_study(programme, results)
+        pictures = list(draw_pictures(study, stage, results.folder))
+        report = results.folder / "report.html"
+        write_report(study, pictures, command, report)
+    print_study(sheets(study), reasons_of_robots(programme.seeds), report, width=_WIDTH)

@@ -1,0 +1,71 @@
+"""`kurt2rt lesson route` as a user meets it."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.tasks.settings import load_task
+from tests.cli.helpers import CommandLine
+from tests.experiments.helpers import teach
+from tests.experiments.route.test_study import short
+
+SHORT = ("--set", "teaching.corrections_s=6", "--set", "exam.duration_s=3", "--set", "course.starts=1")
+
+
+@pytest.fixture(scope="module")
+def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What two robots know of the streets after some seconds."""
+    folder = tmp_path_factory.mktemp("streets")
+    for seed in (1, 2):
+        teach(folder / f"streets-{seed}.knowledge", short(load_task("streets"), 4.0), seed)
+    return folder
+
+
+def test_one_robot_is_taught_a_route_drives_it_and_is_drawn(kurt2rt: CommandLine, streets: Path) -> None:
+    said = kurt2rt("lesson", "route", "--basic", streets, "--decisions", "12", "--out", "made", *SHORT)
+    assert said.exit_code == 0, said.err
+    assert "Route of 12 decisions: robot 1" in said.out
+    assert "mid-level RLAs" in said.out
+    assert Path("made/route-12-1.png").is_file()
+    # What was taught can be gone on with, and examined again, on the same route.
+    knowledge = "made/route-12-1.knowledge"
+    assert kurt2rt("lesson", "route", "--knowledge", knowledge, "--out", "made", *SHORT).exit_code == 0
+    said = kurt2rt("exam", knowledge, "--task", "route", "--set", "course.decisions=12", *SHORT)
+    assert said.exit_code == 0, said.err
+
+
+def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLine, streets: Path) -> None:
+    words = ("lesson", "route", "--seeds", "1,2", "--basic", streets, "--jobs", "1", "--out", "made", *SHORT)
+    said = kurt2rt(*words)
+    assert said.exit_code == 0, said.err
+    assert "Drives without a teacher" in said.out
+    assert "Not judged: 2 robots only" in said.out
+    report = Path("made/report.html").read_text(encoding="utf-8")
+    assert "kurt2rt lesson route --seeds 1,2" in report
+    assert str(streets) not in report
+    kept = Path("made/results/taught/route-8-1.json")
+    before = kept.stat().st_mtime_ns
+    assert kurt2rt(*words).exit_code == 0
+    assert kept.stat().st_mtime_ns == before
+
+
+def test_the_task_may_be_said_either_way_but_not_both_ways(kurt2rt: CommandLine) -> None:
+    assert "'circle' or 'eight'? Say it once" in kurt2rt.misused("lesson", "eight", "--task", "circle")
+    assert "nope: no such file in tasks" in kurt2rt.refused("lesson", "nope")
+
+
+@pytest.mark.parametrize("words", [("--decisions", "8"), ("--basic", "here"), ("--controls",)])
+def test_what_is_said_of_routes_alone_is_refused_elsewhere(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
+    assert "task circle teaches no route; leave it out" in kurt2rt.misused("lesson", "circle", *words)
+
+
+def test_one_robot_is_taught_one_route(kurt2rt: CommandLine) -> None:
+    said = kurt2rt.misused("lesson", "route", "--decisions", "8", "--decisions", "12")
+    assert "one robot is taught one route; give --seeds, too" in said
+    assert "no loop of 7 decisions" in kurt2rt.refused("lesson", "route", "--decisions", "7")
+
+
+def test_streets_that_nobody_taught_are_asked_for(kurt2rt: CommandLine, streets: Path) -> None:
+    said = kurt2rt.refused("lesson", "route", "--seed", "3", "--basic", streets)
+    assert "streets-3.knowledge: there is no such file; teach the streets with kurt2rt lesson --task streets" in said
+    assert not Path("results").exists()
