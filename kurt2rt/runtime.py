@@ -126,9 +126,12 @@ def build_runtime(
     level = BasicLevel(
         system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
     )
-    mid = None if mid_settings is None else MidLevel(system, mid_settings.build(settings), mid_settings, wanted)
-    at_the_wheels = level_override or level
     statistics = statistics or StatisticsCounter()
+    counted = statistics.transitions or (saved.transitions if saved is not None else {})
+    mid = None
+    if mid_settings is not None:
+        mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, wanted)
+    at_the_wheels = level_override or level
     expecting = Expecting(system, mid, statistics.transitions, None if saved is None else saved.expectations)
     navigator = None if mid is None else Navigator(mid, statistics.transitions, expecting.of)
     lessons = None if mid is None else MidLessons(mid)

@@ -63,11 +63,6 @@ class MidLevel:
         """Whether a teacher commands until the next junction has been passed."""
         return self._overridden
 
-    @property
-    def insert_beyond(self) -> float:
-        """Farther than this from the nearest condition a correction is inserted, else it replaces."""
-        return self.settings.learning.insert_beyond
-
     def override(self, behaviour: str) -> None:
         """A teacher commands a behaviour until the next junction has been passed. Raises ValueError as `Wanted`.
 

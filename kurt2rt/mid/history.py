@@ -13,7 +13,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.situation import MidSituation, MidSituationSettings
-from kurt2rt.mid.symbols.source import NONE, AnySymbolSettings, SymbolSource
+from kurt2rt.mid.symbols.source import NONE, AnySymbolSettings, SymbolSource, Transitions
 from kurt2rt.rla.rla_system import Metric
 
 
@@ -41,9 +41,14 @@ class HistorySettings(MidSituationSettings):
         named = dict(enumerate(("", *self.symbols.names)))
         return tuple(named.get(int(symbol), str(int(symbol))) for symbol in vector)
 
-    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:  # noqa: ARG002 - by its detector
+    def build(
+        self,
+        detector: JunctionDetector,
+        robot: RobotSettings,  # noqa: ARG002 - the robot is its detector's matter
+        transitions: Transitions,
+    ) -> MidSituation:
         """The history, empty."""
-        return SymbolHistory(self, self.symbols.build(), detector)
+        return SymbolHistory(self, self.symbols.build(transitions), detector)
 
 
 class SymbolHistory:

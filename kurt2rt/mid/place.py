@@ -14,6 +14,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.situation import MidSituation, MidSituationSettings
+from kurt2rt.mid.symbols.source import Transitions
 from kurt2rt.rla.rla import Condition
 from kurt2rt.rla.rla_system import Metric
 
@@ -51,7 +52,12 @@ class PlaceSettings(MidSituationSettings):
         """Metres."""
         return "euclidean"
 
-    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
+    def build(
+        self,
+        detector: JunctionDetector,
+        robot: RobotSettings,
+        transitions: Transitions,  # noqa: ARG002 - it goes by nothing counted
+    ) -> MidSituation:
         """The place where the robot is switched on: there its reckoning begins."""
         return Place(self, detector, robot)
 

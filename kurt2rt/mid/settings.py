@@ -11,6 +11,7 @@ from hal.robot_settings import RobotSettings
 from hal.settings import Settings, find_config, load_settings
 from kurt2rt.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.mid.situation import AnyMidSituationSettings, MidSituation
+from kurt2rt.mid.symbols.source import Transitions
 from kurt2rt.rla.rla_system import Space
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
@@ -24,11 +25,6 @@ class MidLearningSettings(Settings):
     """Confidence radius R; of histories: how many places may differ (paper: 6 of 12). 0: only what was taught."""
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
-
-    @property
-    def insert_beyond(self) -> float:
-        """The same as a distance."""
-        return self.insert_beyond_share * self.radius
 
 
 class MidSettings(Settings):
@@ -61,9 +57,12 @@ class MidSettings(Settings):
         content = {"junctions": self.junctions.model_dump(mode="json"), "situation": situation}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
-    def build(self, robot: RobotSettings) -> MidSituation:
-        """The situation, for this robot, as if just switched on. Raises hal.settings.SettingsError."""
-        return self.situation.build(JunctionDetector(self.junctions, robot), robot)
+    def build(self, robot: RobotSettings, transitions: Transitions | None = None) -> MidSituation:
+        """The situation, for this robot, as if just switched on. Raises hal.settings.SettingsError.
+
+        `transitions`: which RLA followed which how often, as counted up to now.
+        """
+        return self.situation.build(JunctionDetector(self.junctions, robot), robot, transitions or {})
 
 
 def load_mid(name_or_path: str | MidSettings) -> MidSettings:

@@ -14,6 +14,7 @@ from hal.settings_by_kind import KindSettings, as_its_kind
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.mid.symbols.source import Transitions
 from kurt2rt.rla.rla_system import Metric
 
 
@@ -72,8 +73,8 @@ class MidSituationSettings(KindSettings):
         return tuple(f"{name} {value:.2f}" for name, value in zip(self.features, vector, strict=True))
 
     @abstractmethod
-    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
-        """The situation, for this robot. Raises hal.settings.SettingsError."""
+    def build(self, detector: JunctionDetector, robot: RobotSettings, transitions: Transitions) -> MidSituation:
+        """The situation, for this robot; `transitions`: as counted up to now. Raises hal.settings.SettingsError."""
 
 
 def _checked(given: object) -> MidSituationSettings:

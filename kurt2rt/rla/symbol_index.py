@@ -21,25 +21,26 @@ def edit_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -> N
     one insertion more: measured from that slope, the best so far is a running minimum.
     """
     count, length = rows.shape
-    slope = np.arange(length + 1.0)
-    line = np.tile(slope, (count, 1))
+    places = np.ascontiguousarray(rows.T)
+    slope = np.arange(length + 1, dtype=np.int16)[:, np.newaxis]
+    line = np.repeat(slope, count, axis=1)
     following = np.empty_like(line)
-    for place in range(length):
-        np.add(line, 1.0, out=following)
-        changed = line[:, :-1] + (rows != symbols[place])
-        np.minimum(following[:, 1:], changed, out=following[:, 1:])
+    for symbol in symbols:
+        np.add(line, 1, out=following)
+        changed = line[:-1] + (places != symbol)
+        np.minimum(following[1:], changed, out=following[1:])
         following -= slope
-        np.minimum.accumulate(following, axis=1, out=line)
+        np.minimum.accumulate(following, axis=0, out=line)
         line += slope
-    distances: NDArray[np.float64] = line[:, -1].copy()
+    distances: NDArray[np.float64] = line[-1].astype(np.float64)
     return distances
 
 
 class SymbolIndex:
     """All conditions made of symbols in one array, in order of age; used as kurt2rt.rla.matching.ConditionIndex is.
 
-    A history changes every few seconds, so all are compared anew: some 10 us for a few hundred in places that differ,
-    some 100 us in edits.
+    A history changes every few seconds, so all are compared anew: for 200 of 12 symbols some 10 us in places that
+    differ, some 200 us in edits.
     """
 
     def __init__(self, dimensions: int, *, edits: bool) -> None:

@@ -116,3 +116,12 @@ def test_conditions_of_whatever_symbols_can_be_read(name: str) -> None:
     situation = load_mid(name).situation
     assert situation.words(np.array([1.0, 0.0, 2.0] + [0.0] * 9))[1] == ""
     assert all(situation.words([1.0] * 12))
+
+
+def test_what_the_basic_level_expected_and_got_counts_and_what_came_by_chance_does_not() -> None:
+    mid = load_mid("expectations")
+    situation = mid.build(ROBOT, {(1, 2): 5, (1, 3): 2, (2, 3): 1, (3, 1): 4})
+    for rla_id in (1, 1, 2, 3, 1, 3, None, 2, 3):
+        situation.perceive(sensed(STREET_M, STREET_M), STANDS._replace(rla_id=rla_id))
+    # 1 is followed by 2, as ever, that by 3, that by 1; then 3 follows, which it seldom does; standing ends a chain.
+    assert [word for word in mid.situation.words(situation.vector) if word] == ["3", "1", "3", "2"]

@@ -7,7 +7,7 @@ from pydantic import Field
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
-from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource
+from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource, Transitions
 
 
 class ActionsSettings(SymbolSettings):
@@ -21,7 +21,7 @@ class ActionsSettings(SymbolSettings):
         """The actions."""
         return self.actions
 
-    def build(self) -> SymbolSource:
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
         """The source."""
         return Actions(self.actions)
 

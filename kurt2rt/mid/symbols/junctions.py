@@ -3,7 +3,7 @@
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import NAMES, JunctionEvent
-from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource
+from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource, Transitions
 
 _SYMBOLS = {quarters: number for number, quarters in enumerate(NAMES, start=1)}
 
@@ -16,7 +16,7 @@ class JunctionsSettings(SymbolSettings):
         """What can be done at a junction."""
         return tuple(NAMES.values())
 
-    def build(self) -> SymbolSource:
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
         """The source."""
         return Junctions()
 

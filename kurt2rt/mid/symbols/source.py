@@ -1,6 +1,7 @@
 """The contract of a source of symbols."""
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from typing import Annotated, Protocol
 
 from pydantic import PlainValidator, SerializeAsAny
@@ -9,6 +10,9 @@ from hal.settings_by_kind import KindSettings, as_its_kind
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
+
+Transitions = Mapping[tuple[int, int], int]
+"""(RLA id, follow-up RLA id) -> how often the one followed the other, as counted up to now."""
 
 NONE = 0
 """The symbol of a place of a history that nothing stands in yet."""
@@ -38,8 +42,8 @@ class SymbolSettings(KindSettings):
         """How the symbols 1, 2, 3 ... are spoken of; empty where they are numbers of RLAs."""
 
     @abstractmethod
-    def build(self) -> SymbolSource:
-        """The source."""
+    def build(self, transitions: Transitions) -> SymbolSource:
+        """The source. `transitions`: of the basic level's RLAs, among others."""
 
 
 def _checked(given: object) -> SymbolSettings:

@@ -7,7 +7,7 @@ from pydantic import Field
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
-from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource
+from kurt2rt.mid.symbols.source import NONE, SymbolSettings, SymbolSource, Transitions
 
 Metres = Annotated[float, Field(gt=0, le=10)]
 Radians = Annotated[float, Field(gt=0, le=10)]
@@ -34,7 +34,7 @@ class TurnsSettings(SymbolSettings):
         """What a robot does in streets."""
         return ("street", "crossing", "left", "right")
 
-    def build(self) -> SymbolSource:
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
         """The source."""
         return Turns(self)
 
