@@ -76,6 +76,7 @@ _COMMANDS = (
     "paper",
     "phases",
     "knowledge",
+    "surprise",
     "commission",
     "faults",
     "bench",

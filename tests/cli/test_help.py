@@ -39,6 +39,8 @@ def test_every_command_is_found() -> None:
             "check",
             "undo",
             "export",
+            "graph",
+            "surprise",
             "faults",
             "bench",
             "doctor",

@@ -1,0 +1,50 @@
+"""`kurt2rt surprise`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.lesson import parse_seeds
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, TaskName
+from kurt2rt.cli.printed import console_of
+from kurt2rt.experiments.pool import run_jobs
+from kurt2rt.experiments.shown.sheet import as_rich
+from kurt2rt.experiments.surprise.study import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
+from kurt2rt.tasks.settings import load_task
+
+
+def surprise(
+    taught: Annotated[
+        Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --task streets --seeds leaves them.")
+    ],
+    task: TaskName = "streets",
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-9.")] = "0-9",
+    learns_s: Annotated[
+        float, typer.Option("--learns", min=1.0, help="Seconds that a robot gets to know what to expect.")
+    ] = LEARNS_S,
+    different_s: Annotated[
+        float, typer.Option("--different", min=1.0, help="Seconds that it drives with each difference.")
+    ] = DIFFERENT_S,
+    jobs: Jobs = ALL_PROCESSORS,
+    robot_settings: RobotName = "kurt2",
+) -> None:
+    """Measure how surprised taught robots are: on known ground, and where something is different."""
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.simulated import SimulatedStage
+
+    settings = load_robot(robot_settings)
+    what = load_task(task)
+    stage = SimulatedStage(settings)
+    work = [
+        SurpriseJob(stage, settings, what, taught / f"{what.name}-{seed}.knowledge", seed, learns_s, different_s)
+        for seed in parse_seeds(seeds)
+    ]
+    columns = (TextColumn("robots"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        bar = progress.add_task("robots", total=len(work))
+        results = run_jobs(work, jobs, on_done=lambda _place: progress.advance(bar))
+    console_of(120).print(as_rich(sheet_of(results)))
