@@ -36,6 +36,9 @@ class JunctionDetectorSettings(Settings):
     """In a street the walls on both sides are no farther from parallel than this: else the robot is still turning."""
     street_over_m: Metres
     """Over so much way walls must stand on both sides for the robot to be sure that it is in a street again."""
+    through_m: Metres
+    """A robot that is in the same direction again before it has come so far was in no junction: there was a gap in a
+    wall, or it looked in and drove back."""
     heading_over_m: Metres
     """Over so much way its heading between the walls is averaged."""
 
@@ -75,17 +78,24 @@ class JunctionDetector:
         """How the street runs that it is in, or came from, by the encoders."""
         self._inside = True
         self._left_open = self._right_open = False
-        self._open_m = self._between_m = self._between_rad = self._way_m = 0.0
+        self._open_m = self._between_m = self._between_rad = 0.0
+        self._begin_way()
+
+    def _begin_way(self) -> None:
+        """From here on the way is one through a junction, if it becomes one."""
+        self._way_m = self._net_m = 0.0
 
     def perceive(self, senses: Senses) -> JunctionEvent | None:
         """Take in one tick; returns the junction that was passed, in the tick in which the robot is sure of it."""
         left_m = senses.encoder_left_ticks * self._metres_per_tick
         right_m = senses.encoder_right_ticks * self._metres_per_tick
-        step_m = abs(left_m + right_m) / 2
+        way_m = (left_m + right_m) / 2
+        step_m = abs(way_m)
         self.turn_rad = (right_m - left_m) / self._track_m
         self.rims_m = (abs(left_m) + abs(right_m)) / 2
         self._yaw_rad += self.turn_rad
         self._way_m += step_m
+        self._net_m += way_m
         wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, senses.infrared_counts
         left = [distance_m[counts[place]] for place in self._left]
         right = [distance_m[counts[place]] for place in self._right]
@@ -134,7 +144,7 @@ class JunctionDetector:
             off_rad = heading_rad - self._street_rad
             if abs(off_rad) < _TURNED_BACK_RAD:
                 self._street_rad += min(1.0, step_m / want.heading_over_m) * off_rad
-                self._way_m = 0.0
+                self._begin_way()
                 return None
             self._inside = True
         self._between_m += step_m
@@ -144,16 +154,19 @@ class JunctionDetector:
     def _arrive(self) -> JunctionEvent | None:
         """In a street, and sure of it."""
         came_rad, self._street_rad = self._street_rad, self._between_rad
-        event = None
-        if came_rad is not None:
-            turn_rad = self._street_rad - came_rad
-            quarters = round(turn_rad / _QUARTER_RAD) % 4
-            # A side that it took was open, though it may have turned there before it saw much of it.
-            left_open, right_open = self._left_open or quarters == 1, self._right_open or quarters == 3
-            event = JunctionEvent(-1 if quarters == 3 else quarters, left_open, right_open, turn_rad, self._way_m)
+        event = None if came_rad is None else self._passed(self._street_rad - came_rad)
         self._inside = self._left_open = self._right_open = False
-        self._between_m = self._way_m = 0.0
+        self._between_m = 0.0
+        self._begin_way()
         return event
+
+    def _passed(self, turn_rad: float) -> JunctionEvent | None:
+        quarters = round(turn_rad / _QUARTER_RAD) % 4
+        if quarters == 0 and abs(self._net_m) < self._settings.through_m:
+            return None
+        # A side that it took was open, though it may have turned there before it saw much of it.
+        left_open, right_open = self._left_open or quarters == 1, self._right_open or quarters == 3
+        return JunctionEvent(-1 if quarters == 3 else quarters, left_open, right_open, turn_rad, self._way_m)
 
 
 def _side(infrared: InfraredSettings, names: tuple[str, ...]) -> tuple[tuple[int, ...], float]:

@@ -77,8 +77,15 @@ def test_a_robot_that_stands_comes_no_nearer_to_a_junction_nor_out_of_one() -> N
     assert walk.street().told == ["straight"]
 
 
-def test_a_gap_that_is_narrower_than_a_way_is_no_junction() -> None:
-    assert Walk().street().go(0.03, OPEN_M, STREET_M).street().told == []
+@pytest.mark.parametrize("gap_m", [0.03, 0.1, 0.3])
+def test_a_gap_that_is_narrower_than_a_way_is_no_junction(gap_m: float) -> None:
+    assert Walk().street().go(gap_m, OPEN_M, STREET_M).street().told == []
+
+
+def test_who_looks_into_a_junction_and_drives_back_has_not_passed_it() -> None:
+    walk = Walk().street().go(0.3, OPEN_M, OPEN_M).go(-0.3, OPEN_M, OPEN_M).go(-0.3)
+    assert walk.told == []
+    assert walk.street().go(0.8, OPEN_M, OPEN_M).street().told == ["straight"]
 
 
 def test_a_look_out_of_the_street_in_the_middle_of_a_junction_does_not_end_it() -> None:
