@@ -12,15 +12,20 @@ from anyio.streams.memory import MemoryObjectSendStream
 
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError
+from kurt2rt.cli.terminal_way import way_command
 from kurt2rt.cli.terminal_words import (
     asks_in,
+    came_by_in,
     change_in,
     help_lines,
+    is_worth_saying,
     name_lines,
     opinion_in,
     question_in,
     sentence_of,
+    surprise_in,
     trust_in,
+    way_in,
 )
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, Phase
@@ -177,19 +182,35 @@ class TerminalTeacher:
     async def _watch(self) -> None:
         told = ""
         quiet_until = 0.0
-        asking = False
+        asking = ""
         standing: tuple[bool, str] | None = None
+        commanded: tuple[object, ...] | None = None
+        surprised = -1
         async for state in self._robot.states():
+            if state.mid is not None and self._hello is not None and self._hello.mid is not None:
+                way = way_in(state, self._hello.mid)
+                # The distance may change while it goes on saying the same.
+                command = (state.mid.behaviour, state.mid.rla, state.mid.overridden, state.goal)
+                if way and command != commanded:
+                    self._say(way)
+                    commanded = command
+            if state.surprise is not None and state.surprise.tick > surprised:
+                if not is_worth_saying(state.surprise):
+                    surprised = state.surprise.tick
+                elif anyio.current_time() >= quiet_until:
+                    self._say(surprise_in(state.surprise))
+                    surprised = state.surprise.tick
+                    quiet_until = anyio.current_time() + _SAYS_AT_MOST_EVERY_S
             if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
                 standing = state.trusted, state.role
                 self._say(f"critic: {trust_in(state)}")
             if state.cause == Cause.UNKNOWN:
-                if not asking:
+                if state.asks_at != asking:
                     self._say(str(question_in(state)))
-                asking = True
+                asking = state.asks_at
                 told = ""
                 continue
-            asking = False
+            asking = ""
             sentence = sentence_of(state)
             if sentence != told and anyio.current_time() >= quiet_until:
                 self._say(sentence)
@@ -200,6 +221,10 @@ class TerminalTeacher:
         robot, hello = self._robot, self._hello
         assert hello is not None, "no line is taken before the robot was met"
         judged = None if line.state is None else line.state.tick
+        given = way_command(robot, hello, line.text.split(), line.state)
+        if given is not None:
+            await self._tell(given)
+            return
         match line.text.split():
             case ["go"] | ["resume"]:
                 await self._tell(robot.resume())
@@ -236,6 +261,11 @@ class TerminalTeacher:
                 await self._tell(robot.take())
             case ["release"]:
                 await self._tell(robot.hand_over())
+            case ["way"] if hello.mid is not None and line.state is not None and line.state.mid is not None:
+                self._say(way_in(line.state, hello.mid) or str(question_in(line.state)))
+                self._say(came_by_in(line.state.mid))
+            case ["places"] if hello.seeks:
+                self._say(f"named: {', '.join(await robot.situations()) or 'nothing yet'}")
             case [action] if action in hello.actions:
                 await self._teach(action, line.state)
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
@@ -277,7 +307,7 @@ class TerminalTeacher:
 def _moves(text: str) -> bool:
     """Whether a line may set the robot in motion."""
     match text.split():
-        case ["go" | "resume" | "step" | "take", *_] | ["phase", "5"]:
+        case ["go" | "resume" | "step" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
             return True
     return False
 

@@ -3,12 +3,17 @@
 import math
 from collections.abc import Sequence
 
-from kurt2rt.channel.state import State
+from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.critic.role import Role
-from kurt2rt.rla.rla import ASK, rla_title
-from kurt2rt.teaching.hello import AppraisalName, Hello
+from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.rla import ASK, MID, rla_title
+from kurt2rt.teaching.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.teaching.lesson_line import LessonLine
-from kurt2rt.teaching.question import FeatureDifference, Question
+from kurt2rt.teaching.question import FeatureDifference, Question, WayQuestion
+
+HISTORY = "history"
+LOUD_FROM = 4.0
+"""Times the usual distance; the page's mark is loud from there on."""
 
 _HELP = """\
 an action                answers the robot's question, or corrects what it does
@@ -28,11 +33,25 @@ _CRITIC_HELP = """\
 an appraisal             teaches the critic what this situation is worth (phase 4)
 critic                   what the critic thinks, how well it agrees with you, what it changed last"""
 
+_MID_HELP = """\
+a behaviour              answers which way is right here, or corrects the mid level
+also NAME                this behaviour is possible here, too
+pursue NAME              only this once, until it has finished; teaches nothing
+way                      what the mid level wants, why, and what it has come by"""
+_GOAL_HELP = """\
+name NAME, places        give the mid level's situation a name; show those that have one
+seek NAME, seek rla N    go there, by what was taught; seek FEATURE=VALUE ... [within T] for any such place
+seek, here NAME          seek nothing any more; the robot was set down there"""
+
 
 def help_lines(hello: Hello) -> tuple[str, ...]:
     """What can be typed."""
     more = [_CRITIC_HELP] if hello.appraisals else []
-    more += [_PURSUE_HELP] if len(hello.behaviours) > 1 else []
+    if hello.mid is not None:
+        more.append(_MID_HELP)
+    elif len(hello.behaviours) > 1:
+        more.append(_PURSUE_HELP)
+    more += [_GOAL_HELP] if hello.seeks else []
     return (_HELP, *more, *name_lines(hello))
 
 
@@ -46,15 +65,64 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def question_in(state: State) -> Question:
+def question_in(state: State) -> Question | WayQuestion:
     """The question that a picture shows."""
+    if state.asks_at == MID and state.mid is not None:
+        mid = state.mid
+        came_by = tuple(word for word in mid.here if word)
+        return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
     return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour)
 
 
 def asks_in(state: State) -> bool:
     """Whether an action that is typed at this picture is an answer: there is nothing near that it could correct."""
+    if state.asks_at == MID:
+        return False  # nearest is of the mid level; a correction is right however near the basic one's are
     return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
+
+
+def asks_way_in(mid: MidState) -> bool:
+    """Whether a behaviour that is typed at this picture is an answer to the mid level, and no correction."""
+    return mid.nearest is None or mid.nearest_behaviour == ASK or mid.distance > mid.radius
+
+
+def way_in(state: State, introduced: MidIntroduction) -> str:
+    """What the mid level wants, and why; empty while it asks, or where there is none."""
+    mid = state.mid
+    if mid is None or mid.asks:
+        return ""
+    if mid.overridden:
+        return f"{mid.behaviour}, because a teacher said so, until it has finished"
+    if mid.rla is None:
+        return f"{mid.behaviour}; the mid level has not said anything yet"
+    if introduced.kind == HISTORY:
+        off = f"{mid.distance:.0f} of {introduced.length} differ, R {mid.radius:.0f}"
+    else:
+        off = f"{mid.distance:.2f} off, R {mid.radius:.2f}"
+    leads = f"it leads to {state.goal}, " if state.goal and state.plan else ""
+    return f"{mid.behaviour} because {leads}{rla_title(mid.rla, '', MID)}: {off}"
+
+
+def came_by_in(mid: MidState) -> str:
+    """What the mid level has come by, the newest first, and what the nearest RLA knows beside it."""
+    here = ", ".join(word for word in mid.here if word) or "nothing yet"
+    if mid.nearest is None:
+        return f"came by {here}"
+    there = ", ".join(word for word in mid.there if word) or "nothing yet"
+    return f"came by {here}; {rla_title(mid.nearest, '', MID)} knows {there}"
+
+
+def surprise_in(surprise: SurpriseState) -> str:
+    """What surprised the robot."""
+    after, came = (rla_title(each, "", surprise.level) for each in (surprise.rla, surprise.follow_up))
+    new = ", which had never followed it" if surprise.new else ""
+    return f"surprise: {surprise.times:.1f} times as far off as usual after {after}; {came} took over{new}"
+
+
+def is_worth_saying(surprise: SurpriseState) -> bool:
+    """Of the basic level, whose RLAs end many times a second, only what is far off."""
+    return surprise.level == MID or surprise.times >= LOUD_FROM
 
 
 def sentence_of(state: State) -> str:
@@ -63,6 +131,8 @@ def sentence_of(state: State) -> str:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"
         return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
+    if state.plan_says and state.cause in (Cause.AT_GOAL, Cause.NO_WAY):
+        return f"stands: {state.plan_says}"
     return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
 
 

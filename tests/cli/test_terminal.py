@@ -4,7 +4,7 @@ import os
 import socket
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import anyio
@@ -15,24 +15,30 @@ from kurt2rt.channel.reply import Reply, Verdict, done
 from kurt2rt.channel.requests import (
     AnswerRequest,
     AppraiseRequest,
+    BeAtRequest,
     CorrectRequest,
     HelloRequest,
     LessonsRequest,
+    NameRequest,
     PhaseRequest,
     PursueRequest,
     Request,
     ResumeRequest,
     RewardRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SituationsRequest,
     StopRequest,
     TakeRequest,
 )
 from kurt2rt.cli.terminal import TerminalTeacher
-from kurt2rt.cli.terminal_words import change_in, opinion_in, question_in, sentence_of
+from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, question_in, sentence_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
-from tests.channel.states import state
+from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO, Clock, seen
 
@@ -79,6 +85,8 @@ class Mind:
             return Reply(Verdict.DONE, HELLO)
         if isinstance(request, LessonsRequest):
             return Reply(Verdict.DONE, {"lessons": []})
+        if isinstance(request, SituationsRequest):
+            return Reply(Verdict.DONE, {"situations": ["the door", "the window"]})
         return done(7, f"{request.path} is done")
 
 
@@ -351,3 +359,68 @@ def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
     changed = LessonLine("c", "RLA 7 corrected: back instead of stand", "critic", 5, 9, "", False)
     assert change_in(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"
     assert change_in(changed._replace(undone=True)).endswith("stand, undone")
+
+
+async def test_the_mid_level_is_taught_by_the_names_of_behaviours(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.show(cause="unknown", asks_at="mid", mid=replace(COMMANDS, rla=None, distance=7.0, asks=True))
+        await desk.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
+        desk.type("turn_left")
+        await desk.reads("/answer is done")
+        (answer,) = robot.all_of(AnswerRequest)
+        assert (answer.action, answer.level, answer.beside) == ("turn_left", "mid", False)
+        robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
+        await desk.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
+        desk.type("straight_on")
+        await desk.reads("/correct is done")
+        assert [(each.action, each.level) for each in robot.all_of(CorrectRequest)] == [("straight_on", "mid")]
+        desk.type("also straight_on")
+        await robot.hears(AnswerRequest, 2)
+        assert robot.all_of(AnswerRequest)[-1].beside
+        desk.type("pursue straight_on")
+        await desk.reads("/pursue is done")
+        robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
+        await desk.reads("straight_on, because a teacher said so, until it has finished")
+        desk.type("way")
+        assert "came by left, straight, right" in await desk.reads("; mid-level RLA 12 knows left, straight, left")
+        robot.show(surprise=replace(SURPRISED, tick=robot.state.tick, new=True))
+        assert "took over, which had never followed it" in await desk.reads("surprise: 3.5 times as far off as usual")
+
+
+async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        for line, path in (
+            ("name the door", "/name"),
+            ("seek the door", "/seek"),
+            ("seek rla 12", "/seek/rla"),
+            ("seek x_m=1.8 y_m=-3 within 0.25", "/seek/like"),
+            ("here the door", "/here"),
+        ):
+            desk.type(line)
+            await desk.reads(f"{path} is done")
+        assert [each.name for each in robot.all_of(NameRequest)] == ["the door"]
+        assert [each.name for each in robot.all_of(SeekRequest)] == ["the door"]
+        assert [each.rla_id for each in robot.all_of(SeekRlaRequest)] == [12]
+        (like,) = robot.all_of(SeekLikeRequest)
+        assert (like.features, like.tolerance) == ((("x_m", 1.8), ("y_m", -3.0)), 0.25)
+        assert [each.name for each in robot.all_of(BeAtRequest)] == ["the door"]
+        desk.type("seek")
+        await robot.hears(SeekRequest, 2)
+        assert robot.all_of(SeekRequest)[-1].name is None
+        desk.type("places")
+        await desk.reads("named: the door, the window")
+        robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
+        await desk.reads("stands: no way from here to door")
+        desk.type("seek x_m=high")  # no number: the name of a place, then
+        await robot.hears(SeekRequest, 3)
+        assert robot.all_of(SeekRequest)[-1].name == "x_m=high"
+        desk.type("help")
+        await desk.reads("seek FEATURE=VALUE")
+
+
+def test_of_surprises_of_the_basic_level_only_the_great_ones_are_told() -> None:
+    assert is_worth_saying(SURPRISED)
+    assert not is_worth_saying(replace(SURPRISED, level="basic"))
+    assert is_worth_saying(replace(SURPRISED, level="basic", times=5.0))

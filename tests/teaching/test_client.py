@@ -22,6 +22,7 @@ from kurt2rt.channel.requests import (
     VERSION,
     AnswerRequest,
     AppraiseRequest,
+    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
@@ -31,6 +32,7 @@ from kurt2rt.channel.requests import (
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
+    NameRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
@@ -40,7 +42,11 @@ from kurt2rt.channel.requests import (
     ResumeRequest,
     RewardRequest,
     SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
     SessionRequest,
+    SituationsRequest,
     StopRequest,
     TakeRequest,
     UndoRequest,
@@ -48,7 +54,7 @@ from kurt2rt.channel.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.wire import WireError
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import MID, Phase
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -247,6 +253,18 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
     assert robot.orders() == [LessonsRequest(5), WorldRequest()]
 
 
+async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, robot: StandInRobot) -> None:
+    async def tells(_: Request) -> Reply:
+        return Reply(Verdict.DONE, {"situations": ["door", "window"]})
+
+    robot.mind = tells
+    assert await client.situations() == ("door", "window")
+    assert robot.orders() == [SituationsRequest()]
+    robot.mind = agrees
+    with pytest.raises(NoAnswerError, match="the robot's answer has no situations"):
+        await client.situations()
+
+
 async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot: StandInRobot) -> None:
     async def is_real(_: Request) -> Reply:
         return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
@@ -277,6 +295,14 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.undo("phone-01")
     await client.set_phase(Phase.CORRECTIONS)
     await client.pursue("turn_left")
+    await client.answer("turn_left", level=MID, beside=True)
+    await client.correct("turn_left", of=80, level=MID)
+    await client.name_situation("door", of=81)
+    await client.seek("door")
+    await client.seek_rla(12)
+    await client.seek_like({"x_m": 1.5}, 0.25)
+    await client.stop_seeking()
+    await client.be_at("door")
     await client.begin_session("morning")
     await client.end_session()
     await client.resume()
@@ -300,6 +326,14 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (UndoRequest, {"lesson": "phone-01"}),
         (PhaseRequest, {"phase": Phase.CORRECTIONS}),
         (PursueRequest, {"behaviour": "turn_left"}),
+        (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "beside": True}),
+        (CorrectRequest, {"action": "turn_left", "decision_tick": 80, "level": MID}),
+        (NameRequest, {"name": "door", "decision_tick": 81}),
+        (SeekRequest, {"name": "door"}),
+        (SeekRlaRequest, {"rla_id": 12}),
+        (SeekLikeRequest, {"features": (("x_m", 1.5),), "tolerance": 0.25}),
+        (SeekRequest, {"name": None}),
+        (BeAtRequest, {"name": "door"}),
         (SessionRequest, {"name": "morning"}),
         (SessionRequest, {"name": None}),
         (ResumeRequest, {}),

@@ -45,6 +45,9 @@ export function sentence(state) {
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
         return `RLA ${state.nearest}${of(state)} went wrong too often, teach me anew`;
       }
+      if (state.nearest !== null && state.distance !== null && state.distance <= state.radius) {
+        return `RLA ${state.nearest}${of(state)}: ${words(state.nearest_action)} is lost here, teach me another`;
+      }
       return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
     case "stopped":
       return `Stands: ${state.stopped_because || "stopped"}. GO lets it drive on`;
