@@ -1,6 +1,7 @@
 """What is taught and driven, and what it is compared with."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
 from kurt2rt.mid.settings import load_mid
@@ -21,6 +22,10 @@ class Variant:
     """Another mid level by name; None: none, somebody commands at each junction; empty: the task's own."""
     radius: float | None = None
     """Another R of the mid level."""
+    distance: Literal["hamming", "edit"] | None = None
+    """Another distance of histories."""
+    starts: int | None = None
+    """The lesson is begun anew so often; None: as the task says."""
     only_answers: bool = False
     """Nothing is corrected at either level."""
     corrects_basic: bool = True
@@ -30,13 +35,19 @@ class Variant:
         if self.mid is None or task.mid is None:
             return task.model_copy(update={"mid": None})
         mid = load_mid(self.mid or task.mid)
+        if self.distance is not None:
+            mid = mid.model_copy(update={"situation": mid.situation.model_copy(update={"distance": self.distance})})
         if self.radius is not None:
             mid = mid.model_copy(update={"learning": mid.learning.model_copy(update={"radius": self.radius})})
         return task.model_copy(update={"mid": mid})
 
     def plans(self, task: TaskSettings, starts: int) -> tuple[LessonPlan, ...]:
-        """Its lesson, in as many parts of the same length as it is begun anew; the phases go on through all of them."""
+        """Its lesson, in as many parts of the same length as it is begun anew; the phases go on through all of them.
+
+        `starts`: as the task says.
+        """
         whole = plan_of(task)
+        starts = self.starts or starts
         phases = ((Phase.SUPERVISED, whole.duration_s),) if self.only_answers else whole.phases
         part_s = whole.duration_s / starts
         return tuple(
@@ -63,8 +74,13 @@ def _part(phases: Phases, from_s: float, to_s: float) -> Phases:
 
 TAUGHT = Variant("taught", "as shipped")
 CONTROLS = (
-    Variant("only-answers", "questions are answered, nothing is corrected", only_answers=True),
-    Variant("basic-not-corrected", "the mid level is taught, the basic level only answered", corrects_basic=False),
-    Variant("commanded", "no mid level: somebody commands at each junction, in the exam, too", mid=None),
+    Variant("actions", "symbols: actions of the basic level, the paper's plain reading", mid="actions"),
+    Variant("low-passed", "symbols: turns and crossings, low-passed", mid="low_passed"),
+    Variant("expectations", "symbols: RLAs of the basic level that were expected to follow", mid="expectations"),
+    Variant("edit", "distance: how many edits make one history of the other", distance="edit"),
     *(Variant(f"radius-{radius}", f"R = {radius}", radius=float(radius)) for radius in (0, 2, 4, 8, 12)),
+    Variant("one-start", "begun at the start once", starts=1),
+    Variant("only-answers", "questions are answered, nothing is corrected", only_answers=True),
+    Variant("basic-not-corrected", "the basic level is answered, and not corrected", corrects_basic=False),
+    Variant("commanded", "no mid level: somebody commands at each junction, in the exam, too", mid=None),
 )
