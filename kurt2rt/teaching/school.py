@@ -9,7 +9,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, TeachingEvent
 from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
@@ -37,8 +37,10 @@ from kurt2rt.teaching.commands import (
 from kurt2rt.teaching.errands import ErrandCommand, Errands
 from kurt2rt.teaching.learning import Learning
 from kurt2rt.teaching.mid_lessons import MidLessons
+from kurt2rt.teaching.pursuing import Pursuing
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.refused import RefusedError, refuse
+from kurt2rt.teaching.teaching_clock import TeachingClock
 from kurt2rt.teaching.tuition import Tuition, require_action
 
 DERIVED = "/"
@@ -100,14 +102,10 @@ class School:
         self.stopped_because = ""
         """Empty while nobody stopped the robot."""
         self._stopped_by: set[str] = set()
-        self._pursued_seen_tick = -1
-        """What the teacher had seen when he said what is wanted now."""
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
-        self.session: str | None = None
-        """Name of the session that is on."""
-        self._session_from = 0
-        self._session_ticks = 0
+        self._pursuing = Pursuing(self.wanted, mid)
+        self._clock = TeachingClock()
 
     def has_taken(self, command_id: str) -> bool:
         """Whether a command of this id was carried out already."""
@@ -132,9 +130,14 @@ class School:
         if by is not None:
             self._stopped_by.add(by)
 
+    @property
+    def session(self) -> str | None:
+        """Name of the session that is on."""
+        return self._clock.session
+
     def teaching_ticks(self, tick: int) -> int:
         """How long the session that is on has lasted at `tick`, or how long the last one did."""
-        return self._session_ticks if self.session is None else tick - self._session_from
+        return self._clock.ticks(tick)
 
     def look_after(self, tick: int, *, was_driving: bool) -> None:
         """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume.
@@ -239,7 +242,8 @@ class School:
                 self.phase = command.phase
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
             case Pursue():
-                return self._pursue(command, tick), None
+                refuse(self._stopped_since(command))
+                return self._pursuing.take(command, tick), None
             case Seek() | StopSeeking():
                 refuse(self._stopped_since(command))
                 return self._errands_of(command).carry_out(command), None
@@ -265,28 +269,6 @@ class School:
         )
         return "the robot stands until it is told to resume"
 
-    def _pursue(self, command: Pursue, tick: int) -> str:
-        refuse(self._stopped_since(command))
-        seen_tick = tick if command.seen_tick is None else command.seen_tick
-        if seen_tick < self._pursued_seen_tick:
-            raise RefusedError(
-                f"{self.wanted.behaviour or 'the only behaviour'} was asked for after this was said; "
-                "look at the robot, then say it again"
-            )
-        mid = self.mid
-        if mid is not None and seen_tick < mid.passed_at_tick:
-            raise RefusedError("a junction was passed after this was said; look at the robot, then say it again")
-        try:
-            if mid is None:
-                self.wanted.pursue(command.behaviour)
-            else:
-                mid.mid.override(command.behaviour)
-        except ValueError as error:
-            raise RefusedError(str(error)) from error
-        self._pursued_seen_tick = seen_tick
-        so_long = "" if mid is None else " until the next junction is passed"
-        return f"{command.behaviour or 'the only behaviour'} is wanted{so_long}"
-
     def _errands_of(self, command: ErrandCommand) -> Errands:
         if self._errands is None:
             raise RefusedError(f"{type(command).__name__}: this robot has no mid level that could go anywhere")
@@ -307,19 +289,12 @@ class School:
         return f"{command.action} for {command.ticks} ticks"
 
     def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[str, TeachingEvent]:
-        origin = self._origin(command, tick)
-        if isinstance(command, BeginSession):
-            if self.session is not None:
-                raise RefusedError(f"the session {self.session!r} is on; end it first")
-            self.session, self._session_from = command.name, tick
-            return f"session {command.name!r} begins", SessionBegun(command.name, origin)
-        if self.session is None:
-            raise RefusedError("no session is on")
-        name, self._session_ticks = self.session, self.teaching_ticks(tick)
-        self.session = None
-        # A reason that is there already stays: the end of a session must not hide that somebody said stop.
-        self.stop(self.stopped_because or f"the session {name!r} is over", command.teacher)
-        return f"session {name!r} is over; the robot stands", SessionEnded(self._session_ticks, origin)
+        name = self.session
+        taken = self._clock.take(command, tick, self._origin(command, tick))
+        if isinstance(command, EndSession):
+            # A reason that is there already stays: the end of a session must not hide that somebody said stop.
+            self.stop(self.stopped_because or f"the session {name!r} is over", command.teacher)
+        return taken
 
     def _stopped_by_another(self, teacher: str) -> str | None:
         others = sorted(self._stopped_by - {teacher})
