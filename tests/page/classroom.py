@@ -49,9 +49,9 @@ class Classroom:
 
 
 @contextmanager
-def classroom(folder: Path) -> Iterator[Classroom]:
-    """Open everything, in this order, and close it again."""
-    with running("run", "--port", "0", folder=folder) as robot:
+def classroom(folder: Path, *options: str) -> Iterator[Classroom]:
+    """Open everything, in this order, and close it again; `options` of `kurt2rt run`."""
+    with running("run", "--port", "0", *options, folder=folder) as robot:
         port = int(robot.wait_for("UDP port").split()[-1])
         device = read_device(folder / "var" / "devices" / "local")
         with (

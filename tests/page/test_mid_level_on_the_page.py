@@ -9,6 +9,7 @@ from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from kurt2rt.teaching.hello import MidIntroduction
 from tests.channel.states import COMMANDS, SURPRISED
+from tests.page.classroom import classroom
 from tests.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
 from tests.page.test_browser import assert_handy, show_on
@@ -17,6 +18,7 @@ from tests.page.test_served_page import TOKEN, served
 
 TURNS = ("straight_on", "turn_left", "turn_right")
 ASKS = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
+READY = "return !document.querySelector('.turned, [aria-busy=true]');"
 CALM = "return !document.querySelector('.pending, .saved:not(#said)') && !document.getAnimations().length;"
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 
@@ -57,7 +59,7 @@ class Junction:
 
     def touch_way(self, way: str) -> None:
         """One of the big buttons, once it may be touched."""
-        self.phone.wait(lambda: self.phone.find("#ways").get_attribute("aria-busy") != "true", "it may be taught")
+        self.phone.wait(lambda: self.phone.run(READY), "it may be taught")
         self.phone.touch(f"[data-way={way}]")
 
     def look(self, name: str, tab: str = "teach") -> None:
@@ -148,6 +150,7 @@ def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junctio
     phone.wait(lambda: phone.find("#ways").is_displayed(), "the ways are back")
     phone.touch("[data-level=basic]")
     phone.wait(lambda: phone.find("#actions").is_displayed(), "the teacher wants to teach actions")
+    phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
     phone.wait(lambda: ("back",) in junction.told("correct"), "a correction of the basic level")
     junction.look("basic-level")
@@ -216,3 +219,41 @@ def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> N
             assert phone.find("#actions").is_displayed()
         finally:
             pictures.cancel()
+
+
+def test_a_robot_in_the_streets_is_taught_which_way_and_how(
+    a_phone: Phone, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    phone = a_phone
+    with classroom(tmp_path_factory.mktemp("streets"), "--task", "route") as room:
+        phone.turn(PORTRAIT)
+        phone.open(room.address)
+        phone.wait(lambda: "Which way? I know none yet" in phone.text("#sentence"), "it asks which way")
+        phone.complaints()  # of the page before, whose server is gone
+        phone.touch("#claim-button")
+        phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+        phone.show("14-which-way")
+        phone.touch("[data-way=turn_left]")
+        phone.wait(lambda: "I know nothing of turn left yet" in phone.text("#sentence"), "now it asks how")
+        assert phone.text("#mid-sentence") == "turn left because mid-level RLA 1: 0 of 12 differ, R 6"
+        phone.wait(lambda: phone.find("#actions").is_displayed(), "the actions are offered")
+        phone.wait(lambda: phone.run(READY), "it may be taught again")
+        phone.touch("[data-action=forward]")
+        phone.wait(lambda: "RLA 2 of turn left does forward" in phone.text("#sentence"), "it drives")
+        phone.show("14-it-drives")
+        phone.wait(lambda: phone.find("#ways").is_displayed() and phone.run(READY), "the ways are back")
+        phone.touch("[data-meant=once]")
+        phone.touch("[data-way=straight_on]")
+        phone.wait(lambda: "a teacher said so" in phone.text("#mid-sentence"), "the teacher overrides it")
+        assert phone.text("#said") == "straight_on is wanted until the next junction is passed"
+        phone.touch("#tab-goals")
+        phone.find("#situation-name").send_keys("home")
+        phone.touch("#name-situation")
+        phone.wait(lambda: "home" in phone.text("#goal-list"), "the place has a name")
+        phone.touch("[aria-label='Seek home']")
+        phone.wait(lambda: room.state().goal == "home", "it seeks it")
+        phone.wait(lambda: "home" in phone.text("#goal-now"), "and says so")
+        phone.show("14-it-seeks")
+        phone.touch("#stop-seeking")
+        phone.wait(lambda: room.state().goal == "", "no more")
+        assert phone.complaints() == []

@@ -83,7 +83,7 @@ function teach(action) {
 function teachWay(behaviour, meant) {
   if (!link.state?.mid) return;
   if (meant === "once") {
-    tell("pursue", { behaviour }, `${words(behaviour)}, this once`);
+    if (!tooEarly(behaviour)) tell("pursue", { behaviour }, `${words(behaviour)}, this once`);
     return;
   }
   const { nearest, nearest_behaviour: its, distance, radius } = link.state.mid;
@@ -95,12 +95,7 @@ function teachWay(behaviour, meant) {
 
 // A lesson from the buttons of a pad: `asks` where it answers a question.
 async function give(from, action, name, args, asks) {
-  if (asking || ways.justTurned) {
-    // The question on the screen is answered already, or another one than was looked at: a second answer would be a
-    // second RLA beside the first.
-    say("busy", `${words(action)} was not sent: wait for the picture after the last answer`);
-    return;
-  }
+  if (tooEarly(action)) return;
   if (asks) busy(true);
   from.mark(action, "pending");
   const answer = await tell(name, { action, ...args }, `${name}: ${words(action)}`);
@@ -109,6 +104,15 @@ async function give(from, action, name, args, asks) {
   if (!asks) return;
   if (answer.accepted || answer.why === "unknown") await pictureAfter(answer.tick ?? -1);
   busy(false);
+}
+
+// The question on the screen is answered already, or has just taken another one's place: a second answer would be a
+// second RLA beside the first.
+function tooEarly(action) {
+  if (!asking && !ways.justTurned) return false;
+  const wait = asking ? "wait for the picture after the last answer" : "the question has just changed, look again";
+  say("busy", `${words(action)} was not sent: ${wait}`);
+  return true;
 }
 
 let asking = false;

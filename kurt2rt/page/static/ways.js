@@ -15,7 +15,7 @@ export class Ways {
   #hello = null;
   #chosen = MID; // by the teacher; a question goes before it
   #level = BASIC;
-  #turnedMs = -Infinity;
+  #turned = null; // timer
   #shown = "";
   names = [];
 
@@ -26,7 +26,6 @@ export class Ways {
       button.addEventListener("click", () => {
         this.#chosen = button.dataset.level;
         this.#turn(this.#chosen);
-        this.#turnedMs = -Infinity;
       });
     }
     for (const button of $("meant").children) {
@@ -42,7 +41,6 @@ export class Ways {
     this.#buttons.clear();
     $("ways").replaceChildren(...this.names.map((name) => this.#button(name)));
     this.#turn(hello.mid ? this.#chosen : BASIC);
-    this.#turnedMs = -Infinity;
     this.#mean("teach");
   }
 
@@ -53,7 +51,7 @@ export class Ways {
 
   // Whether the question has turned the pad over just now: a touch may have been meant for what was there before.
   get justTurned() {
-    return performance.now() - this.#turnedMs < TURNED_MS;
+    return this.#turned !== null;
   }
 
   #button(name) {
@@ -81,17 +79,30 @@ export class Ways {
   }
 
   #turn(level) {
-    if (level !== this.#level) this.#turnedMs = performance.now();
+    clearTimeout(this.#turned);
+    this.#turned = null;
+    $("teach").classList.remove("turned");
     this.#level = level;
     for (const each of $("levels").children) each.setAttribute("aria-pressed", String(each.dataset.level === level));
     $("teach").classList.toggle("ways", level === MID);
+  }
+
+  // By a question, not by the teacher's hand.
+  #turnOver(level) {
+    this.#turn(level);
+    $("teach").classList.add("turned");
+    this.#turned = setTimeout(() => {
+      this.#turned = null;
+      $("teach").classList.remove("turned");
+    }, TURNED_MS);
   }
 
   show(state) {
     const { mid } = state;
     $("mid").hidden = !mid || mid.asks; // then it is the question that says so
     if (!mid || !this.#hello.mid) return;
-    this.#turn(state.cause === "unknown" ? state.asks_at : this.#chosen);
+    const level = state.cause === "unknown" ? state.asks_at : this.#chosen;
+    if (level !== this.#level) this.#turnOver(level);
     setText($("mid-sentence"), waySentence(state, this.#hello));
     $("mid-sentence").title = [mid.taught_by && `taught by ${mid.taught_by}`, when(mid.taught_at)].filter(Boolean).join(", ");
     const key = JSON.stringify([mid.here, mid.behaviour]);
