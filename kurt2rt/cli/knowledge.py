@@ -129,7 +129,7 @@ def graph(
         whole = read_network(journal, level=level, behaviour=behaviour)
     shown = without_rare(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
-    title = f"{file.stem}, level {level}: {what}, followed by each other in at least {at_least:g} % of all cases"
+    title = f"{file.stem}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
     write_network(shown, title, out)
     edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
     Console(highlight=False).print(

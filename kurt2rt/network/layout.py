@@ -1,6 +1,6 @@
 """Where the RLAs of a network stand in its picture: those that often follow each other near each other."""
 
-from collections.abc import Mapping
+import math
 
 import networkx as nx
 import numpy as np
@@ -18,6 +18,8 @@ _NEAREST = 1.4
 """Between two of which the one always follows the other."""
 _BETWEEN = 1.6
 """Between parts that no edge joins."""
+_ROOM = 2.5
+"""Side of the square that each has on average where RLAs stand at their places."""
 _WEAK = 1.2
 """So much farther apart stand RLAs of which the one hardly ever follows the other."""
 
@@ -95,14 +97,11 @@ def _lying(places: NDArray[np.float64]) -> NDArray[np.float64]:
     return turned
 
 
-def _in_units(known: Mapping[int, tuple[float, float]]) -> Places:
-    """Metres as units in which neighbouring places are about two APART."""
-    points = np.array(sorted(set(known.values())))
-    if len(points) < 2:
-        return dict(known)
-    between = np.linalg.norm(points[:, None, :] - points[None, :, :], axis=2)
-    np.fill_diagonal(between, np.inf)
-    unit = 3.0 * APART / max(float(np.median(between.min(axis=1))), 1e-9)
+def _in_units(known: Places) -> Places:
+    """Metres as units, so many that all have room."""
+    (low_x, high_x), (low_y, high_y) = span(known)
+    reach = max(high_x - low_x, high_y - low_y)
+    unit = _ROOM * math.sqrt(len(known)) / reach if reach > 0 else 1.0
     return {rla_id: (x * unit, y * unit) for rla_id, (x, y) in known.items()}
 
 
