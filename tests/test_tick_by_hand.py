@@ -335,7 +335,9 @@ class Witness:
         self.messages: list[tuple[str, int, int]] = []
         """Of presses: teacher, tick of arrival, tick of the picture."""
         self.stops: set[str] = set()
-        """Who said stop since the last resume."""
+        """Who said stop since the last resume; whoever takes the robot over from one may drive it by hand."""
+        self.teachers: set[str] = set()
+        """Who may have been the teacher by now, within this tick."""
         self.lost = False
         """Whether the robot drove and lost its teacher since the last resume."""
         self.drove: set[tuple[str, float]] = set()
@@ -354,6 +356,13 @@ class Witness:
             case Resume() if carried_out:
                 self.stops.clear()
                 self.lost = False
+            case Take() if carried_out:
+                self.stops -= self.teachers
+            case HandOver(teacher=who, to=to) if carried_out:
+                self.stops.discard(who)
+                self.teachers.update(() if to is None else (to,))
+        if carried_out or isinstance(command, Drive):
+            self.teachers.add(command.teacher)
 
     def check(self, record: TickRecord, corridor: Corridor) -> None:
         """The rules, after a tick."""
@@ -379,6 +388,7 @@ class Witness:
             assert not self.stops
             assert not self.lost
         self.hand = hand
+        self.teachers = set() if teacher is None else {teacher}
 
 
 @given(courses=COURSES, attended=st.booleans())
