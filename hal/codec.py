@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
 from typing import cast
@@ -110,18 +111,36 @@ class Codec:
 
 def load_database(database: str = "kurt2.dbc") -> Database:
     """A CAN database as cantools knows it: a file of config/can by name, or any file by path. Raises CodecError."""
-    path = Path(database)
-    if not path.is_file():
-        path = CONFIG_DIR / "can" / database
-    try:
-        return cast(Database, cantools.database.load_file(path, database_format="dbc"))
-    except (OSError, UnicodeDecodeError, cantools.Error) as error:
-        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+    return _database_of(*_read(database))
 
 
 def load_codec(database: str = "kurt2.dbc") -> Codec:
     """Codec of a database in config/can by name, or of any DBC file by path. Raises CodecError."""
-    messages = load_database(database).messages
+    return _codec_of(database, *_read(database))
+
+
+def _read(database: str) -> tuple[Path, str]:
+    """The file and what is in it. Raises CodecError."""
+    path = Path(database)
+    if not path.is_file():
+        path = CONFIG_DIR / "can" / database
+    try:
+        return path, path.read_text(encoding="cp1252")
+    except (OSError, UnicodeDecodeError) as error:
+        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+
+
+def _database_of(path: Path, text: str) -> Database:
+    try:
+        return cast(Database, cantools.database.load_string(text, database_format="dbc"))
+    except cantools.Error as error:
+        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+
+
+@lru_cache(maxsize=4)
+def _codec_of(database: str, path: Path, text: str) -> Codec:
+    """Remembered by what is in the file, and never changed: each simulated robot needs it three times."""
+    messages = _database_of(path, text).messages
     return Codec(database, tuple(MessageCodec(message) for message in messages if not message.is_multiplexed()))
 
 
