@@ -263,7 +263,7 @@ class TerminalTeacher:
                 await self._tell(robot.hand_over())
             case ["way"] if hello.mid is not None and line.state is not None and line.state.mid is not None:
                 self._say(way_in(line.state, hello.mid) or str(question_in(line.state)))
-                self._say(came_by_in(line.state.mid))
+                self._say(came_by_in(line.state.mid, hello.mid))
             case ["places"] if hello.seeks:
                 self._say(f"named: {', '.join(await robot.situations()) or 'nothing yet'}")
             case [action] if action in hello.actions:

@@ -104,13 +104,14 @@ def way_in(state: State, introduced: MidIntroduction) -> str:
     return f"{mid.behaviour} because {leads}{rla_title(mid.rla, '', MID)}: {off}"
 
 
-def came_by_in(mid: MidState) -> str:
-    """What the mid level has come by, the newest first, and what the nearest RLA knows beside it."""
+def came_by_in(mid: MidState, introduced: MidIntroduction) -> str:
+    """What the mid level has come by, the newest first, or where it is; and what the nearest RLA knows beside it."""
+    is_at = "came by" if introduced.kind == HISTORY else "is at"
     here = ", ".join(word for word in mid.here if word) or "nothing yet"
     if mid.nearest is None:
-        return f"came by {here}"
+        return f"{is_at} {here}"
     there = ", ".join(word for word in mid.there if word) or "nothing yet"
-    return f"came by {here}; {rla_title(mid.nearest, '', MID)} knows {there}"
+    return f"{is_at} {here}; {rla_title(mid.nearest, '', MID)} knows {there}"
 
 
 def surprise_in(surprise: SurpriseState) -> str:

@@ -201,6 +201,22 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     assert phone.complaints() == []
 
 
+def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> None:
+    phone, robot = junction.phone, junction.robot
+    robot.greeting = replace(robot.greeting, mid=MidIntroduction("place", 6, 0.5), boot=b"anew")
+    here = ("x_m 1.80", "y_m 3.62", "east 0.00", "north 1.00", "wall_left 1.00", "wall_right 0.00")
+    there = ("x_m 1.80", "y_m 5.40", "east -1.00", "north 0.00", "wall_left 0.50", "wall_right 0.00")
+    junction.show(boot=b"anew", mid=replace(COMMANDS, distance=0.08, radius=0.5, here=here, there=here))
+    junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 0.08 off, R 0.50")
+    junction.reads("#strip", "x 1.80 m, y 3.62 m, \N{UPWARDS ARROW}, wall left")
+    junction.look("place")
+    asks = replace(COMMANDS, rla=None, asks=True, distance=1.8, radius=0.5, here=here, there=there)
+    junction.show(mid=asks, asks_at="mid", cause="unknown", action=None, rla=None, nearest=12, distance=1.8, radius=0.5)
+    junction.reads("#differences", "x 1.80 m, y 5.40 m, \N{LEFTWARDS ARROW}, wall left 0.50")
+    assert phone.text("#gauge-text") == "1.80 off, R 0.50"
+    junction.look("which-way-from-a-place")
+
+
 def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> None:
     phone = a_phone
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:

@@ -44,8 +44,24 @@ export function symbol(word) {
   return cell;
 }
 
+// A place in words: of what is either there or not, what is there; the heading as an arrow.
+function place(features) {
+  const line = document.createElement("p");
+  const values = new Map(features.map((each) => [each.slice(0, each.lastIndexOf(" ")), Number(each.slice(each.lastIndexOf(" ") + 1))]));
+  const [east, north] = [values.get("east"), values.get("north")];
+  const parts = [...values].map(([name, value]) => {
+    if (name.endsWith("_m")) return `${words(name.slice(0, -2))} ${value.toFixed(2)} m`;
+    if (name === "east" && north !== undefined) return "→↗↑↖←↙↓↘"[Math.round((Math.atan2(north, east) / Math.PI) * 4 + 8) % 8];
+    if (name === "north" && east !== undefined) return "";
+    return value === 1 ? words(name) : value === 0 ? "" : `${words(name)} ${value.toFixed(2)}`;
+  });
+  line.textContent = parts.filter(Boolean).join(", ");
+  return line;
+}
+
 // The last symbols, time going to the right; below each, where wanted, what the nearest RLA has in its place.
-export function strip(here, there) {
+export function strip(here, there, [kind]) {
+  if (kind !== HISTORY) return [here, there].filter((words) => words.length).map(place);
   return here
     .map((word, i) => {
       const pair = document.createElement("div");

@@ -108,7 +108,7 @@ export class Ways {
     const key = JSON.stringify([mid.here, mid.behaviour]);
     if (key !== this.#shown) {
       this.#shown = key;
-      $("strip").replaceChildren(...strip(mid.here, []), this.#next(mid));
+      $("strip").replaceChildren(...strip(mid.here, [], this.#hello.mid), this.#next(mid));
       $("strip").setAttribute("aria-label", `came by: ${[...mid.here].reverse().filter(Boolean).map(words).join(", ") || "nothing yet"}`);
     }
     for (const [name, button] of this.#buttons) {

@@ -97,7 +97,7 @@ export class Why {
     setText(this.#text, off);
     this.#surprise(state);
     this.#trace.see(state.tick, known && !which ? share : null);
-    if (which) this.#compare(state.mid);
+    if (which) this.#compare(state.mid, hello.mid);
     else if (asks) this.#show(state.question);
     else this.#trace.draw();
   }
@@ -112,11 +112,11 @@ export class Why {
   }
 
   // What the robot has come by, and below it the way that the nearest mid-level RLA knows.
-  #compare(mid) {
+  #compare(mid, introduced) {
     const key = JSON.stringify([mid.here, mid.there]);
     if (key === this.#shown) return;
     this.#shown = key;
-    this.#differences.replaceChildren(...strip(mid.here, mid.there));
+    this.#differences.replaceChildren(...strip(mid.here, mid.there, introduced));
   }
 
   // Pairs of bars: dark is here, hollow is the nearest RLA's condition.
