@@ -15,7 +15,7 @@ from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import BASIC, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.teaching.commands import Command, CommandResult, Correct, Drive, Resume, Teach, Watch
+from kurt2rt.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
@@ -133,6 +133,8 @@ class Tick:
             if new and result.accepted and isinstance(command, Resume) and self._latched:
                 self._robot.release()
                 self._latched = False
+            if new and result.accepted and isinstance(command, BeAt):
+                self._begin_anew()
             if event is not None:
                 events.append(event)
         decision = self._decide(tick, situation, senses, blind=blind)
@@ -179,6 +181,10 @@ class Tick:
         """The robot was set down elsewhere: what the mid level comes to next does not follow what was."""
         if self._school.mid is not None:
             self._school.mid.mid.restart()
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """What comes next follows from nothing."""
         self._mid_uses.restart()
         if self._expecting is not None:
             self._expecting.restart()

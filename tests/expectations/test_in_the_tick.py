@@ -7,11 +7,22 @@ from kurt2rt.expectations.expectation import Expectation, pack
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import MID
-from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, Stop, Teach, Undo
+from kurt2rt.teaching.commands import (
+    BeAt,
+    Command,
+    Correct,
+    DeleteRla,
+    NameSituation,
+    Pursue,
+    Resume,
+    Stop,
+    Teach,
+    Undo,
+)
 from kurt2rt.tick import TickRecord
 from tests.rla.helpers import created
 from tests.test_tick_learning import Drive
-from tests.test_tick_with_mid_level import LENGTH, Town, another_way, the_way
+from tests.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
 
 NEAR, FAR = 400, 50
 
@@ -147,6 +158,24 @@ def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> 
     town.runtime.set_down()
     town.way_to_the_first_junction()
     assert town.runtime.to_save().expectations[4].count == 1
+
+
+def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.test_tick_with_mid_level.ROUTE", STREETS.model_copy(update={"mid": "places"}))
+    town = Town()
+    town.way_to_the_first_junction()
+    town.run(NameSituation("n", "Ann", "door"))
+    town.run(the_way("straight_on", "first"))
+    town.junction()
+    town.run(the_way("straight_on", "second"))  # RLA 5
+    assert town.runtime.to_save().expectations[4].count == 1
+    town.street()
+    (told,) = town.run(BeAt("b", "Ann", "door")).results
+    assert told.accepted, told.text
+    town.street()
+    saved = town.runtime.to_save()
+    assert 5 not in saved.expectations
+    assert saved.uses[4] == 1
 
 
 def test_a_correction_on_the_way_leaves_the_corrected_one_without_an_end(town: Town) -> None:
