@@ -74,13 +74,13 @@ class Watching:
         mid = record.decision.mid
         if mid is None:
             return "basic"
+        if record.decision.asking and record.decision.asks_at == MID:
+            return "mid" if self._knows() else "symbols"
         wanted, knew = self._wanted, self._knew
         if passage.taken is None and not self._inside:  # it did not come to that junction
+            if self._is_to_notice():
+                return "basic"  # it got stuck, or turned back, just behind the one before
             wanted, knew = record.behaviour, self._knows()
-            if mid.asks:
-                return "mid" if knew else "symbols"
-        if record.decision.asking and record.decision.asks_at == MID:
-            return "symbols"  # within a junction, so it has noticed one that it has not left
         if QUARTERS[wanted] != passage.right:
             return "mid" if knew else "symbols"
         # It was told what is right there; what it was told on the way through may be about the next one already.
@@ -90,3 +90,8 @@ class Watching:
     def _knows(self) -> bool:
         """Whether what it noticed of the last junctions is what it did there."""
         return tuple(self._noticed) == tuple(self._true)
+
+    def _is_to_notice(self) -> bool:
+        """Whether it lacks nothing but the last junction, from which it has not come far."""
+        recent = _HISTORY - 1
+        return tuple(self._noticed)[-recent:] == tuple(self._true)[:-1] and bool(self._true)

@@ -125,6 +125,16 @@ def test_an_unknown_history_in_the_street_is_the_mid_levels_fault_a_stuck_robot_
     assert watched.blamed == ["basic"]
 
 
+def test_stuck_just_behind_a_junction_that_it_is_still_to_notice_is_the_basic_levels_fault() -> None:
+    watched = Watched()
+    for turn in (0, 1, -1) * 5:
+        watched.junction(turn, turn, turn, turn)
+    watched.junction(1, 1, 1, None)
+    watched.course.passages.append(Passage(1, 0, None, 1.0, 2.0))
+    watched.watching.end()
+    assert watched.blamed == ["basic"]
+
+
 def test_without_a_mid_level_it_is_always_the_basic_one() -> None:
     watched = Watched()
     watched.look(0, mid=False)
