@@ -100,6 +100,18 @@ def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -
     assert driving.run(100, press(driving, hold=6)).decision.cause is Cause.TEACHER
 
 
+def test_an_older_press_that_comes_late_neither_drives_nor_lets_the_newer_one_come_back(driving: Corridor) -> None:
+    driving.run(100, press(driving, hold=1))
+    driving.run(100, press(driving, hold=4))
+    assert not stands(driving.run(100, press(driving, hold=1)))  # the newer one still drives
+    for _ in range(LEASE):
+        record = driving.run(100)
+    assert stands(record)
+    assert stands(driving.run(100, press(driving, hold=1)))
+    assert stands(driving.run(100, press(driving, hold=4)))
+    assert not stands(driving.run(100, press(driving, hold=5)))
+
+
 @pytest.mark.parametrize("by", ["Ann", "Ben"])
 def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by: str) -> None:
     driving.run(100, press(driving))

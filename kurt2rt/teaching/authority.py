@@ -74,8 +74,9 @@ class Authority:
         self._ended_hold.pop(teacher, None)
 
     def is_over(self, command: Drive) -> bool:
-        """Whether a stop, or silence, has ended this press."""
-        return command.hold <= self._ended_hold.get(command.teacher, -1)
+        """Whether a stop, silence, or a later press has ended this one: what comes of it now was held up on its way."""
+        ended, newest = self._ended_hold.get(command.teacher, -1), self._hold.get(command.teacher, -1)
+        return command.hold <= ended or command.hold < newest
 
     @property
     def why_absent(self) -> str:

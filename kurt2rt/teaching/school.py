@@ -177,7 +177,7 @@ class School:
         if isinstance(command, Watch):
             return None
         if self.authority.is_over(command):
-            return "this press was ended by a stop; let go and press anew"
+            return "this press is over; let go and press anew"
         return self._stopped_by_another(command.teacher)
 
     def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:

@@ -465,7 +465,7 @@ def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
     lesson = Lesson()
     assert lesson.drive(hold=1) is None
     lesson.say(stop())
-    assert lesson.drive(hold=1) == "this press was ended by a stop; let go and press anew"
+    assert lesson.drive(hold=1) == "this press is over; let go and press anew"
     assert lesson.drive(hold=2) is None
 
 
@@ -511,7 +511,7 @@ def test_resume_ends_what_the_hand_was_doing() -> None:
     lesson.drive(hold=4)
     lesson.say(resume())
     assert not lesson.school.authority.hand_on_wheel(lesson.tick)
-    assert lesson.drive(hold=4) == "this press was ended by a stop; let go and press anew"
+    assert lesson.drive(hold=4) == "this press is over; let go and press anew"
 
 
 def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
