@@ -199,7 +199,7 @@ link.addEventListener("hello", ({ detail }) => {
   critic.build(hello);
   world.greet(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
-  setText($("keys-actions"), hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
+  setText($("keys-actions"), (hello.mid ? "the ways, or " : "") + hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
   $("view").hidden = !hello.simulated;
   document.body.classList.toggle("simulated", hello.simulated);
   if (!hello.simulated) showView("robot");
