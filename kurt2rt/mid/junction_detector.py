@@ -68,6 +68,16 @@ class JunctionDetector:
         self._yaw_rad = 0.0
         self.restart()
 
+    @property
+    def yaw_rad(self) -> float:
+        """How far the robot has turned to the left since it was switched on, by its encoders."""
+        return self._yaw_rad
+
+    @property
+    def street_rad(self) -> float | None:
+        """How the street runs that it is in, or came from, measured against `yaw_rad`; None before the first."""
+        return self._street_rad
+
     def restart(self) -> None:
         """Forget what was: nobody can say which way the robot came."""
         self.walled = self.opened = False

@@ -78,7 +78,6 @@ class Place:
         self._blind_m = settings.blind_m
         self._detector = detector
         self._metres_per_tick = robot.geometry.metres_per_tick
-        self._track_m = robot.geometry.effective_track_m
         self._told = False
         self._begin((0.0, 0.0, 1.0, 0.0, _UNKNOWN_WALL, _UNKNOWN_WALL))
 
@@ -95,8 +94,8 @@ class Place:
     def perceive(self, senses: Senses, before: Decision) -> bool:  # noqa: ARG002 - what was decided does not matter here
         """Take in one tick."""
         told, self._told = self._told, False
-        self._reckon(senses)
         self.passed = passed = self._detector.perceive(senses)
+        self._reckon(senses)
         if passed is not None and passed.quarters == 0 and self._way_m < self._blind_m:
             self.passed = passed = None
         if passed is None or self.lost:
@@ -125,21 +124,18 @@ class Place:
         self._begin_leg()
 
     def _begin_leg(self) -> None:
-        """From one junction to the next the way is reckoned in the frame of the street that it begins in."""
-        self._ahead_m = self._left_m = self._turned_rad = self._way_m = 0.0
+        """From one junction to the next the way is reckoned in the frame of the encoders' own yaw."""
+        self._x_driven_m = self._y_driven_m = self._way_m = 0.0
 
     def _reckon(self, senses: Senses) -> None:
-        left_m = senses.encoder_left_ticks * self._metres_per_tick
-        right_m = senses.encoder_right_ticks * self._metres_per_tick
-        step_m, turn_rad = (left_m + right_m) / 2, (right_m - left_m) / self._track_m
-        middle_rad = self._turned_rad + turn_rad / 2
-        self._ahead_m += step_m * math.cos(middle_rad)
-        self._left_m += step_m * math.sin(middle_rad)
-        self._turned_rad += turn_rad
+        step_m = (senses.encoder_left_ticks + senses.encoder_right_ticks) / 2 * self._metres_per_tick
+        middle_rad = self._detector.yaw_rad - self._detector.turn_rad / 2
+        self._x_driven_m += step_m * math.cos(middle_rad)
+        self._y_driven_m += step_m * math.sin(middle_rad)
         self._way_m += abs(step_m)
 
     def _arrive(self, passed: JunctionEvent) -> None:
-        ahead_m, left_m = self._straightened(passed.quarters)
+        ahead_m, left_m = self._along_the_street(passed)
         east, north = _HEADINGS[self._quarters]
         self._x_m += ahead_m * east - left_m * north
         self._y_m += ahead_m * north + left_m * east
@@ -151,9 +147,17 @@ class Place:
             self._x_m, self._y_m = known[X], known[Y]
         self._begin_leg()
 
-    def _straightened(self, quarters: int) -> tuple[float, float]:
-        """The leg as it is if it ends in a street: what it turned too much or too little was wrong all the way."""
-        off_rad = math.remainder(self._turned_rad - quarters * _QUARTER_RAD, 2 * math.pi) / 2
-        cos, sin = math.cos(off_rad), math.sin(off_rad)
-        ahead_m, left_m = self._ahead_m * cos + self._left_m * sin, self._left_m * cos - self._ahead_m * sin
-        return (math.copysign(math.hypot(ahead_m, left_m), ahead_m), 0.0) if quarters == 0 else (ahead_m, left_m)
+    def _along_the_street(self, passed: JunctionEvent) -> tuple[float, float]:
+        """The leg ahead and to the left, as seen along the street that it began in.
+
+        What the encoders make of the turn more or less than whole quarters is wrong half-way through on average.
+        Who goes straight on through a junction stays in line: how he strays between the walls does not add up.
+        """
+        street_rad = self._detector.street_rad
+        assert street_rad is not None  # nobody passes a junction without having been in a street
+        surplus_rad = math.remainder(passed.turn_rad - passed.quarters * _QUARTER_RAD, 2 * math.pi)
+        came_rad = street_rad - passed.turn_rad + surplus_rad / 2
+        cos, sin = math.cos(came_rad), math.sin(came_rad)
+        ahead_m = self._x_driven_m * cos + self._y_driven_m * sin
+        left_m = self._y_driven_m * cos - self._x_driven_m * sin
+        return ahead_m, 0.0 if passed.quarters == 0 else left_m
