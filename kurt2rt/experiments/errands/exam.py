@@ -1,0 +1,183 @@
+"""Sends a robot to goals, one after the other, without a teacher."""
+
+import math
+import random
+from collections.abc import Callable, Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.arena import Arena, Pose, Position
+from kurt2rt.experiments.courses.town import length_m
+from kurt2rt.experiments.errands.goals import GoalChosen
+from kurt2rt.experiments.errands.guide import HOME
+from kurt2rt.experiments.errands.lesson import TRAIL_STRIDE, walk_in
+from kurt2rt.experiments.errands.outcome import ErrandDone
+from kurt2rt.experiments.exam import NothingIsTaught
+from kurt2rt.experiments.progress import WayMade
+from kurt2rt.experiments.refusals import require_carried_out
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.planning.goal import NamedGoal
+from kurt2rt.planning.step import Course
+from kurt2rt.rla.rla import Rla, TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import BeAt, Command, Seek, StopSeeking
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+
+How = Literal["planning", "chance", "mid level"]
+"""By what it goes: a plan; or, as a control, any of the ways that were taught at a place, by chance; or always that
+which was taught first."""
+
+_EXAMINER = "examiner"
+
+
+class ByChance:
+    """Any of the ways that are possible at a place (kurt2rt.layers.mid_level.Chooser)."""
+
+    def __init__(self, chance: random.Random) -> None:
+        self._chance = chance
+        self._at: NDArray[np.float64] | None = None
+        self._way: Rla | None = None
+
+    def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
+        """One of them, the same until the next place."""
+        if vector is not self._at or self._way not in group:
+            self._at, self._way = vector, self._chance.choice(group)
+        return self._way
+
+
+async def run_errands(
+    arena: Arena,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    saved: Statistics,
+    goals: Sequence[GoalChosen],
+    home: Pose,
+    *,
+    how: How,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> tuple[tuple[ErrandDone, ...], tuple[Position, ...]]:
+    """One goal after the other, each from where the one before is; what came of each, and where the robot was.
+
+    A robot that does not come to a goal is set down there, and is told where it is. Without a plan a goal counts as
+    reached where the robot comes through it.
+    """
+    period_s = settings.can.cycle_s
+    walk = walk_in(arena.plan, task)
+    clock = LockstepClock(arena.step)
+    runtime = build_runtime(
+        arena.robot,
+        settings,
+        task,
+        events,
+        NothingIsTaught(),
+        clock,
+        statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
+        saved=saved,
+        asked=False,
+    )
+    assert runtime.mid is not None
+    if how == "chance":
+        runtime.mid.chooser = ByChance(random.Random(f"ways of robot {seed}"))
+    limit = round(task.exam.duration_s / period_s)
+    done: list[ErrandDone] = []
+    trail: list[Position] = []
+    way = WayMade(task.exam.stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
+    said = 0
+    number = ticks = 0
+    way_m = 0.0
+    start = before = home
+    touched = arena.collisions
+    surprises = 0
+
+    def say(make: Callable[[str], Command]) -> None:
+        nonlocal said
+        said += 1
+        runtime.inbox.put(make(f"errands-{said}"))
+
+    def begin() -> None:
+        nonlocal start, before, way_m, ticks, touched, surprises
+        start = before = arena.pose
+        way_m, ticks, touched, surprises = 0.0, 0, arena.collisions, 0
+        way.restart()
+        if how == "planning":
+            say(lambda command_id: Seek(command_id, _EXAMINER, NamedGoal(goals[number].name)))
+
+    def put(pose: Pose, name: str) -> None:
+        arena.put(pose)
+        runtime.set_down()
+        walk.put(pose)
+        say(lambda command_id: StopSeeking(command_id, _EXAMINER))
+        say(lambda command_id: BeAt(command_id, _EXAMINER, name))
+
+    def judge(record: TickRecord) -> str | None:
+        """How the errand ended; empty: at its goal; None while it goes on."""
+        goal, decision = goals[number], record.decision
+        there = walk.street == goal.street
+        plan = decision.plan
+        if how == "planning":
+            if plan is not None and ticks > 1 and plan.course is Course.ARRIVED:
+                return "" if there else "it took another place for it"
+            if plan is not None and ticks > 1 and plan.course in (Course.NO_WAY, Course.LOST):
+                return plan.course.value
+        elif there:
+            return ""
+        if record.grant.latched:
+            return record.grant.reasons[0]
+        if way.none_since_window(arena.position):
+            return "stuck: " + (decision.cause.value if not decision.driving else "driving")
+        return "time" if ticks >= limit else None
+
+    def after_tick(record: TickRecord) -> None:
+        nonlocal number, ticks, way_m, before, surprises
+        require_carried_out(record, task)
+        pose = arena.pose
+        walk.follow(pose)
+        ticks += 1
+        way_m += math.hypot(pose.x_m - before.x_m, pose.y_m - before.y_m)
+        before = pose
+        if record.decision.plan is not None:
+            surprises = record.decision.plan.surprises
+        ended = judge(record)
+        if record.tick % TRAIL_STRIDE == 0:
+            trail.append(arena.position)
+        if ended is None:
+            return
+        goal = goals[number]
+        shortest_m = length_m(goal.shortest, start, None if ended else pose)
+        done.append(
+            ErrandDone(
+                goal=goal.name,
+                why_not=ended,
+                seconds=ticks * period_s,
+                way_m=way_m,
+                shortest_m=shortest_m,
+                junctions=len(goal.shortest) - 1,
+                demonstrated=None if math.isinf(goal.demonstrated) else goal.demonstrated,
+                surprises=surprises,
+                collisions=arena.collisions - touched,
+            )
+        )
+        on_progress(number + 1.0)
+        number += 1
+        if number == len(goals):
+            runtime.scheduler.end()
+            return
+        if ended:
+            if record.grant.latched:
+                arena.robot.release()
+            put(goal.street.middle, goal.name)
+        begin()
+
+    put(home, HOME)
+    if goals:
+        begin()
+        await runtime.scheduler.run(limit * len(goals) + 1, after_tick)
+    return tuple(done), tuple(trail)

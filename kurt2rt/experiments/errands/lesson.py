@@ -1,0 +1,147 @@
+"""Leads a robot that knows the streets about in a town, in lockstep."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.experiments.arena import Arena, Plan, Pose, Position
+from kurt2rt.experiments.courses.errands import Errands, ErrandsSettings
+from kurt2rt.experiments.courses.town import Street
+from kurt2rt.experiments.errands.guide import HOME, Guide
+from kurt2rt.experiments.progress import WayMade
+from kurt2rt.experiments.refusals import require_carried_out
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import MID, Phase, TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.runtime import build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import Correct
+from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
+from kurt2rt.tick import LessonKeeper, TickRecord
+from kurt2rt.timing.clock import LockstepClock
+
+TRAIL_STRIDE = 20
+"""Ticks between two points of a trail."""
+
+
+@dataclass(frozen=True, slots=True)
+class LedAbout:
+    """What a lesson came to."""
+
+    teaching_s: float
+    home: Pose
+    named: dict[str, Street]
+    """Where each name was given."""
+    streets: tuple[Street | None, ...]
+    """All that the robot was led through, one after the other; None where it was set down anew."""
+    ways: int
+    """Ways from a street to the next that were taught."""
+    mid_rlas: int
+    basic_rlas: int
+    mid_asks: int
+    missed_junctions: int
+    corrections: int
+    """Of the basic level."""
+    rescues: int
+    trail: tuple[Position, ...]
+    saved: Statistics
+
+
+def errands_of(task: TaskSettings) -> ErrandsSettings:
+    """Settings of its errands. Raises hal.settings.SettingsError for a task that has none."""
+    if isinstance(task.course, ErrandsSettings) and task.mid is not None:
+        return task.course
+    raise SettingsError(f"task {task.name}: to run errands it needs the course errands, and a mid level of places")
+
+
+def walk_in(plan: Plan, task: TaskSettings) -> Errands:
+    """Who follows the robot from street to street in a world. Raises hal.settings.SettingsError."""
+    return errands_of(task).walk_in(plan, task.behaviours)
+
+
+async def lead_about(
+    arena: Arena,
+    settings: RobotSettings,
+    task: TaskSettings,
+    keeper: LessonKeeper,
+    events: Sequence[TeachingEvent],
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+    statistics: StatisticsCounter | None = None,
+    saved: Statistics | None = None,
+) -> LedAbout:
+    """Lead the robot about for the task's whole teaching time, from where it stands; that is its home.
+
+    The basic level is answered and corrected meanwhile, as in its own lesson. Raises LessonLostError.
+    """
+    period_s = settings.can.cycle_s
+    walk = walk_in(arena.plan, task)
+    clock = LockstepClock(arena.step)
+    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics, saved=saved)
+    session = f"errands-{seed}-after-{len(events)}"
+    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+    guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)
+    way = WayMade(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
+    home = arena.pose
+    ticks, per_second = round(task.teaching.duration_s / period_s), round(1 / period_s)
+    trail: list[Position] = []
+    rescues = corrections = mid_asks = latched_ticks = 0
+    asking = False
+
+    def after_tick(record: TickRecord) -> None:
+        nonlocal rescues, corrections, mid_asks, latched_ticks, asking
+        require_carried_out(record, task)
+        decision = record.decision
+        walk.follow(arena.pose)
+        said = guide.watch(record)
+        if said is not None:
+            runtime.inbox.put(said)
+        lesson = teacher.watch(picture_of(record))
+        if lesson is not None:
+            runtime.inbox.put(lesson)
+            corrections += isinstance(lesson, Correct)
+        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
+        if latched_ticks == per_second:
+            runtime.inbox.put(teacher.go())
+            latched_ticks = 0
+        mid_asks += decision.asking and decision.asks_at == MID and not asking
+        asking = decision.asking
+        if asking:
+            way.restart()
+        elif way.none_since_window(arena.position):
+            arena.put(home)
+            runtime.set_down()
+            walk.put(home)
+            guide.set_down_at_home()
+            way.restart()
+            rescues += 1
+        if record.tick % TRAIL_STRIDE == 0:
+            trail.append(arena.position)
+        if record.tick % per_second == 0:
+            on_progress(record.now_s)
+
+    walk.put(home)
+    guide.begin()
+    runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
+    await runtime.scheduler.run(ticks, after_tick)
+    system = runtime.level.system
+    return LedAbout(
+        teaching_s=ticks * period_s,
+        home=home,
+        named=dict(guide.named),
+        streets=tuple(walk.streets),
+        ways=guide.ways,
+        mid_rlas=len(system.rlas_at(MID)),
+        basic_rlas=len(system),
+        mid_asks=mid_asks,
+        missed_junctions=guide.missed,
+        corrections=corrections,
+        rescues=rescues,
+        trail=tuple(trail),
+        saved=runtime.to_save(),
+    )
+
+
+__all__ = ["HOME", "LedAbout", "errands_of", "lead_about", "walk_in"]
