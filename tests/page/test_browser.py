@@ -354,7 +354,15 @@ def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, 
     phone.touch("#view")
 
 
-@pytest.mark.parametrize("size", [PORTRAIT, SMALL, LANDSCAPE, LAPTOP], ids=["portrait", "small", "landscape", "laptop"])
+@pytest.mark.parametrize(
+    "size",
+    [
+        pytest.param(PORTRAIT, id="portrait", marks=pytest.mark.deep),
+        pytest.param(SMALL, id="small"),
+        pytest.param(LANDSCAPE, id="landscape", marks=pytest.mark.deep),
+        pytest.param(LAPTOP, id="laptop"),
+    ],
+)
 def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
     a_phone: Phone, room: Classroom, size: tuple[int, int]
 ) -> None:
