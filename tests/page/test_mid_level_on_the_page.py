@@ -62,9 +62,9 @@ class Junction:
         self.phone.wait(lambda: self.phone.run(READY), "it may be taught")
         self.phone.touch(f"[data-way={way}]")
 
-    def look(self, name: str, tab: str = "teach") -> None:
-        """It can be read and touched on each screen."""
-        for size in SIZES:
+    def look(self, name: str, tab: str = "teach", sizes: tuple[tuple[int, int], ...] = SIZES) -> None:
+        """It can be read and touched on these screens."""
+        for size in sizes:
             self.phone.turn(size, touch=size != LAPTOP)
             self.phone.wait(lambda: self.phone.run(CALM), "the colours of an answer are gone")
             self.phone.show(f"13-{name}-{size[0]}x{size[1]}")
@@ -153,7 +153,7 @@ def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junctio
     phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
     phone.wait(lambda: ("back",) in junction.told("correct"), "a correction of the basic level")
-    junction.look("basic-level")
+    junction.look("basic-level", sizes=(SMALL,))
 
 
 def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) -> None:
@@ -168,7 +168,7 @@ def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) ->
     junction.show(surprise=replace(SURPRISED, tick=tick + 10, times=6.0, new=True))
     junction.reads("#surprise", "surprise 6.0 \N{MULTIPLICATION SIGN} after mid-level RLA 12, new")
     assert "loud" in str(phone.find("#surprise").get_attribute("class"))
-    junction.look("very-surprised")
+    junction.look("very-surprised", sizes=(SMALL,))
     junction.show(tick=tick + 1000)
     phone.wait(lambda: not phone.find("#surprise").is_displayed(), "it is over")
 
@@ -209,12 +209,12 @@ def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> 
     junction.show(boot=b"anew", mid=replace(COMMANDS, distance=0.08, radius=0.5, here=here, there=here))
     junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 0.08 off, R 0.50")
     junction.reads("#strip", "x 1.80 m, y 3.62 m, \N{UPWARDS ARROW}, wall left")
-    junction.look("place")
+    junction.look("place", sizes=(SMALL,))
     asks = replace(COMMANDS, rla=None, asks=True, distance=1.8, radius=0.5, here=here, there=there)
     junction.show(mid=asks, asks_at="mid", cause="unknown", action=None, rla=None, nearest=12, distance=1.8, radius=0.5)
     junction.reads("#differences", "x 1.80 m, y 5.40 m, \N{LEFTWARDS ARROW}, wall left 0.50")
     assert phone.text("#gauge-text") == "1.80 off, R 0.50"
-    junction.look("which-way-from-a-place")
+    junction.look("which-way-from-a-place", sizes=(SMALL,))
 
 
 def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> None:

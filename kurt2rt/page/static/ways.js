@@ -39,6 +39,7 @@ export class Ways {
     $("levels").hidden = !hello.mid;
     document.body.classList.toggle("has-mid", Boolean(hello.mid));
     this.#buttons.clear();
+    this.#shown = "";
     $("ways").replaceChildren(...this.names.map((name) => this.#button(name)));
     this.#turn(hello.mid ? this.#chosen : BASIC);
     this.#mean("teach");

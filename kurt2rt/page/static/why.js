@@ -113,7 +113,7 @@ export class Why {
 
   // What the robot has come by, and below it the way that the nearest mid-level RLA knows.
   #compare(mid, introduced) {
-    const key = JSON.stringify([mid.here, mid.there]);
+    const key = JSON.stringify([introduced, mid.here, mid.there]);
     if (key === this.#shown) return;
     this.#shown = key;
     this.#differences.replaceChildren(...strip(mid.here, mid.there, introduced));
