@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import RobotSettings, load_robot
+from kurt2rt.cli.lesson_errands import ERRANDS, errands, runs_errands
 from kurt2rt.cli.lesson_route import (
     ROUTES,
     RouteOptions,
@@ -65,7 +66,8 @@ def lesson(
     out: Annotated[
         Path | None,
         typer.Option(
-            help=f"Folder for what is made; created when absent. Default: {_FOLDER}, of routes {ROUTES}.",
+            help=f"Folder for what is made; created when absent. Default: {_FOLDER}, of routes {ROUTES}, of errands "
+            f"{ERRANDS}.",
             show_default=False,
         ),
     ] = None,
@@ -80,12 +82,15 @@ def lesson(
     basic: Annotated[
         Path | None,
         typer.Option(
-            help="Of a route: knowledge of the streets, or a folder with one file per seed, as kurt2rt lesson streets "
-            "leaves them. Without it the streets are taught first."
+            help="Of a route, or errands: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
+            "lesson streets leaves them. Without it the streets are taught first."
         ),
     ] = None,
     controls: Annotated[
-        bool, typer.Option("--controls", help="Of routes, with --seeds: also teach them in other ways, to compare.")
+        bool,
+        typer.Option(
+            "--controls", help="Of routes, with --seeds, and of errands: also go about it in other ways, to compare."
+        ),
     ] = False,
 ) -> None:
     """Teach the simulated robot with a scripted teacher, in simulated time.
@@ -103,6 +108,11 @@ def lesson(
 
         kurt2rt lesson route
         kurt2rt lesson route --seeds 0-9 --decisions 8 --decisions 12
+
+    The task errands leads the robot about the town and names places, and then sends
+    it to them by ways that it was never led as a whole; kept in --out likewise:
+
+        kurt2rt lesson errands --seeds 0-9 --controls
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage
@@ -114,7 +124,20 @@ def lesson(
     if seeds is not None and knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     options = RouteOptions(tuple(decisions or ()), basic, controls)
-    if not teaches_route(taught):
+    if runs_errands(taught):
+        if decisions or knowledge is not None:
+            raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
+        errands(
+            stage,
+            settings,
+            taught,
+            seeds=[seed] if seeds is None else parse_seeds(seeds),
+            basic=basic,
+            controls=controls,
+            jobs=jobs,
+            out=out or ERRANDS,
+        )
+    elif not teaches_route(taught):
         require_no_route_options(taught, options)
         _lesson(stage, settings, taught, seed=seed, knowledge=knowledge, seeds=seeds, jobs=jobs, out=out or _FOLDER)
     elif seeds is None:

@@ -3,18 +3,17 @@
 import math
 import random
 from collections.abc import Callable, Sequence
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Arena, Pose, Position
+from kurt2rt.experiments.arena import Arena, Pose
 from kurt2rt.experiments.courses.town import length_m
 from kurt2rt.experiments.errands.goals import GoalChosen
 from kurt2rt.experiments.errands.guide import HOME
-from kurt2rt.experiments.errands.lesson import TRAIL_STRIDE, walk_in
-from kurt2rt.experiments.errands.outcome import ErrandDone
+from kurt2rt.experiments.errands.lesson import TRAIL_STRIDE, places_of, walk_in
+from kurt2rt.experiments.errands.outcome import ErrandDone, ErrandsRun, How
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.experiments.refusals import require_carried_out
@@ -28,10 +27,6 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import BeAt, Command, Seek, StopSeeking
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
-
-How = Literal["planning", "chance", "mid level"]
-"""By what it goes: a plan; or, as a control, any of the ways that were taught at a place, by chance; or always that
-which was taught first."""
 
 _EXAMINER = "examiner"
 
@@ -63,8 +58,8 @@ async def run_errands(
     how: How,
     seed: int,
     on_progress: Callable[[float], None],
-) -> tuple[tuple[ErrandDone, ...], tuple[Position, ...]]:
-    """One goal after the other, each from where the one before is; what came of each, and where the robot was.
+) -> ErrandsRun:
+    """One goal after the other, each from where the one before is.
 
     A robot that does not come to a goal is set down there, and is told where it is. Without a plan a goal counts as
     reached where the robot comes through it.
@@ -88,7 +83,7 @@ async def run_errands(
         runtime.mid.chooser = ByChance(random.Random(f"ways of robot {seed}"))
     limit = round(task.exam.duration_s / period_s)
     done: list[ErrandDone] = []
-    trail: list[Position] = []
+    trail: list[tuple[float, float]] = []
     way = WayMade(task.exam.stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
     said = 0
     number = ticks = 0
@@ -180,4 +175,4 @@ async def run_errands(
     if goals:
         begin()
         await runtime.scheduler.run(limit * len(goals) + 1, after_tick)
-    return tuple(done), tuple(trail)
+    return ErrandsRun(how=how, errands=tuple(done), trail=places_of(trail))

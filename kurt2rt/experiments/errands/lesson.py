@@ -1,14 +1,15 @@
 """Leads a robot that knows the streets about in a town, in lockstep."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose, Position
+from kurt2rt.experiments.arena import Arena, Plan, Pose
 from kurt2rt.experiments.courses.errands import Errands, ErrandsSettings
 from kurt2rt.experiments.courses.town import Street
-from kurt2rt.experiments.errands.guide import HOME, Guide
+from kurt2rt.experiments.errands.guide import Guide
+from kurt2rt.experiments.errands.outcome import Place
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
@@ -44,8 +45,9 @@ class LedAbout:
     corrections: int
     """Of the basic level."""
     rescues: int
-    trail: tuple[Position, ...]
+    trail: tuple[Place, ...]
     saved: Statistics
+    knowledge_hash: str
 
 
 def errands_of(task: TaskSettings) -> ErrandsSettings:
@@ -53,6 +55,11 @@ def errands_of(task: TaskSettings) -> ErrandsSettings:
     if isinstance(task.course, ErrandsSettings) and task.mid is not None:
         return task.course
     raise SettingsError(f"task {task.name}: to run errands it needs the course errands, and a mid level of places")
+
+
+def places_of(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...]:
+    """As they are kept."""
+    return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)
 
 
 def walk_in(plan: Plan, task: TaskSettings) -> Errands:
@@ -86,7 +93,7 @@ async def lead_about(
     way = WayMade(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
     home = arena.pose
     ticks, per_second = round(task.teaching.duration_s / period_s), round(1 / period_s)
-    trail: list[Position] = []
+    trail: list[tuple[float, float]] = []
     rescues = corrections = mid_asks = latched_ticks = 0
     asking = False
 
@@ -139,9 +146,7 @@ async def lead_about(
         missed_junctions=guide.missed,
         corrections=corrections,
         rescues=rescues,
-        trail=tuple(trail),
+        trail=places_of(trail),
         saved=runtime.to_save(),
+        knowledge_hash=system.knowledge_hash(),
     )
-
-
-__all__ = ["HOME", "LedAbout", "errands_of", "lead_about", "walk_in"]

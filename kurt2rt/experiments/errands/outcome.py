@@ -1,7 +1,16 @@
 """What errands came to, as it is kept."""
 
+from typing import Literal
+
 from hal.settings import Settings
 from kurt2rt.experiments.kept.made_of import MadeOf
+
+Place = tuple[float, float]
+"""x and y in m, to the millimetre."""
+
+How = Literal["planning", "chance", "first taught"]
+"""By what the robot goes: a plan; or, as controls, any of the ways that were taught at a place, by chance; or always
+the one that was taught first."""
 
 
 class ErrandDone(Settings):
@@ -30,7 +39,24 @@ class ErrandDone(Settings):
     @property
     def detour(self) -> float:
         """Way made, as a multiple of the shortest."""
-        return self.way_m / self.shortest_m
+        return self.way_m / max(self.shortest_m, 0.1)
+
+
+class ErrandsRun(Settings):
+    """All goals, one after the other."""
+
+    how: How
+    errands: tuple[ErrandDone, ...]
+    trail: tuple[Place, ...]
+
+    def good(self, detour_at_most: float) -> int:
+        """How many goals were reached by a way that is short enough."""
+        return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
+
+    @property
+    def reached(self) -> tuple[ErrandDone, ...]:
+        """Those that were reached, however long the way."""
+        return tuple(each for each in self.errands if each.reached)
 
 
 class ErrandsOutcome(Settings):
@@ -48,6 +74,14 @@ class ErrandsOutcome(Settings):
     missed_junctions: int
     corrections: int
     rescues: int
-    named: int
-    errands: dict[str, tuple[ErrandDone, ...]]
-    """By how it went: by planning, and controls."""
+    named: dict[str, Place]
+    """Where each name was given: the middle of the street."""
+    led: tuple[Place, ...]
+    """Where it was led."""
+    knowledge_hash: str
+    runs: tuple[ErrandsRun, ...]
+    """By planning, and controls."""
+
+    def run_of(self, how: How) -> ErrandsRun | None:
+        """How it went by one of these; None where it was not tried."""
+        return next((each for each in self.runs if each.how == how), None)

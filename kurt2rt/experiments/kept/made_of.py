@@ -19,7 +19,7 @@ from kurt2rt.tasks.settings import TaskSettings
 _PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
 _DO_NOT_DECIDE = {
     *("bench", "channel", "cli", "commission", "doctor", "faults", "page", "recording"),
-    *("kept", "paper", "phases", "route", "shown"),  # of experiments
+    *("errands", "kept", "paper", "phases", "route", "shown"),  # of experiments
 }
 """Parts of kurt2rt that no lesson and no exam in lockstep runs through, or that only read results."""
 _COMPUTE = ("numpy", "pymunk", "shapely")

@@ -1,0 +1,57 @@
+"""`kurt2rt lesson errands`: robots that know the streets are led about a town, and sent to places."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.progress import one_bar
+from kurt2rt.experiments.courses.errands import ErrandsSettings
+from kurt2rt.experiments.errands.figures import draw_errands
+from kurt2rt.experiments.errands.lesson import errands_of
+from kurt2rt.experiments.errands.programme import conduct, plan, read_outcomes, robot_time_s
+from kurt2rt.experiments.errands.tables import sheets
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.route.programme import basic_task_of
+from kurt2rt.experiments.shown.sheet import as_rich
+from kurt2rt.tasks.settings import TaskSettings
+
+ERRANDS = Path("results/errands")
+"""Where what is made goes, unless said otherwise."""
+_WIDTH = 150
+
+
+def runs_errands(task: TaskSettings) -> bool:
+    """Whether it is one of these."""
+    return isinstance(task.course, ErrandsSettings)
+
+
+def errands(
+    stage: StudyStage,
+    robot: RobotSettings,
+    task: TaskSettings,
+    *,
+    seeds: Sequence[int],
+    basic: Path | None,
+    controls: bool,
+    jobs: int,
+    out: Path,
+) -> None:
+    """Lead robots about and send them to goals; what is done already is kept. Prints tables and draws each robot."""
+    results = Results(out)
+    programme = plan(task, basic_task_of(task), seeds, stage, robot, results, basic_folder=basic, controls=controls)
+    with results.held(), one_bar(robot_time_s(programme, results)) as bar:
+        conduct(programme, results, jobs, bar.look)
+        bar.say("pictures")
+        outcomes = read_outcomes(programme, results)
+        pictures = []
+        for outcome in outcomes:
+            pictures.append(out / f"{task.name}-{outcome.seed}.png")
+            draw_errands(stage, task.exam.worlds[0], outcome, pictures[-1])
+    console = console_of(_WIDTH)
+    for sheet in sheets(outcomes, errands_of(task)):
+        console.print(as_rich(sheet))
+    console.print(
+        f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}", markup=False, highlight=False, soft_wrap=True
+    )

@@ -1,0 +1,84 @@
+"""One robot's errands as a job whose result is kept."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.errands.lesson import errands_of
+from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How
+from kurt2rt.experiments.errands.robot import teach_and_send
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.pool import Tell
+from kurt2rt.experiments.robot_time import RobotTime
+from kurt2rt.experiments.route.teaching import copy_knowledge
+from kurt2rt.tasks.settings import TaskSettings
+
+
+@dataclass(frozen=True, slots=True)
+class ErrandsJob:
+    """Lead one robot about, and send it to goals."""
+
+    stage: StudyStage
+    robot: RobotSettings
+    task: TaskSettings
+    hows: tuple[How, ...]
+    seed: int
+    basic: Path
+    """Knowledge of the streets; it is copied."""
+    made_of: MadeOf
+    results: Results
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name}, seed {self.seed}"
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        return f"results/{self.task.name}-{self.seed}.json"
+
+    @property
+    def knowledge(self) -> Path:
+        """Where what it was taught is kept."""
+        return self.results.folder / self._kept
+
+    @property
+    def outcome(self) -> type[ErrandsOutcome]:
+        """Schema of its result."""
+        return ErrandsOutcome
+
+    @property
+    def robot_time_s(self) -> float:
+        """At most: goals are reached sooner."""
+        goals = errands_of(self.task).goals
+        return self.task.teaching.duration_s + len(self.hows) * goals * self.task.exam.duration_s
+
+    def run(self, tell: Tell) -> None:
+        """Teach, send, keep the result and the knowledge."""
+        anyio.run(self._run, tell)
+
+    async def _run(self, tell: Tell) -> None:
+        with self.results.scratch() as folder:
+            knowledge = folder / "knowledge"
+            copy_knowledge(self.basic, knowledge)
+            outcome = await teach_and_send(
+                self.stage,
+                self.robot,
+                self.task,
+                knowledge,
+                seed=self.seed,
+                hows=self.hows,
+                report=RobotTime(tell).report,
+                made_of=self.made_of,
+            )
+            self.results.keep(knowledge, self._kept)
+        self.results.write(self, outcome)
+
+    @property
+    def _kept(self) -> str:
+        return f"knowledge/{self.task.name}-{self.seed}.knowledge"

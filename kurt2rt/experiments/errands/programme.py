@@ -1,0 +1,103 @@
+"""What is to be done: the streets once for each robot, where they were not taught before, then its errands."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.errands.job import ErrandsJob
+from kurt2rt.experiments.errands.lesson import errands_of
+from kurt2rt.experiments.errands.outcome import ErrandsOutcome
+from kurt2rt.experiments.errands.robot import CONTROLS, PLANNING
+from kurt2rt.experiments.fitting import require_course
+from kurt2rt.experiments.kept.doing import do_jobs
+from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
+from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.pool import Standing
+from kurt2rt.experiments.route.job import BasicJob
+from kurt2rt.experiments.route.programme import basic_file
+from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.tasks.settings import TaskSettings
+
+OWN = {
+    *(f"kurt2rt/experiments/errands/{name}.py" for name in ("exam", "goals", "guide", "job", "lesson", "outcome")),
+    "kurt2rt/experiments/errands/robot.py",
+}
+"""Modules that say what is done to robots here, and what of it is kept."""
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything."""
+
+    task: TaskSettings
+    seeds: tuple[int, ...]
+    basic_jobs: tuple[BasicJob, ...]
+    """Empty where the streets were taught before."""
+    jobs: tuple[ErrandsJob, ...]
+
+    @property
+    def waves(self) -> tuple[tuple[BasicJob | ErrandsJob, ...], ...]:
+        """Jobs that need none but those of the waves before."""
+        return self.basic_jobs, self.jobs
+
+
+def plan(
+    task: TaskSettings,
+    basic: TaskSettings,
+    seeds: Sequence[int],
+    stage: StudyStage,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    basic_folder: Path | None = None,
+    controls: bool = False,
+    source_of: Callable[[], str] = lambda: source_hash(OWN),
+) -> Programme:
+    """Look at task and worlds, and make the jobs.
+
+    `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it. `controls`: also
+    without a plan. Raises hal.settings.SettingsError, StudyError, KnowledgeError.
+    """
+    worlds = (task.teaching.world, *task.exam.worlds[:1])
+    errands_of(task)
+    stage.require_worlds(*worlds, basic.teaching.world)
+    require_course(stage, task, worlds)
+    hows = (*PLANNING, *(CONTROLS if controls else ()))
+    fingerprints = Fingerprints(stage, robot, source_of(), ("paper", "plain", "phases"))
+    made_basic = fingerprints.of(basic, (basic.teaching.world,))
+    basic_jobs = tuple(BasicJob(stage, robot, basic, seed, made_basic, results) for seed in seeds)
+    files = {job.seed: job.knowledge for job in basic_jobs}
+    lessons = dict.fromkeys(seeds, made_basic.model_dump_json())
+    if basic_folder is not None:
+        files = {seed: basic_file(basic_folder, basic, seed) for seed in seeds}
+        lessons = {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()}
+    jobs = []
+    for seed in seeds:
+        made = fingerprints.of(task, worlds, lessons[seed], " ".join(hows))
+        jobs.append(ErrandsJob(stage, robot, task, hows, seed, files[seed], made, results))
+    return Programme(task, tuple(seeds), basic_jobs if basic_folder is None else (), tuple(jobs))
+
+
+def robot_time_s(programme: Programme, results: Results) -> float:
+    """What is still to be simulated. Raises StudyError."""
+    return sum(wave[place].robot_time_s for wave in programme.waves for place in results.missing(wave))
+
+
+def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
+    """Do the jobs that are missing, wave by wave. Raises StudyError and what a job raises."""
+    before_s = 0.0
+    for wave in programme.waves:
+        jobs = [wave[place] for place in results.missing(wave)]
+
+        def look(standing: Standing, before_s: float = before_s) -> None:
+            on_standing(Standing(before_s + standing.done_s, standing.running))
+
+        do_jobs(jobs, processes, look)
+        before_s += sum(job.robot_time_s for job in jobs)
+
+
+def read_outcomes(programme: Programme, results: Results) -> tuple[ErrandsOutcome, ...]:
+    """What all jobs have left. Raises StudyError."""
+    return tuple(results.read(job, ErrandsOutcome) for job in programme.jobs)

@@ -1,0 +1,110 @@
+"""One robot's whole day: it learns the town, and then runs its errands."""
+
+import random
+from collections.abc import Sequence
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.curriculum import Report
+from kurt2rt.experiments.errands.exam import run_errands
+from kurt2rt.experiments.errands.goals import choose_goals
+from kurt2rt.experiments.errands.lesson import errands_of, lead_about, walk_in
+from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How
+from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
+from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.tasks.settings import TaskSettings
+
+PLANNING: tuple[How, ...] = ("planning",)
+CONTROLS: tuple[How, ...] = ("chance", "first taught")
+
+
+async def teach_and_send(
+    stage: Stage,
+    settings: RobotSettings,
+    task: TaskSettings,
+    knowledge: Path,
+    *,
+    seed: int,
+    hows: Sequence[How],
+    report: Report,
+    made_of: MadeOf | None = None,
+) -> ErrandsOutcome:
+    """Teach into a file that holds the streets, and send the robot to its goals, once in each of these ways.
+
+    Raises KnowledgeError, SettingsError, LessonLostError.
+    """
+    world, exam_world = task.teaching.world, task.exam.worlds[0]
+    opened = go_on_teaching(knowledge, settings, task)
+    with JournalWriter(opened.journal, utc_now) as writer:
+
+        def on_progress(done_s: float) -> None:
+            for acknowledgement in writer.acknowledged():
+                if acknowledgement.error is not None:
+                    raise LessonLostError(f"{knowledge}: {acknowledgement.error}")
+            report(f"led about world {world}", done_s, task.teaching.duration_s)
+
+        arena = stage.open(world, seed, "errands")
+        try:
+            led = await lead_about(
+                arena,
+                settings,
+                task,
+                writer,
+                opened.events,
+                seed=seed,
+                on_progress=on_progress,
+                statistics=opened.counter,
+                saved=opened.saved,
+            )
+        finally:
+            arena.close()
+        writer.submit_statistics(led.saved)
+        if not writer.flush(timeout_s=30.0):
+            raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
+        on_progress(task.teaching.duration_s)
+    events = read_lessons(knowledge, settings, task)
+    course, town = errands_of(task), walk_in(stage.plan_of(exam_world), task).town
+    start = town.street_at(led.home)
+    assert start is not None  # the lesson began there
+    goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
+    runs = []
+    for how in hows:
+        arena = stage.open(exam_world, seed, "errands without teacher")
+        try:
+            run = await run_errands(
+                arena,
+                settings,
+                task,
+                events,
+                led.saved,
+                goals,
+                led.home,
+                how=how,
+                seed=seed,
+                on_progress=lambda done, how=how: report(  # type: ignore[misc]
+                    f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s
+                ),
+            )
+        finally:
+            arena.close()
+        runs.append(run)
+    return ErrandsOutcome(
+        made_of=made_of,
+        seed=seed,
+        teaching_s=led.teaching_s,
+        ways=led.ways,
+        ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
+        mid_rlas=led.mid_rlas,
+        basic_rlas=led.basic_rlas,
+        mid_asks=led.mid_asks,
+        missed_junctions=led.missed_junctions,
+        corrections=led.corrections,
+        rescues=led.rescues,
+        named={name: (street.middle.x_m, street.middle.y_m) for name, street in led.named.items()},
+        led=led.trail,
+        knowledge_hash=led.knowledge_hash,
+        runs=tuple(runs),
+    )
