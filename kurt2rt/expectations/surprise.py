@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True)
 class SurpriseSettings:
-    """When something is surprising. Chosen on seeds 0-39 of the task streets, so that 1 to 3 % of changes are."""
+    """When something is surprising. Chosen on seeds 0-2 of the task streets, so that few ends on known ground are."""
 
     least: int = 5
     """An RLA of which fewer ends were seen surprises nobody."""

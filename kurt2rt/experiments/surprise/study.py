@@ -15,7 +15,7 @@ from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.tasks.settings import TaskSettings
 
-LEARNS_S = 1200.0
+LEARNS_S = 900.0
 """So long a robot gets to know what to expect."""
 DIFFERENT_S = 300.0
 """So long it drives with each difference, from the same expectations."""
