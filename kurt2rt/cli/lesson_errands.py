@@ -7,7 +7,6 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.experiments.courses.errands import ErrandsSettings
-from kurt2rt.experiments.errands.figures import draw_errands
 from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.programme import conduct, plan, read_outcomes, robot_time_s
 from kurt2rt.experiments.errands.tables import sheets
@@ -39,6 +38,9 @@ def errands(
     out: Path,
 ) -> None:
     """Lead robots about and send them to goals; what is done already is kept. Prints tables and draws each robot."""
+    # Not at the top: drawing is an extra, and every command is loaded where --help is said.
+    from kurt2rt.experiments.errands.figures import draw_errands
+
     results = Results(out)
     programme = plan(task, basic_task_of(task), seeds, stage, robot, results, basic_folder=basic, controls=controls)
     with results.held(), one_bar(robot_time_s(programme, results)) as bar:

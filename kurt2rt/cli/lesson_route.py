@@ -15,9 +15,7 @@ from kurt2rt.experiments.curriculum import Report, run_lesson
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
-from kurt2rt.experiments.route.figures import draw_route
 from kurt2rt.experiments.route.programme import basic_file, basic_task_of, decisions_of, plan
-from kurt2rt.experiments.route.report import draw_pictures, write_report
 from kurt2rt.experiments.route.study import conduct, read_study, robot_time_s
 from kurt2rt.experiments.route.tables import robot_sheet, sheets
 from kurt2rt.experiments.route.teaching import TaughtRoute, copy_knowledge, teach_route, with_route
@@ -67,6 +65,9 @@ def one_route(
     out: Path,
 ) -> None:
     """Teach one robot one route, examine it, print the numbers and draw the drive."""
+    # Not at the top: drawing is an extra, and every command is loaded where --help is said.
+    from kurt2rt.experiments.route.figures import draw_route
+
     if len(options.decisions) > 1 or options.controls:
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
     task = with_route(task, seed, *options.decisions)
@@ -113,6 +114,8 @@ def many_routes(
     command: str,
 ) -> None:
     """Teach and examine many robots; what is done already is kept. Prints tables and writes a report."""
+    from kurt2rt.experiments.route.report import draw_pictures, write_report
+
     results = Results(out)
     programme = plan(
         task,

@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import pytest
 import typer
 
@@ -64,3 +67,12 @@ def test_help_mentions_every_option_and_explains_it(
         (line, *_) = [line for line in said.out.splitlines() if line.startswith("│") and f" {name} " in line]
         explained = line.strip("│ ").split(name, 1)[1]
         assert len(explained.split()) > 2, f"{' '.join(words)} {name} is not explained"
+
+
+def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
+    extras = ("matplotlib", "pymunk", "jinja2", "shapely", "PIL", "contourpy", "starlette", "uvicorn")
+    without = f"import sys; sys.modules.update(dict.fromkeys({extras})); sys.argv = ['kurt2rt', '--help']"
+    command = [sys.executable, "-c", f"{without}; from kurt2rt.cli.main import main; main()"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "lesson" in done.stdout
