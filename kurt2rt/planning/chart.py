@@ -12,11 +12,8 @@ from typing import NamedTuple, Protocol
 import networkx as nx
 import numpy as np
 
-from kurt2rt.planning.target import Target, Vector
+from kurt2rt.planning.target import GroupAt, Target, Vector
 from kurt2rt.rla.rla import Condition, Rla
-
-GroupAt = Callable[[Vector], tuple[Rla, ...]]
-"""The RLAs on the place that a situation of the mid level is at, oldest first; none where it is at no known one."""
 
 
 class Forecast(Protocol):

@@ -72,6 +72,7 @@ class Navigator:
             features=self._mid.situation.features,
             radius=self._space.radius,
             distance=self._distance,
+            group_at=self._group_at,
         )
         at_once = self._seeking.stands or self._has_just_come()
         self._seeking.seek(goal, target)

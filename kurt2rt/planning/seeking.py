@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 
-from kurt2rt.planning.chart import Chart, GroupAt
+from kurt2rt.planning.chart import Chart
 from kurt2rt.planning.goal import Goal
 from kurt2rt.planning.plan import Plan, plan_to
 from kurt2rt.planning.step import Course
-from kurt2rt.planning.target import Target, Vector
+from kurt2rt.planning.target import GroupAt, Target, Vector
 from kurt2rt.rla.rla import Rla
 
 

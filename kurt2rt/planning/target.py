@@ -14,6 +14,10 @@ Distance = Callable[[Vector, Vector], float]
 """How far two situations of the mid level are apart."""
 
 
+GroupAt = Callable[[Vector], tuple[Rla, ...]]
+"""The RLAs on the place that a situation of the mid level is at, oldest first; none where it is at no known one."""
+
+
 class NoSuchGoalError(ValueError):
     """What the teacher wants the robot to go to is nothing that it knows of."""
 
@@ -27,15 +31,19 @@ class Target(Protocol):
 
 
 class Near:
-    """All situations within a distance of one."""
+    """All situations at the same place as one; where one of them is at no place that is known, near enough ones."""
 
-    def __init__(self, situation: Condition, within: float, distance: Distance) -> None:
+    def __init__(self, situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> None:
         self._situation = np.array(situation, dtype=np.float64)
         self._within = within
         self._distance = distance
+        self._group_at = group_at
 
     def met_by(self, situation: Vector) -> bool:
-        """Whether a situation is near enough."""
+        """Whether a situation is."""
+        here, there = self._group_at(situation), self._group_at(self._situation)
+        if here and there:
+            return here[0].rla_id == there[0].rla_id
         return self._distance(situation, self._situation) <= self._within
 
 
@@ -62,22 +70,23 @@ def target_of(
     features: Sequence[str],
     radius: float,
     distance: Distance,
+    group_at: GroupAt,
 ) -> Target:
     """What a goal means now. Raises NoSuchGoalError, which says what there is.
 
-    `named`: situations of that level by name; `rla`: the living RLA of an id; `radius`: what counts as the same place.
+    `named`: situations of that level by name; `rla`: the living RLA of an id; `radius`: what counts as near.
     """
     match goal:
         case NamedGoal(name):
             if name not in named:
                 known = ", ".join(sorted(named)) or "nothing"
                 raise NoSuchGoalError(f"nothing was named {name!r}; named were: {known}")
-            return Near(named[name], radius, distance)
+            return Near(named[name], radius, distance, group_at)
         case RlaGoal(rla_id):
             meant = rla(rla_id)
             if meant is None or meant.level != level:
                 raise NoSuchGoalError(f"there is no RLA {rla_id} of level {level}; it may have been deleted")
-            return Near(meant.condition, radius if meant.radius is None else meant.radius, distance)
+            return Near(meant.condition, radius if meant.radius is None else meant.radius, distance, group_at)
         case PartialGoal(wanted, tolerance):
             unknown = sorted(name for name, _ in wanted if name not in features)
             if unknown or not wanted:

@@ -30,15 +30,18 @@ class MidLessons:
             self.passed_at_tick = tick
 
     def meant(self, decision_tick: int | None) -> Meant:
-        """The situation of a tick; None: the present one. Raises RefusedError for one that is not remembered."""
+        """The situation of a tick; None: the present one.
+
+        Raises RefusedError for one that is not remembered, or in which the robot did not know where it was.
+        """
         share = self.mid.settings.learning.insert_beyond_share
         if decision_tick is None:
             newest = self._recent.newest
-            return Meant(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share)
+            return _known(Meant(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share))
         moment = self._recent.at(decision_tick)
         if moment is None:
             raise RefusedError(f"the decision of tick {decision_tick} is not remembered any more")
-        return Meant(moment.vector, "", MID, moment.rla_id, share)
+        return _known(Meant(moment.vector, "", MID, moment.rla_id, share))
 
     def taught(self, command: Teach | Correct) -> None:
         """A lesson of the mid level was given just now: where it is about the present, it ends what went before it."""
@@ -46,3 +49,10 @@ class MidLessons:
             return  # what else is possible says nothing of what is to be done
         if np.array_equal(self.meant(command.decision_tick).vector, self.mid.vector):
             self.mid.release()
+
+
+def _known(meant: Meant) -> Meant:
+    """Places are matched by distances, and there are none from nowhere."""
+    if np.isnan(meant.vector).any():
+        raise RefusedError("the robot does not know where it is, so nothing can be taught there; say where it is first")
+    return meant

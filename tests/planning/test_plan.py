@@ -24,7 +24,7 @@ def place_id(town: Town, place: str) -> int:
 
 def plan(town: Town, start: str, end: str) -> Plan | None:
     chart = town.chart()
-    target = Near(tuple(town.at(end).tolist()), RADIUS, town.distance)
+    target = Near(tuple(town.at(end).tolist()), RADIUS, town.distance, town.group_at)
     return plan_to(chart, place_id(town, start), chart.places_that_meet(target))
 
 

@@ -34,6 +34,7 @@ def target(town: Town, goal: Goal) -> Target:
         features=FEATURES,
         radius=RADIUS,
         distance=town.distance,
+        group_at=town.group_at,
     )
 
 

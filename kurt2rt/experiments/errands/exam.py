@@ -29,6 +29,8 @@ from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 
 _EXAMINER = "examiner"
+_ASTRAY = 2.0
+"""Who has no plan has gone astray after so many times the shortest way."""
 
 
 class ByChance:
@@ -124,6 +126,8 @@ async def run_errands(
                 return plan.course.value
         elif there:
             return ""
+        elif way_m > _ASTRAY * length_m(goal.shortest):
+            return "astray"
         if record.grant.latched:
             return record.grant.reasons[0]
         if way.none_since_window(arena.position):

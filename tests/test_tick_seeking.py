@@ -1,0 +1,225 @@
+"""The whole tick with a mid level of places: names, goals, plans, and what goes before them."""
+
+import math
+
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.layers.decision import Cause
+from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.planning.step import Course, PlanStep
+from kurt2rt.rla.rla import MID, SituationNamed
+from kurt2rt.runtime import build_runtime
+from kurt2rt.teaching.commands import BeAt, NameSituation, Pursue, Seek, Stop, StopSeeking, Teach, Undo
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import LockstepClock
+from tests.channel.desk import ROBOT
+from tests.test_tick import Notebook
+from tests.test_tick_with_mid_level import OPEN, STREETS, WALL, StreetRobot, Town, basic_knowledge, told
+
+PLACES = STREETS.model_copy(update={"mid": "places"})
+QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
+DOOR = NamedGoal("door")
+
+
+class Block(Town):
+    """Streets round a block: four left turns lead back to where the first one began."""
+
+    def __init__(self) -> None:
+        self.robot = StreetRobot()
+        self.notebook = Notebook()
+        self.taught_before = basic_knowledge()
+        clock = LockstepClock(lambda: None)
+        self.runtime = build_runtime(self.robot, ROBOT, PLACES, self.taught_before, self.notebook, clock)
+        self.tick = self.passed = self.said = 0
+        self.street()
+
+    def go(self, behaviour: str | None = None) -> TickRecord:
+        """Through the next junction as the robot wants, or as it happens; to where it has noticed that."""
+        quarters = QUARTERS[self.runtime.wanted.behaviour if behaviour is None else behaviour]
+        passed = self.passed
+        self._go(WALL, 0.5, 0.0)
+        self._go(OPEN, 0.6, quarters * math.pi / 2)
+        while self.passed == passed:
+            record = self._go(WALL, 0.02, 0.0)
+        return record
+
+    def say(self, command: type, *what: object) -> TickRecord:
+        """As Ann."""
+        self.said += 1
+        return self.run(command(f"ann-{self.said}", "Ann", *what))
+
+    def teach(self, action: str, *, beside: bool = False) -> None:
+        accepted, text = told(self.say(Teach, action, None, MID, beside))
+        assert accepted, text
+
+    def seek(self, goal: Goal = DOOR) -> TickRecord:
+        return self.say(Seek, goal)
+
+    def plan(self) -> PlanStep:
+        step = self.run().decision.plan
+        assert step is not None
+        return step
+
+
+@pytest.fixture
+def block() -> Block:
+    """Led round the block once, to the left; what comes behind the second corner is called the door."""
+    town = Block()
+    for corner in range(4):
+        if corner == 2:
+            town.say(NameSituation, "door")
+        town.teach("turn_left")
+        town.go()
+    return town
+
+
+def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Block) -> None:
+    assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
+    assert not block.run().decision.asking
+    expected = block.runtime.expecting.of(7)
+    assert expected is not None
+    system = block.runtime.level.system
+    match = system.match(expected.mean, level=MID)
+    assert match is not None
+    assert (match.rla.rla_id, match.known) == (4, True)
+
+
+def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
+    record = block.seek()
+    assert told(record) == (True, "on the way to door: 2 ways left, now turn_left (RLA 4)")
+    assert block.plan().behaviours == ("turn_left", "turn_left")
+    record = block.go()
+    assert record.decision.driving
+    record = block.go()
+    plan = record.decision.plan
+    assert plan is not None
+    assert (plan.course, plan.says, plan.surprises) == (Course.ARRIVED, "arrived: door", 0)
+    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.AT_GOAL, STANDSTILL)
+    record = block.say(StopSeeking)
+    assert record.decision.plan is None
+    assert record.decision.driving
+
+
+def test_of_two_ways_from_a_place_it_takes_the_one_that_leads_to_the_goal(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    assert block.run().behaviour == "turn_left"  # of the ways on one place the mid level goes the oldest
+    block.say(Pursue, "straight_on")
+    block.go()
+    block.teach("straight_on")
+    block.say(NameSituation, "yard")
+    block.say(BeAt, "door")  # from here nobody ever led it to the yard in one piece
+    assert told(block.seek(NamedGoal("yard")))[1] == "on the way to yard: 3 ways left, now turn_left (RLA 6)"
+    block.go()
+    block.go()
+    assert block.run().behaviour == "straight_on"
+    block.go()
+    assert block.plan().course is Course.ARRIVED
+
+
+def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.go()
+    for _ in range(3):  # round the next block, in which the far side is the near one's
+        block.teach("turn_left")
+        block.go()
+    assert not block.run().decision.asking
+    block.say(BeAt, "door")
+    block.seek(RlaGoal(4))
+    block.go()
+    block.go("straight_on")  # it was to turn
+    assert block.run().decision.asks_at == MID
+    step = block.plan()
+    assert (step.course, step.surprises) == (Course.LOST, 1)
+    block.say(BeAt, "door")
+    assert block.plan().course is Course.UNDER_WAY
+
+
+def test_where_no_way_leads_it_stands_and_says_so() -> None:
+    town = Block()
+    town.say(NameSituation, "home")
+    town.teach("straight_on")
+    town.go()
+    town.teach("straight_on")
+    record = town.seek(NamedGoal("home"))
+    assert told(record) == (True, "no way from here to home: nothing taught leads there")
+    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
+
+
+def test_the_teachers_word_goes_before_the_plan_until_the_next_junction(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.seek()
+    assert block.run().behaviour == "turn_left"
+    assert block.say(Pursue, "straight_on").behaviour == "straight_on"
+    block.go()
+    assert block.plan().course is Course.LOST
+
+
+def test_his_word_drives_also_where_the_robot_has_arrived(block: Block) -> None:
+    block.say(NameSituation, "here")
+    assert block.seek(NamedGoal("here")).decision.cause is Cause.AT_GOAL
+    record = block.say(Pursue, "turn_left")
+    assert record.decision.driving
+    assert block.go().decision.cause is Cause.AT_GOAL  # once he has had his way it stands again
+
+
+def test_a_stop_goes_before_all(block: Block) -> None:
+    block.seek()
+    assert block.say(Stop).decision.cause is Cause.STOPPED
+    late = block.run(Seek("late", "Ann", DOOR, block.tick - 1))
+    assert not told(late)[0]
+    assert late.decision.cause is Cause.STOPPED
+
+
+def test_a_goal_given_far_behind_a_junction_changes_nothing_in_the_next_one(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.street(0.5)
+    record = block.seek()
+    assert record.behaviour == "straight_on"
+    assert told(record)[1] == "on the way to door: the plan begins behind the next junction"
+
+
+def test_a_goal_may_be_what_stood_beside_the_robot(block: Block) -> None:
+    goal = PartialGoal((("x_m", 0.0), ("wall_left", 0.0)), tolerance=0.8)
+    record = block.seek(goal)
+    assert told(record)[0]
+    assert "x_m 0 and wall_left 0" in told(record)[1]
+
+
+def test_names_are_lessons(block: Block) -> None:
+    named = [event for event in block.notebook.events if isinstance(event, SituationNamed)]
+    assert [(event.name, event.level, len(event.situation)) for event in named] == [("door", MID, 6)]
+    accepted, text = told(block.say(Undo, named[0].origin.command_id))
+    assert (accepted, text) == (True, "undone: situation named: door")
+    assert told(block.seek()) == (False, "nothing was named 'door'; named were: nothing")
+
+
+@pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
+def test_what_is_no_name_is_refused(block: Block, name: str) -> None:
+    accepted, text = told(block.say(NameSituation, name))
+    assert not accepted
+    assert "is no name for a situation" in text
+
+
+def test_nobody_can_be_at_a_place_without_a_name(block: Block) -> None:
+    assert told(block.say(BeAt, "attic")) == (False, "nothing was named 'attic'; named were: door")
+
+
+def test_without_places_nobody_can_say_where_it_is() -> None:
+    town = Town()
+    town.street()
+    assert told(town.run(BeAt("1", "Ann", "door"))) == (False, "this robot's mid level does not know places")
+
+
+def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+    block.runtime.set_down()
+    assert block.run().decision.asks_at == MID
+    for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
+        accepted, text = told(nowhere)
+        assert not accepted
+        assert text.startswith("the robot does not know where it is")
+    block.say(BeAt, "door")
+    assert not block.run().decision.asking
+    assert block.run().behaviour == "turn_left"
