@@ -7,7 +7,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-.PHONY: run demo test test-deep guard mutants hil bench lint types clean
+# Four workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
+
+.PHONY: run demo test test-deep guard mutants hil bench lint types compiled clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --page $(ARGS)
@@ -15,11 +18,13 @@ run: $(INSTALLED)
 demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
-test: lint types
-	$(BIN)/pytest -n 4 -q --dist loadfile
+# Types take one processor; the other one compiles the tests meanwhile, once for all that run them.
+test: $(INSTALLED)
+	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types compiled
+	$(PYTEST) -n 4 -q --dist loadfile
 
 test-deep: $(INSTALLED) guard
-	$(BIN)/pytest -n 2 -q -m deep
+	$(PYTEST) -n 2 -q -m deep
 
 # Every line and branch of the guard and of what it stands on, by the tests of hal alone.
 guard: $(INSTALLED)
@@ -47,6 +52,10 @@ lint: $(INSTALLED)
 
 types: $(INSTALLED)
 	$(BIN)/mypy
+
+# What cannot be collected is told by the tests themselves.
+compiled: $(INSTALLED)
+	-@$(PYTEST) --collect-only -qqq > /dev/null 2>&1
 
 # One environment for both commands: what is tested is what runs.
 $(INSTALLED): pyproject.toml constraints.txt
