@@ -220,7 +220,8 @@ class RlaSystem:
     ) -> Match | None:
         """The RLA of a level and taught behaviour nearest to a situation vector (d,), and the one behind it.
 
-        None when nothing was taught there yet. `asking`: False passes over those that ask, for nobody is there.
+        None when nothing was taught there yet; all are infinitely far from a situation that holds NaN. `asking`: False
+        passes over those that ask, for nobody is there.
         """
         contest = self._contests.get((level, behaviour))
         nearest = None if contest is None else contest.index.nearest(situation * contest.weights)
@@ -231,6 +232,8 @@ class RlaSystem:
             return self._match_passing_over(contest, situation)
         runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = contest.radius if rla.radius is None else rla.radius
+        if math.isnan(nearest.distance):  # of a robot that does not know where it is: far from all, not near nothing
+            return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
     def _match_passing_over(self, contest: _Contest, situation: NDArray[np.float64]) -> Match | None:

@@ -199,3 +199,15 @@ async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_th
     told = picture(desk).mid
     assert told is not None
     assert told.here == NOTHING_YET
+
+
+async def test_a_robot_that_does_not_know_where_it_is_still_shows_itself() -> None:
+    desk = Desk(behaviours=TURNS, mid="places", ground=Yard())
+    for way in TURNS[:2]:
+        await teach(desk, way, beside=True)
+    desk.runtime.set_down()
+    desk.run()
+    told = picture(desk)
+    assert told.mid is not None
+    assert (told.cause, told.asks_at, told.mid.asks) == ("unknown", MID, True)
+    assert (told.nearest, told.distance, told.mid.distance) == (1, math.inf, math.inf)

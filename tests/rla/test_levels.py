@@ -30,6 +30,15 @@ def test_each_level_answers_situations_of_its_own_in_its_own_space() -> None:
     assert system.match(np.zeros(3), "turn_left", CRITIC) is None
 
 
+@pytest.mark.parametrize("known", [1, 3])
+def test_from_a_situation_that_is_nowhere_everything_is_far(known: int) -> None:
+    system = RlaSystem(2, 5.0)
+    system.apply_all(created(number, (float(number), 0.0)) for number in range(1, known + 1))
+    match = system.match(np.array([np.nan, 0.0]))
+    assert match is not None
+    assert (match.rla.rla_id, match.distance, match.runner_up_distance, match.known) == (1, np.inf, np.inf, False)
+
+
 def test_ids_lessons_and_undo_run_through_all_levels_and_the_rest_is_the_basic_ones() -> None:
     system = system_of(
         created(1, (0.0, 0.0)),
