@@ -16,7 +16,7 @@ from kurt2rt.rounds import Rounds, Screen, Status
 from kurt2rt.runtime import build_runtime
 from kurt2rt.service_settings import load_service
 from kurt2rt.teaching.commands import Command, Teach
-from kurt2rt.teaching.question import Question
+from kurt2rt.teaching.question import Question, WayQuestion
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
@@ -36,7 +36,7 @@ class Shift:
         self.desk = Desk(keeper=self.writer)
         self.stamps: dict[str, str] = {}
         self.statuses: list[Status] = []
-        self.questions: list[Question] = []
+        self.questions: list[Question | WayQuestion] = []
         self.settled: list[Acknowledgement] = []
         self.seen: list[TickRecord] = []
         self.next_command: Command | None = None

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
-from kurt2rt.rla.rla import ASK, CRITIC, Lesson, TeachingEvent
+from kurt2rt.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
 from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
 
@@ -130,7 +130,7 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
         (rewarded(1, -1), "RLA 1 punished"),
     ],
 )
-def test_a_lesson_is_told_in_a_few_words(lesson: Lesson, text: str) -> None:
+def test_a_lesson_is_told_in_a_few_words(lesson: RlaLesson, text: str) -> None:
     assert LessonRecord(lesson).text == text
     assert rla_of(lesson) == 1
 

@@ -19,7 +19,7 @@ from kurt2rt.service import serve
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.question import Question
+from kurt2rt.teaching.question import Question, WayQuestion
 from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from simbridge.realtime import RealtimeSimulation
@@ -54,7 +54,7 @@ class Rig:
     simulation: RealtimeSimulation
     simulated: SimulatedRobot
     records: list[TickRecord] = field(default_factory=list)
-    questions: list[Question] = field(default_factory=list)
+    questions: list[Question | WayQuestion] = field(default_factory=list)
     statuses: list[Status] = field(default_factory=list)
     settled: list[Acknowledgement] = field(default_factory=list)
 
