@@ -133,7 +133,7 @@ def build_runtime(
         mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, wanted)
     at_the_wheels = level_override or level
     expecting = Expecting(system, mid, statistics.transitions, None if saved is None else saved.expectations)
-    navigator = None if mid is None else Navigator(mid, statistics.transitions, expecting.of)
+    navigator = None if mid is None else Navigator(mid, statistics.follow_ups, expecting.of)
     lessons = None if mid is None else MidLessons(mid)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
     hand = repertoire_of(task, settings)

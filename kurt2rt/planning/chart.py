@@ -90,12 +90,12 @@ class Chart:
 def chart_of(
     rlas: Iterable[Rla],
     group_at: GroupAt,
-    follow_ups: Mapping[tuple[int, int], int],
+    follow_ups: Callable[[int], Mapping[int, int]],
     forecast: Callable[[int], Forecast | None],
 ) -> Chart:
     """The chart of all RLAs of the mid level.
 
-    `follow_ups`: how often each RLA was followed by each other.
+    `follow_ups`: how often each RLA followed one.
     `forecast`: what is expected of one, None for one that was never seen to end. An RLA leads to the place that its
     expectation lies in, and as often as follow-ups of that place came; where expectations lie in no place, to where
     its follow-ups stand.
@@ -105,10 +105,6 @@ def chart_of(
         members.setdefault(rla.condition, []).append(rla)
     places = {group[0].rla_id: Place(group[0].rla_id, at, tuple(group)) for at, group in members.items()}
     home = {rla.rla_id: place_id for place_id, place in places.items() for rla in place.members}
-    came: dict[int, Counter[int]] = {}
-    for (before, after), times in follow_ups.items():
-        if before in home and after in home:
-            came.setdefault(before, Counter())[home[after]] += times
     forecasts = {rla_id: expected for rla_id in home if (expected := forecast(rla_id)) is not None}
     usual_ticks = float(np.mean([each.ticks for each in forecasts.values()])) if forecasts else 1.0
     ways: list[Way] = []
@@ -116,7 +112,10 @@ def chart_of(
         for rla in place.members:
             if rla.asks:
                 continue
-            ends = Counter(came.get(rla.rla_id, Counter()))
+            ends = Counter[int]()
+            for after, times in follow_ups(rla.rla_id).items():
+                if after in home:
+                    ends[home[after]] += times
             expected = forecasts.get(rla.rla_id)
             if expected is not None:
                 end = _end_of(rla, expected, group_at, home, places)

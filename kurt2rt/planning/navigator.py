@@ -25,10 +25,10 @@ class Navigator:
     def __init__(
         self,
         mid: MidLevel,
-        follow_ups: Mapping[tuple[int, int], int],
+        follow_ups: Callable[[int], Mapping[int, int]],
         forecast: Callable[[int], Forecast | None],
     ) -> None:
-        """`follow_ups`: how often each RLA was followed by each other. `forecast`: what is expected of one.
+        """`follow_ups`: how often each RLA followed one. `forecast`: what is expected of one.
 
         Both are looked at when a plan is made. Where the situation of the mid level is a place, it is put right at
         places that are known from now on.

@@ -17,8 +17,16 @@ class StatisticsCounter:
     ) -> None:
         self.uses = Counter(uses)
         self.transitions = Counter(transitions)
+        self._followers: dict[int, set[int]] = {}
+        """Of each RLA that was ever followed: to look at one must not cost looking at all."""
+        for before, after in self.transitions:
+            self._followers.setdefault(before, set()).add(after)
         self._previous: dict[str, int | None] = {}
         """By level."""
+
+    def follow_ups(self, rla_id: int) -> dict[int, int]:
+        """How often each RLA followed this one."""
+        return {after: self.transitions[rla_id, after] for after in sorted(self._followers.get(rla_id, ()))}
 
     def count(self, current: int | None, level: str = BASIC, *, anew: bool = False) -> None:
         """Take in one tick: the RLA of a level that drives, None while none does.
@@ -32,6 +40,7 @@ class StatisticsCounter:
             self.uses[current] += 1
             if previous is not None:
                 self.transitions[previous, current] += 1
+                self._followers.setdefault(previous, set()).add(current)
         self._previous[level] = current
 
     def drop_dead(self, lives: Callable[[int], bool]) -> None:
@@ -43,12 +52,13 @@ class StatisticsCounter:
             del self.uses[rla_id]
         for edge in [edge for edge in self.transitions if not dead.isdisjoint(edge)]:
             del self.transitions[edge]
+            self._followers[edge[0]].discard(edge[1])
         self._begin_anew(dead)
 
     def drop_follow_ups(self, rla_id: int) -> None:
         """Forget what followed this RLA: with another action it leads elsewhere."""
-        for edge in [edge for edge in self.transitions if edge[0] == rla_id]:
-            del self.transitions[edge]
+        for after in self._followers.pop(rla_id, ()):
+            del self.transitions[rla_id, after]
         self._begin_anew((rla_id,))
 
     def _begin_anew(self, rla_ids: Container[int]) -> None:

@@ -55,7 +55,11 @@ class Town:
 
     def chart(self) -> Chart:
         """As it is known now."""
-        return chart_of(self.system.rlas_at(MID), self.group_at, self.follow_ups, self.seen.get)
+        return chart_of(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
+
+    def followed(self, rla_id: int) -> dict[int, int]:
+        """How often each RLA followed one."""
+        return {after: times for (before, after), times in self.follow_ups.items() if before == rla_id}
 
     def distance(self, a: Vector, b: Vector) -> float:
         """In the mid level's space."""

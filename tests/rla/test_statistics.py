@@ -68,3 +68,16 @@ def test_what_followed_an_rla_is_forgotten_with_its_action_but_not_what_it_follo
     drive(statistics, [3])
     assert statistics.transitions == {(1, 2): 2, (3, 1): 1}
     assert statistics.uses == {1: 2, 2: 2, 3: 2}
+
+
+def test_what_followed_one_rla_is_told_without_the_others() -> None:
+    counter = StatisticsCounter({1: 3, 2: 1}, {(1, 2): 4})
+    for current in (1, 3, 1, 2):
+        counter.count(current)
+    assert counter.follow_ups(1) == {2: 5, 3: 1}
+    assert counter.follow_ups(9) == {}
+    counter.drop_dead(lambda rla_id: rla_id != 3)
+    assert counter.follow_ups(1) == {2: 5}
+    counter.drop_follow_ups(1)
+    assert counter.follow_ups(1) == {}
+    assert counter.transitions == {}
