@@ -40,7 +40,7 @@ from kurt2rt.teaching.commands import (
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, WideRobot
-from tests.rla.helpers import created
+from tests.rla.helpers import created, deleted, replaced
 from tests.test_tick import Notebook
 
 STREETS = load_task("streets")
@@ -453,6 +453,30 @@ def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
     assert again.junction(1).behaviour == "turn_right"
     assert told(again.run(the_way("turn_left", "way", beside=True)))[0]
     assert max(again.ways) == 6  # ids run through
+
+
+@pytest.mark.parametrize(
+    ("of_an_older_task", "lesson", "who"),
+    [
+        ((created(9, (0.0,) * LENGTH, "fly", level=MID), deleted(9)), "deletion-9", "mid-level RLA 9"),
+        (
+            (created(9, (0.0,) * LENGTH, "fly", level=MID), replaced(9, "turn_left", "fly")),
+            "correction-9",
+            "mid-level RLA 9",
+        ),
+        ((created(9, (0.0,) * 72, "fly", behaviour="turn_left"), deleted(9)), "deletion-9", "RLA 9 of turn_left"),
+        ((created(9, (0.0,) * 72, "fly", behaviour="soaring"), deleted(9)), "deletion-9", "RLA 9 of soaring"),
+    ],
+)
+def test_an_undo_brings_nothing_back_that_this_task_cannot_follow(
+    of_an_older_task: tuple[TeachingEvent, ...], lesson: str, who: str
+) -> None:
+    town = Town([*basic_knowledge(), *of_an_older_task])
+    accepted, text = told(town.run(Undo("u", "Ann", lesson)))
+    assert not accepted
+    assert text.startswith(f"{who} would say fly again, which this task does not have")
+    assert not town.notebook.events
+    town.run()
 
 
 def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:

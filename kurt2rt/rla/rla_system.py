@@ -215,6 +215,10 @@ class RlaSystem:
         """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
         return self._book.why_not_undo(command_id)
 
+    def comes_back(self, command_id: str) -> Rla | None:
+        """The RLA as it will be when the lesson of that command is undone; None where no action comes back by that."""
+        return self._before.get(command_id)
+
     def match(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, asking: bool = True
     ) -> Match | None:

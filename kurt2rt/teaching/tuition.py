@@ -183,6 +183,12 @@ class Tuition:
         if lesson is None:
             raise RefusedError("there is no lesson to undo")
         refuse(self._system.why_not_undo(lesson))
+        back = self._system.comes_back(lesson)
+        if back is not None and not self._can_act(back):
+            raise RefusedError(
+                f"{back.title} would say {back.action} again, which this task does not have; "
+                "undo it with the task that it was taught with"
+            )
         record = self._system.lesson(lesson)
         assert record is not None
         return f"undone: {record.text}", LessonUndone(lesson, origin)
@@ -198,6 +204,15 @@ class Tuition:
             require_behaviour(action, self._level.wanted.behaviours)
         else:
             require_action(action, self._level.repertoire if level == BASIC else self._appraisals)
+
+    def _can_act(self, rla: Rla) -> bool:
+        """Whether an RLA that comes back can be followed: knowledge may be older than the task, or another task's."""
+        behaviours = self._level.wanted.behaviours
+        if rla.level == BASIC:
+            return rla.behaviour in behaviours and (rla.asks or rla.action in self._level.repertoire)
+        if rla.level == MID:
+            return self._mid is None or rla.asks or rla.action in behaviours
+        return self._appraising is None or rla.action in self._appraisals
 
     def _require_rla(self, rla_id: int) -> Rla:
         rla = self._system.get(rla_id)
