@@ -1,8 +1,8 @@
 """Whatever a teacher wants and the sensors say, the motion envelope holds.
 
 Counted are ticks: a stream is a hundred of them, against a guard of its own. The fast suite plays 2 * 10^5 ticks
-(2000 streams), the deep one 10^8 (10^6 streams). Every four hundred streams have a robot of their own: one of the three speed
-modes, and in most cases other limits, another cycle and other bumpers.
+(2000 streams), the deep one 10^8 (10^6 streams). Every four hundred streams have a robot of their own: one of the three
+speed modes, and in most cases other limits, another cycle and other bumpers.
 """
 
 import numpy as np
