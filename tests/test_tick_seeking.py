@@ -223,3 +223,28 @@ def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block
     block.say(BeAt, "door")
     assert not block.run().decision.asking
     assert block.run().behaviour == "turn_left"
+
+
+def test_a_goal_that_was_held_up_on_its_way_does_not_go_before_a_newer_one(block: Block) -> None:
+    block.seek()
+    seen = block.tick
+    block.run()
+    assert told(block.run(StopSeeking("new", "Ann", block.tick)))[0]
+    late = block.run(Seek("late", "Ann", DOOR, seen))
+    assert told(late) == (
+        False,
+        "another goal was given after this was said; look at the robot, then say it again",
+    )
+    assert late.decision.plan is None
+    assert told(block.run(Seek("again", "Ann", DOOR, block.tick)))[0]
+
+
+def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind_it(block: Block) -> None:
+    seen = block.tick
+    block.go()
+    assert block.runtime.mid is not None
+    here = block.runtime.mid.vector
+    late = block.run(BeAt("late", "Ann", "door", seen))
+    assert told(late) == (False, "a junction was passed after this was said; look at the robot, then say it again")
+    assert block.runtime.mid.vector is here
+    assert told(block.run(BeAt("again", "Ann", "door", block.tick)))[0]

@@ -81,7 +81,7 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
         case SeekLikeRequest(features=features, tolerance=tolerance):
             return Seek(command_id, device, PartialGoal(features, tolerance), request.seen)
         case BeAtRequest(name=name):
-            return BeAt(command_id, device, name)
+            return BeAt(command_id, device, name, request.seen)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
         case SessionRequest(name=str(name)):

@@ -176,7 +176,9 @@ class Seek:
     teacher: str
     goal: Goal
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop after it goes before. None: he stands by."""
+    """Tick of the newest sign of the robot that the teacher had; a stop, or another goal, after it goes before.
+    None: he stands by.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +198,10 @@ class BeAt:
     command_id: str
     teacher: str
     name: str
+    seen_tick: int | None = None
+    """Tick of the newest sign of the robot that the teacher had; a junction passed after it goes before.
+    None: he stands by.
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,8 @@ class Errands:
     def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:
         self._navigator = navigator
         self._lessons = lessons
+        self._seen_tick = -1
+        """What the teacher had seen when he said what is sought now."""
 
     def name(self, command: NameSituation, origin: Origin) -> tuple[str, TeachingEvent]:
         """The event that gives a situation its name. Raises RefusedError."""
@@ -27,20 +29,31 @@ class Errands:
         situation = tuple(self._lessons.meant(command.decision_tick).vector.tolist())
         return f"situation named: {name}", SituationNamed(name, situation, MID, origin)
 
-    def carry_out(self, command: Seek | StopSeeking | BeAt) -> str:
-        """What was done, in words. Raises RefusedError."""
-        match command:
-            case Seek(goal=goal):
-                try:
-                    return self._navigator.seek(goal)
-                except NoSuchGoalError as error:
-                    raise RefusedError(str(error)) from error
-            case StopSeeking():
-                self._navigator.stop()
-                return "no goal is sought"
-            case BeAt(name=name):
-                try:
-                    self._navigator.be_at(name)
-                except ValueError as error:
-                    raise RefusedError(str(error)) from error
-                return f"the robot is at {name}"
+    def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> str:
+        """What was done, in words. Raises RefusedError, also for what comes so late that it is not meant any more."""
+        seen_tick = tick if command.seen_tick is None else command.seen_tick
+        if isinstance(command, BeAt):
+            return self._be_at(command.name, seen_tick)
+        if seen_tick < self._seen_tick:
+            raise RefusedError("another goal was given after this was said; look at the robot, then say it again")
+        said = self._seek(command)
+        self._seen_tick = seen_tick
+        return said
+
+    def _seek(self, command: Seek | StopSeeking) -> str:
+        if isinstance(command, StopSeeking):
+            self._navigator.stop()
+            return "no goal is sought"
+        try:
+            return self._navigator.seek(command.goal)
+        except NoSuchGoalError as error:
+            raise RefusedError(str(error)) from error
+
+    def _be_at(self, name: str, seen_tick: int) -> str:
+        if seen_tick < self._lessons.passed_at_tick:
+            raise RefusedError("a junction was passed after this was said; look at the robot, then say it again")
+        try:
+            self._navigator.be_at(name)
+        except ValueError as error:
+            raise RefusedError(str(error)) from error
+        return f"the robot is at {name}"

@@ -246,9 +246,9 @@ class School:
                 return self._pursuing.take(command, tick), None
             case Seek() | StopSeeking():
                 refuse(self._stopped_since(command))
-                return self._errands_of(command).carry_out(command), None
+                return self._errands_of(command).carry_out(command, tick), None
             case BeAt():
-                return self._errands_of(command).carry_out(command), None
+                return self._errands_of(command).carry_out(command, tick), None
             case NameSituation():
                 return self._errands_of(command).name(command, self._origin(command, tick))
             case RunBehaviour():
