@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.errands.guide import HOME
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome
-from kurt2rt.experiments.shown.style import START, legend_below, save
+from kurt2rt.experiments.shown.style import START, save
 from kurt2rt.experiments.trails import draw_trail
 
 _LED = "#b0b0b0"
@@ -16,7 +16,7 @@ _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "
 
 def draw_errands(stage: Stage, world: str, outcome: ErrandsOutcome, path: Path) -> None:
     """One robot."""
-    figure = Figure(figsize=(7.2, 7.8), layout="constrained")
+    figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
     stage.draw(axes, world)
     label = f"led about, {outcome.teaching_s:.0f} s"
@@ -36,9 +36,9 @@ def draw_errands(stage: Stage, world: str, outcome: ErrandsOutcome, path: Path) 
             )
     reached = len(run.reached)
     axes.set_title(
-        f"robot {outcome.seed}: {reached} of {len(run.errands)} goals reached, {outcome.ways} of "
-        f"{outcome.ways_in_all} ways taught",
+        f"robot {outcome.seed}: {reached} of {len(run.errands)} goals reached\n"
+        f"{outcome.ways} of {outcome.ways_in_all} ways taught in {outcome.teaching_s:.0f} s",
         fontsize="medium",
     )
-    legend_below(axes, columns=3)
+    figure.legend(loc="outside lower center", ncols=3, fontsize="small", frameon=False)
     save(figure, path)

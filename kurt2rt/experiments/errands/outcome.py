@@ -75,7 +75,7 @@ class ErrandsOutcome(Settings):
     corrections: int
     rescues: int
     named: dict[str, Place]
-    """Where each name was given: the middle of the street."""
+    """Where each name was given: beside the middle of the street, to the right."""
     led: tuple[Place, ...]
     """Where it was led."""
     knowledge_hash: str

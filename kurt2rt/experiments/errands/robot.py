@@ -6,11 +6,13 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
+from kurt2rt.experiments.courses.streets import ALONG
+from kurt2rt.experiments.courses.town import Street
 from kurt2rt.experiments.curriculum import Report
 from kurt2rt.experiments.errands.exam import run_errands
 from kurt2rt.experiments.errands.goals import choose_goals
 from kurt2rt.experiments.errands.lesson import errands_of, lead_about, walk_in
-from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How
+from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How, Place
 from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
@@ -19,6 +21,7 @@ from kurt2rt.tasks.settings import TaskSettings
 
 PLANNING: tuple[How, ...] = ("planning",)
 CONTROLS: tuple[How, ...] = ("chance", "first taught")
+_BESIDE_M = 0.15
 
 
 async def teach_and_send(
@@ -103,8 +106,14 @@ async def teach_and_send(
         missed_junctions=led.missed_junctions,
         corrections=led.corrections,
         rescues=led.rescues,
-        named={name: (street.middle.x_m, street.middle.y_m) for name, street in led.named.items()},
+        named={name: _shown_at(street) for name, street in led.named.items()},
         led=led.trail,
         knowledge_hash=led.knowledge_hash,
         runs=tuple(runs),
     )
+
+
+def _shown_at(street: Street) -> Place:
+    """To the right of its middle: the same street the other way is another place."""
+    along_x, along_y = ALONG[street.way]
+    return street.middle.x_m + _BESIDE_M * along_y, street.middle.y_m - _BESIDE_M * along_x
