@@ -13,7 +13,7 @@ from kurt2rt.knowledge.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.lesson_book import rla_of
-from kurt2rt.rla.rla import CRITIC, LessonUndone, Phase, Rla, SituationNamed, TeachingEvent
+from kurt2rt.rla.rla import BASIC, CRITIC, LessonUndone, Phase, Rla, SituationNamed, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 
 
@@ -99,7 +99,9 @@ class SelfTeaching:
         """Count the tick; after a window that was too bad, what to undo, one by one: apply each before the next."""
         best = self.best
         said = None if opinion is None else opinion.said
-        undone = best.look(tick, said, decision.answers, asking=decision.asking)
+        # What the robot changes by itself is the basic level's; that another level knows no way is no fault of it.
+        asking = decision.asking and decision.asks_at == BASIC
+        undone = best.look(tick, said, decision.answers, asking=asking)
         if best.proofs != self._proofs:
             self._proofs = best.proofs
             self._best_worths = self._reinforcement.worths_alone()

@@ -5,7 +5,7 @@ import pytest
 from behaviors.judges.judge import Circumstances
 from kurt2rt.critic.settings import BestSettings
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import CRITIC, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, MID, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.teaching.commands import Correct, Undo
 from tests.layers.helpers import sensed, situation
 from tests.reinforcement.helpers import CALM, CRASHED, QUICK, SIGNALS_ONLY, Track, deleted_ids, knows_good_from_bad
@@ -316,3 +316,15 @@ def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
     tries = [(event.rla.condition, event.rla.action) for event in changes(robot) if isinstance(event, RlaCreated)]
     assert rolled_back
     assert len(tries) == len(set(tries)), tries
+
+
+def test_a_way_that_the_mid_level_does_not_know_is_no_fault_of_what_was_changed() -> None:
+    robot = Judged().robot
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    known = robot.hash
+    for _ in range(300):
+        robot.tick += 1
+        stands = robot.level.decide(situation(HERE), sensed(), Cause.UNKNOWN)._replace(asks_at=MID)
+        assert robot.school.learn(robot.tick, stands, robot.critic.think(robot.tick, CALM)) == []
+    assert robot.hash == known

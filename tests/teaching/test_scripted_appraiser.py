@@ -11,7 +11,7 @@ from behaviors.judges.judge import Circumstances
 from hal.robot import STANDSTILL, Grant
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import MID, Phase
 from kurt2rt.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
 from kurt2rt.teaching.scripted_appraiser import (
     BlamedByChance,
@@ -155,6 +155,16 @@ def test_where_only_the_unknown_is_bad_what_led_there_is_blamed_once() -> None:
     person = appraiser(Phase.REINFORCEMENT, UnknownIsBad())
     seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, Cause.UNKNOWN) for tick in range(3, 60))]
     assert signals(said(person, seen)) == [(13, -1, 2)]
+
+
+def test_where_only_the_unknown_is_bad_nobody_is_blamed_for_a_way_that_the_mid_level_does_not_know() -> None:
+    person = appraiser(Phase.REINFORCEMENT, UnknownIsBad())
+    asks = record(3, BAD, Cause.UNKNOWN)
+    which_way = asks._replace(decision=asks.decision._replace(asks_at=MID))
+    assert (
+        signals(said(person, [record(1, BAD), record(2, BAD), *(which_way._replace(tick=t) for t in range(3, 60))]))
+        == []
+    )
 
 
 def test_blame_by_chance_is_the_same_for_the_same_seed_and_exactly_as_often_as_was_said() -> None:
