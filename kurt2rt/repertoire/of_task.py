@@ -10,6 +10,7 @@ from hal.settings import SettingsError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.mid.place import PlaceSettings
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.repertoire.building import build_taught_system
 from kurt2rt.rla.rla import TeachingEvent
@@ -43,6 +44,11 @@ class _Building:
             wanted.pursue(action.behaviour)
         elif task.mid is not None:
             mid = load_mid(task.mid)
+            if isinstance(mid.situation, PlaceSettings):
+                raise SettingsError(
+                    f"the mid level of the task {task.name} goes by places, and an action does not know at which one "
+                    "it begins; give a task whose mid level goes by a history"
+                )
         elif len(task.behaviours) > 1:
             raise SettingsError(
                 f"the task {task.name} has no mid level that says which of {', '.join(task.behaviours)} is wanted; "

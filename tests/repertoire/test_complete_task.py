@@ -72,6 +72,11 @@ def test_a_task_of_several_behaviours_is_not_complete_without_one(tmp_path: Path
         repertoire(tmp_path, patrol(tmp_path, mid=None))
 
 
+def test_a_task_that_goes_by_places_is_no_action_for_none_of_it_says_where_it_begins(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="goes by places, and an action does not know at which one it begins"):
+        repertoire(tmp_path, patrol(tmp_path, mid="places"))
+
+
 def test_mid_level_knowledge_of_other_junctions_is_refused(tmp_path: Path) -> None:
     action = patrol(tmp_path)
     task = load_task(str(tmp_path / "patrol.yaml"))
