@@ -24,8 +24,9 @@ def draw_pictures(study: Study, stage: StudyStage, folder: Path) -> Iterator[Pic
         yield Picture(
             path,
             f"Routes of {decisions} decisions: {variant.title}",
-            "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive without a teacher; red: "
-            "wrong decisions (triangle: symbols, square: mid level, circle: basic level); black: collisions.",
+            "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive "
+            "without a teacher; red: wrong decisions (triangle: symbols, square: mid level, circle: basic level); "
+            "black: collisions.",
         )
 
 
