@@ -52,7 +52,7 @@ class StatisticsCounter:
             del self.uses[rla_id]
         for edge in [edge for edge in self.transitions if not dead.isdisjoint(edge)]:
             del self.transitions[edge]
-            self._followers[edge[0]].discard(edge[1])
+            self._followers.get(edge[0], set()).discard(edge[1])  # counts may have come from outside
         self._begin_anew(dead)
 
     def drop_follow_ups(self, rla_id: int) -> None:
