@@ -69,7 +69,12 @@ class MidSituationSettings(KindSettings):
         """How distances are measured."""
 
     def words(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
-        """A situation or condition for people to read: a word per feature, empty where nothing is there yet."""
+        """A situation or condition for people to read: a word per feature, empty where nothing is there yet.
+
+        All are empty where the robot does not know where it is.
+        """
+        if not np.isfinite(vector).all():
+            return ("",) * len(self.features)
         return tuple(f"{name} {value:.2f}" for name, value in zip(self.features, vector, strict=True))
 
     @abstractmethod

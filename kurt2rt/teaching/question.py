@@ -1,5 +1,6 @@
 """The robot's question: "I don't know this situation, teach me"."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -59,6 +60,7 @@ class WayQuestion:
     behaviour: str | None
     """What the nearest RLA would command."""
     distance: float
+    """Infinite where there is none, and where the robot does not know where it is."""
     radius: float
     here: tuple[str, ...]
     """The mid level's situation in words, the newest first."""
@@ -67,6 +69,8 @@ class WayQuestion:
         came_by = f"; I came by {', '.join(self.here)}" if self.here else ""
         if self.nearest_rla is None:
             return f"I don't know any way yet, teach me which behaviour to follow{came_by}"
+        if math.isinf(self.distance):
+            return "I don't know where I am: set me down at a place that has a name, and say at which one I am"
         nearest = rla_title(self.nearest_rla, "", MID)
         action = "its action was withdrawn" if self.behaviour == ASK else self.behaviour
         return (

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from kurt2rt.mid.settings import load_mid
 from kurt2rt.rla.rla import MID
 from kurt2rt.rla.rla_system import RlaSystem, Space
 from kurt2rt.teaching.question import Question, WayQuestion, ask, ask_the_way
@@ -98,3 +99,13 @@ def test_the_mid_level_knows_no_way_before_its_first_lesson() -> None:
         "I don't know any way yet, teach me which behaviour to follow; I came by straight, left"
     )
     assert str(ask_the_way(None, ("", ""))) == "I don't know any way yet, teach me which behaviour to follow"
+
+
+def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:
+    system = RlaSystem(1, 1.0, others={MID: Space(3, 0.5)})
+    system.apply(created(1, (0.0, 0.0, 0.0), "straight_on", level=MID))
+    nowhere = np.array([math.nan, math.nan, 1.0])
+    words = load_mid("places").situation.words((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5))
+    asked = ask_the_way(system.match(nowhere, level=MID), words)
+    assert asked.here == ()
+    assert str(asked) == "I don't know where I am: set me down at a place that has a name, and say at which one I am"

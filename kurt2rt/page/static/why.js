@@ -40,7 +40,8 @@ export function sentence(state) {
         if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
           return `Which way? Mid-level RLA ${state.nearest} went wrong too often, teach me anew`;
         }
-        return state.nearest === null ? "Which way? I know none yet, teach me" : "Which way? I don't know, teach me";
+        if (state.nearest === null) return "Which way? I know none yet, teach me";
+        return state.distance === null ? "Where am I? Say at which goal" : "Which way? I don't know, teach me";
       }
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
         return `RLA ${state.nearest}${of(state)} went wrong too often, teach me anew`;
@@ -90,7 +91,8 @@ export class Why {
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
     const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
     const rla = which ? "mid-level RLA" : "RLA";
-    const untaught = which ? "touch the way that is right here" : "touch the action that is right here";
+    const nowhere = which && state.nearest !== null && state.distance === null; // it was set down elsewhere
+    const untaught = nowhere ? "goals: touch “is here”" : which ? "touch the way that is right here" : "touch the action that is right here";
     setText(this.#nearest, known ? `nearest: ${rla} ${state.nearest}, ${its}` : untaught);
     const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · worth ${signed(state.value)}`;
     const off = which ? differs(state, hello.mid) : known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
