@@ -34,7 +34,7 @@ _LONGEST_S = 60.0
 _HELD_S = 6.0
 _HOLE_S = 2.0
 _BEAT_S = 0.1
-_FEW = tuple(BAD_LINKS[number] for number in (16, 37))
+_FEW = (BAD_LINKS[29],)
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,7 @@ async def fuzz(kind: str, seed: int, frames: int) -> FuzzedRobot:
     return robot
 
 
-@pytest.mark.parametrize(("kind", "frames"), [("virtual", 30_000), ("shared", 10_000)])
+@pytest.mark.parametrize(("kind", "frames"), [("virtual", 20_000), ("shared", 10_000)])
 async def test_no_frame_reaches_the_tick_as_an_exception(kind: str, frames: int) -> None:
     robot = await fuzz(kind, 1, frames)
     health = robot.kurt2.health

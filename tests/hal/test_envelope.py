@@ -1,7 +1,7 @@
 """Whatever a teacher wants and the sensors say, the motion envelope holds.
 
-Counted are ticks: a stream is a hundred of them, against a guard of its own. The fast suite plays 2 * 10^5 ticks
-(2000 streams), the deep one 10^8 (10^6 streams). Every four hundred streams have a robot of their own: one of the three
+Counted are ticks: a stream is a hundred of them, against a guard of its own. The fast suite plays 120 000 ticks
+(1200 streams), the deep one 10^8 (10^6 streams). Every four hundred streams have a robot of their own: one of the three
 speed modes, and in most cases other limits, another cycle and other bumpers.
 """
 
@@ -20,7 +20,7 @@ from tests.hal.streams import TICKS_PER_STREAM, Streams, draw_streams
 
 STREAMS_PER_SEED = 400
 TICKS_PER_SEED = STREAMS_PER_SEED * TICKS_PER_STREAM
-FAST_SEEDS = np.arange(5)
+FAST_SEEDS = np.arange(3)
 DEEP_SEEDS = np.arange(100, 2600)
 
 
@@ -33,7 +33,7 @@ def hold_the_envelope(seed: int) -> None:
         pytest.fail(f"seed {seed}, {found[0]}; {len(found)} in all. The least that breaks it:\n{told(least)}")
 
 
-def test_the_envelope_holds_for_two_hundred_thousand_ticks() -> None:
+def test_the_envelope_holds_for_a_hundred_thousand_ticks() -> None:
     with quiet_gc():
         for seed in FAST_SEEDS:
             hold_the_envelope(int(seed))
@@ -48,7 +48,7 @@ def test_the_envelope_holds_for_a_hundred_million_ticks(seeds: list[int]) -> Non
 
 
 def test_the_ticks_are_as_many_as_is_said() -> None:
-    assert len(FAST_SEEDS) * TICKS_PER_SEED == 2 * 10**5
+    assert len(FAST_SEEDS) * TICKS_PER_SEED == 120_000
     assert len(DEEP_SEEDS) * TICKS_PER_SEED == 10**8
 
 

@@ -2,6 +2,7 @@
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -50,12 +51,17 @@ def names_in(source: str) -> Iterator[str]:
             yield node.value
 
 
+@cache
+def names_by_file() -> dict[str, set[str]]:
+    files = (path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py")))
+    return {path.relative_to(ROOT).as_posix(): set(names_in(path.read_text(encoding="utf-8"))) for path in files}
+
+
 def mentions(names: set[str]) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
-    for package in PACKAGES:
-        for path in sorted((ROOT / package).rglob("*.py")):
-            for name in names & set(names_in(path.read_text(encoding="utf-8"))):
-                found.setdefault(name, set()).add(path.relative_to(ROOT).as_posix())
+    for file, mentioned in names_by_file().items():
+        for name in names & mentioned:
+            found.setdefault(name, set()).add(file)
     return found
 
 
@@ -68,7 +74,7 @@ def test_only_the_guard_makes_and_sends_control() -> None:
 def test_the_raw_bus_stays_inside_its_module() -> None:
     assert mentions(INSIDES) == {name: {"hal/bus.py"} for name in INSIDES}
     for file in mentions({"can"})["can"] - KINDS_OF_BUS:
-        used = RAW_BUS & set(names_in((ROOT / file).read_text(encoding="utf-8")))
+        used = RAW_BUS & names_by_file()[file]
         assert not used, f"{file} touches {sorted(used)} of python-can's bus; use hal.bus.CanBus"
 
 

@@ -5,6 +5,7 @@ import hashlib
 import json
 import platform
 from collections.abc import Collection, Iterable, Iterator
+from functools import lru_cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -52,7 +53,7 @@ def source_hash(own: Collection[str]) -> str:
     digest = hashlib.sha256()
     for name, path in sources(own):
         digest.update(f"{name}\n".encode())
-        digest.update(code_of(path).encode())
+        digest.update(_hash_of(path.read_text(encoding="utf-8")))
     return digest.hexdigest()[:16]
 
 
@@ -125,9 +126,15 @@ class Fingerprints:
         return self._known[kind, name]
 
 
-def code_of(path: Path) -> str:
+@lru_cache(maxsize=1024)
+def _hash_of(text: str) -> bytes:
+    """Of what a module does, remembered by its text: all of them take a second."""
+    return hashlib.sha256(code_of(text).encode()).digest()
+
+
+def code_of(text: str) -> str:
     """What a module does, as a text that says nothing of how it is written down."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = ast.parse(text)
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             first = node.body[0] if node.body else None

@@ -1,6 +1,5 @@
 """What decides a result shows in its fingerprint, and what does not decide it doesn't."""
 
-from pathlib import Path
 
 import pytest
 
@@ -50,12 +49,7 @@ def test_the_source_is_what_teaches_drives_and_keeps_what_came_and_not_what_only
     assert all(path.is_file() for path in modules.values())
 
 
-def test_comments_docstrings_and_layout_are_no_source(tmp_path: Path) -> None:
-    def code(source: str) -> str:
-        path = tmp_path / "module.py"
-        path.write_text(source)
-        return code_of(path)
-
-    plain = code("def speed(m, s):\n    return m / s\n")
-    assert code('"""What."""\n\ndef speed(m, s):  # fast\n    """Metres."""\n    return (m / s)\n') == plain
-    assert code("def speed(m, s):\n    return s / m\n") != plain
+def test_comments_docstrings_and_layout_are_no_source() -> None:
+    plain = code_of("def speed(m, s):\n    return m / s\n")
+    assert code_of('"""What."""\n\ndef speed(m, s):  # fast\n    """Metres."""\n    return (m / s)\n') == plain
+    assert code_of("def speed(m, s):\n    return s / m\n") != plain
