@@ -15,7 +15,8 @@ LONGEST_WAY_M = 100.0
 LONGEST_TEXT = 64
 MOST_LESSONS = 20
 MOST_GOAL_FEATURES = 16
-MOST_SITUATIONS = 512
+MOST_SITUATIONS = 250
+"""Of names that are told: so many of the longest ones fit into one answer."""
 LARGEST_NUMBER = 2**53
 """Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
 LONGEST_BEHAVIOUR_TICKS = 60_000
