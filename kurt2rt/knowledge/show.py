@@ -12,7 +12,7 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show_level import level_table
-from kurt2rt.knowledge.show_mid import mid_table
+from kurt2rt.knowledge.show_mid import mid_table, named_table
 from kurt2rt.knowledge.shown import answer, appraised, instead_of, plain, valued, when_and_who
 from kurt2rt.knowledge.statistics import follow_ups
 from kurt2rt.perception.definition import AVERAGED
@@ -83,6 +83,9 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
                 parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
             more = len(of_level) - len(of_level[:limit])
             parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
+        names = system.named_at(level)
+        if names:
+            parts.append(named_table(names, features))
     return Group(*parts)
 
 

@@ -1,4 +1,4 @@
-"""RLAs of the mid level as a table: which taught behaviour is to be followed where, and who taught it."""
+"""The mid level as tables: which taught behaviour is to be followed where, who taught it; and what has a name."""
 
 from collections.abc import Iterable, Mapping
 
@@ -10,7 +10,7 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
 from kurt2rt.mid.settings import MidSettings
 from kurt2rt.mid.shipped import shipped_mid
-from kurt2rt.rla.rla import Rla
+from kurt2rt.rla.rla import Condition, Rla
 
 _FOLLOW_UPS = 3
 
@@ -43,16 +43,27 @@ def mid_table(
             instead_of(entry),
             when_and_who(entry.stamped_at, rla.origin.teacher),
             str(uses.get(rla.rla_id, 0)),
-            plain(_where(rla, settings, features.feature_names)),
+            plain(_where(rla.condition, settings, features.feature_names)),
             ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in following),
         )
     return table
 
 
-def _where(rla: Rla, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:
+def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> Table:
+    """The situations that have a name, in the order of the alphabet; in words or numbers as above."""
+    settings = shipped_mid(features.feature_hash)
+    table = Table(box=SIMPLE_HEAD)
+    for heading in ("named", "where: the newest first"):
+        table.add_column(heading, overflow="fold")
+    for name in sorted(named):
+        table.add_row(plain(name), plain(_where(named[name], settings, features.feature_names)))
+    return table
+
+
+def _where(situation: Condition, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:
     if settings is not None:
-        words = [word for word in settings.situation.words(rla.condition) if word]
+        words = [word for word in settings.situation.words(situation) if word]
     else:
-        named = zip(feature_names, rla.condition, strict=True)
+        named = zip(feature_names, situation, strict=True)
         words = [f"{name} {value:.3g}" for name, value in named if value]
     return ", ".join(words) or "at the beginning"

@@ -14,7 +14,7 @@ from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.mid.features import features
 from kurt2rt.mid.settings import load_mid
-from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, TeachingEvent
+from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.tasks.settings import load_task
 from tests.experiments.helpers import ROBOT
 from tests.knowledge.lessons import BINDING, STAMP, created, origin, replaced, undone
@@ -110,6 +110,22 @@ def test_a_way_that_was_taken_back_is_shown_no_more_and_listed_as_undone(path: P
         (listed,) = (line for line in printed(render_lessons(journal)) if "mid-level" in line)
     assert "mid-level" not in shown
     assert listed.rstrip().endswith("Joachim")
+
+
+def test_situations_that_have_a_name_are_shown_with_what_they_mean_now(path: Path) -> None:
+    def named(name: str, *symbols: float, as_lesson: str) -> SituationNamed:
+        return SituationNamed(name, symbols + (0.0,) * (12 - len(symbols)), MID, origin(as_lesson))
+
+    write(path, named("door", 1.0, as_lesson="n-1"), named("attic", 2.0, 3.0, as_lesson="n-2"))
+    write(path, named("door", 3.0, as_lesson="n-3"), named("yard", 1.0, as_lesson="n-4"), undone("n-4"))
+    with Journal.read_only(path) as journal:
+        lines = [line.split("  ") for line in printed(render_knowledge(journal))]
+    cells = [[cell.strip() for cell in line if cell.strip()] for line in lines]
+    assert cells[cells.index(["named", "where: the newest first"]) + 2 :][:2] == [
+        ["attic", "left, right"],
+        ["door", "right"],
+    ]
+    assert not any("yard" in line for line in cells)
 
 
 def test_ways_in_features_that_nobody_here_knows_are_shown_in_numbers(path: Path) -> None:
