@@ -248,3 +248,10 @@ def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind
     assert told(late) == (False, "a junction was passed after this was said; look at the robot, then say it again")
     assert block.runtime.mid.vector is here
     assert told(block.run(BeAt("again", "Ann", "door", block.tick)))[0]
+
+
+def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -> None:
+    record = block.run(*(Seek(f"seek-{number}", "Ann", DOOR) for number in range(200)))
+    assert [result.accepted for result in record.results] == [True] + [False] * 199
+    assert record.results[-1].text == "another goal was given in the same moment; say it again"
+    assert told(block.seek())[0]

@@ -20,6 +20,7 @@ class Errands:
         self._lessons = lessons
         self._seen_tick = -1
         """What the teacher had seen when he said what is sought now."""
+        self._planned_tick = -1
 
     def name(self, command: NameSituation, origin: Origin) -> tuple[str, TeachingEvent]:
         """The event that gives a situation its name. Raises RefusedError."""
@@ -36,18 +37,22 @@ class Errands:
             return self._be_at(command.name, seen_tick)
         if seen_tick < self._seen_tick:
             raise RefusedError("another goal was given after this was said; look at the robot, then say it again")
-        said = self._seek(command)
+        said = self._seek(command, tick)
         self._seen_tick = seen_tick
         return said
 
-    def _seek(self, command: Seek | StopSeeking) -> str:
+    def _seek(self, command: Seek | StopSeeking, tick: int) -> str:
         if isinstance(command, StopSeeking):
             self._navigator.stop()
             return "no goal is sought"
+        if tick == self._planned_tick:  # a tick has no time for as many plans as somebody may send
+            raise RefusedError("another goal was given in the same moment; say it again")
         try:
-            return self._navigator.seek(command.goal)
+            said = self._navigator.seek(command.goal)
         except NoSuchGoalError as error:
             raise RefusedError(str(error)) from error
+        self._planned_tick = tick
+        return said
 
     def _be_at(self, name: str, seen_tick: int) -> str:
         if seen_tick < self._lessons.passed_at_tick:
