@@ -37,12 +37,13 @@ def bench(
     match     how long the nearest RLA is sought; a brute force beside it
     loop      how many times real time a lesson in lockstep runs on one core
     lesson    how long a teacher waits until a lesson is durable; fsync beside it
-    channel   over UDP: from a press to the wheels, also on the teacher's page; what
-              it costs the loop that a teacher is there; lessons until answered
+    channel   over UDP: from a press to the wheels, also on the teacher's page;
+              what it costs the loop that a teacher is there; lessons until
+              answered
 
-    The ratio says how many times longer the reference took in the same run. The
-    goals are meant for an idle machine; a benchmark informs, and ends with code 0
-    whether they are met or not.
+    The ratio says how many times longer the reference took in the same run.
+    The goals are meant for an idle machine; a benchmark informs, and ends with
+    code 0 whether they are met or not.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage

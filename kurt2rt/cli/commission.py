@@ -70,8 +70,8 @@ def commission(
     of it and each bumper's bit, and fits the infra-red law by a ruler. At the
     end it writes the robot's settings file.
 
-    You need a block that lifts all wheels, a ruler, a flat board, an hour, and
-    a hand near the switch that cuts the motors. No wheel turns before you typed
+    You need a block that lifts all wheels, a ruler, a flat board, an hour, and a
+    hand near the switch that cuts the motors. No wheel turns before you typed
     that the wheels are up, and then only after Enter, slowly, through the same
     guard as ever. Ctrl-C brakes at any time, and so does Ctrl-Z.
 

@@ -27,13 +27,13 @@ def demo(
     """Teach a simulated robot from nothing, examine it without its teacher, show what came of it.
 
     A scripted teacher teaches over the same commands that a person uses, in
-    simulated time and as fast as this machine allows: the robot asks where it knows
-    nothing (phase 1), then is also corrected while it drives (phase 2). Then it
-    drives without a teacher in each world of the task; in all but the first one it
-    has never been.
+    simulated time and as fast as this machine allows: the robot asks where it
+    knows nothing (phase 1), then is also corrected while it drives (phase 2).
+    Then it drives without a teacher in each world of the task; in all but the
+    first one it has never been.
 
-    Leaves a picture and the knowledge file in the output folder. Look at the file
-    with kurt2rt knowledge show.
+    Leaves a picture and the knowledge file in the output folder. Look at the
+    file with kurt2rt knowledge show.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.drawing import draw_curriculum

@@ -20,9 +20,9 @@ def doctor(
     """Look at this machine: what it offers the robot, what is missing, what to do.
 
     Measures how late the timer is beside asyncio.sleep, and how long the disk
-    takes to keep a lesson; looks at clock, real-time priority, memory lock, cores,
-    CAN, SQLite and the simulator's packages. Changes nothing, and needs neither a
-    robot nor a display.
+    takes to keep a lesson; looks at clock, real-time priority, memory lock,
+    cores, CAN, SQLite and the simulator's packages. Changes nothing, and needs
+    neither a robot nor a display.
 
     Ends with code 1 only if something is missing that kurt2rt run cannot do
     without: Python, the timer, or a disk to keep knowledge on. CAN is not among

@@ -96,21 +96,22 @@ def lesson(
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
     One lesson lasts as long as its task says (config/tasks), in robot time.
-    Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; results
-    are reported on others:
+    Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59;
+    results are reported on others:
 
         kurt2rt lesson streets --seeds 100-119
 
-    The task route teaches the mid level a fixed route through the streets, a closed
-    loop that the robot's seed draws, and then lets it drive without a teacher. With
-    --seeds results are kept in --out with hashes of what made them; a run that was
-    interrupted goes on where it was:
+    The task route teaches the mid level a fixed route through the streets, a
+    closed loop that the robot's seed draws, and then lets it drive without a
+    teacher. With --seeds results are kept in --out with hashes of what made
+    them; a run that was interrupted goes on where it was:
 
         kurt2rt lesson route
         kurt2rt lesson route --seeds 0-9 --decisions 8 --decisions 12
 
-    The task errands leads the robot about the town and names places, and then sends
-    it to them by ways that it was never led as a whole; kept in --out likewise:
+    The task errands leads the robot about the town and names places, and then
+    sends it to them by ways that it was never led as a whole; kept in --out
+    likewise:
 
         kurt2rt lesson errands --seeds 0-9 --controls
     """

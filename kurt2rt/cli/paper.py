@@ -55,16 +55,16 @@ def paper(
     Leaves report.html, which holds everything, the figures as PNG, and each
     robot's result and knowledge file in the output folder.
 
-    A run that was interrupted goes on where it was. Results are kept with hashes of
-    what made them: settings of task, robot and worlds, the source of what teaches,
-    drives and simulates, and the versions of what computes. When one of these has
-    changed, what is in the folder is refused and not mixed in: give a new folder.
-    Other seeds and other tasks may share a folder.
+    A run that was interrupted goes on where it was. Results are kept with hashes
+    of what made them: settings of task, robot and worlds, the source of what
+    teaches, drives and simulates, and the versions of what computes. When one of
+    these has changed, what is in the folder is refused and not mixed in: give a
+    new folder. Other seeds and other tasks may share a folder.
 
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
-    robots and worlds are others. With one of those, or with fewer than 20 robots,
-    nothing is judged. Which generated worlds a robot drives in follows from its seed;
-    20 seeds that follow each other share all of them.
+    robots and worlds are others. With one of those, or with fewer than 20
+    robots, nothing is judged. Which generated worlds a robot drives in follows
+    from its seed; 20 seeds that follow each other share all of them.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.kept.results import Results

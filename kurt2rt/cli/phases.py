@@ -43,19 +43,19 @@ def phases(
 ) -> None:
     """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
 
-    The path: untaught, answers (1), corrections (2), rewards (3), a critic is taught (4),
-    the robot goes on alone (5); an exam after each, and a long run at the end. Branches
-    from the set of phase 2 with wrong actions: untouched, answers only, unknown is -1,
-    blame by chance, rewards, the critic alone, a shuffled critic; and the intact set
-    with the critic.
+    The path: untaught, answers (1), corrections (2), rewards (3), a critic is
+    taught (4), the robot goes on alone (5); an exam after each, and a long run
+    at the end. Branches from the set of phase 2 with wrong actions: untouched,
+    answers only, unknown is -1, blame by chance, rewards, the critic alone, a
+    shuffled critic; and the intact set with the critic.
 
-    Leaves report.html, which holds everything, the figures as PNG, and each robot's
-    results and knowledge files after each step in the output folder.
+    Leaves report.html, which holds everything, the figures as PNG, and each
+    robot's results and knowledge files after each step in the output folder.
 
-    A run that was interrupted goes on where it was. Results are kept with hashes of
-    what made them; when that has changed, they are refused and not mixed in. Settings
-    were searched on seeds 0 to 79; with one of those, or with fewer than 20 robots,
-    nothing is judged.
+    A run that was interrupted goes on where it was. Results are kept with hashes
+    of what made them; when that has changed, they are refused and not mixed in.
+    Settings were searched on seeds 0 to 79; with one of those, or with fewer
+    than 20 robots, nothing is judged.
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.kept.results import Results

@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
 import typer
@@ -10,13 +11,18 @@ from tests.cli.helpers import CommandLine
 
 def commands() -> dict[tuple[str, ...], list[str]]:
     """Every command by its words, with the names of its options and arguments."""
-    found: dict[tuple[str, ...], list[str]] = {}
+    return {
+        words: [name for each in getattr(command, "params") for name in _names(each)]  # noqa: B009
+        for words, command in _found()
+    }
+
+
+def _found() -> Iterator[tuple[tuple[str, ...], object]]:
     waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(command_line(())))]
     while waiting:
         words, command = waiting.pop()
-        found[words] = [name for each in getattr(command, "params") for name in _names(each)]  # noqa: B009
+        yield words, command
         waiting += [((*words, name), each) for name, each in getattr(command, "commands", {}).items()]
-    return found
 
 
 def _names(parameter: object) -> list[str]:
@@ -52,6 +58,14 @@ def test_every_command_is_found() -> None:
     }
     assert "--seeds" in commands()["lesson",]
     assert "--limit" in commands()["knowledge", "show"]
+
+
+def test_help_fits_a_terminal_of_80_columns_as_it_was_written() -> None:
+    for words, command in _found():
+        if not words:
+            continue  # of one paragraph, which the terminal breaks
+        written = str(getattr(command, "help") or "").splitlines()[1:]  # noqa: B009
+        assert [line for line in written if len(line) > 78 and line[0] != " "] == [], words
 
 
 @pytest.mark.parametrize(("words", "names"), commands().items(), ids=lambda value: " ".join(value))
