@@ -26,7 +26,8 @@ from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.repertoire.of_task import repertoire_of
 from kurt2rt.rla.rla import CRITIC, MID, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.authority import Authority

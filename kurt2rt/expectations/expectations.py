@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from kurt2rt.expectations.expectation import Expectation, pack
 from kurt2rt.expectations.surprise import Surprise, SurpriseSettings
 from kurt2rt.rla.rla import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 
 
 class _Learned:

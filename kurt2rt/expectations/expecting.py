@@ -11,7 +11,8 @@ from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import BASIC, MID, RlaCreated, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 
 
 class Expecting:

@@ -6,7 +6,8 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla import BASIC, RlaCreated, SituationNamed
-from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.space import Space
 
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:

@@ -14,7 +14,7 @@ from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.situation import MidSituation, MidSituationSettings
 from kurt2rt.mid.symbols.source import NONE, AnySymbolSettings, SymbolSource, Transitions
-from kurt2rt.rla.rla_system import Metric
+from kurt2rt.rla.space import Metric
 
 
 class HistorySettings(MidSituationSettings):

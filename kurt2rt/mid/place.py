@@ -16,7 +16,7 @@ from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.situation import MidSituation, MidSituationSettings
 from kurt2rt.mid.symbols.source import Transitions
 from kurt2rt.rla.rla import Condition
-from kurt2rt.rla.rla_system import Metric
+from kurt2rt.rla.space import Metric
 
 X, Y, EAST, NORTH, WALL_LEFT, WALL_RIGHT = range(6)
 """Where each feature stands in the vector."""

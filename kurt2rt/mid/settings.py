@@ -12,7 +12,7 @@ from hal.settings import Settings, find_config, load_settings
 from kurt2rt.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.mid.situation import AnyMidSituationSettings, MidSituation
 from kurt2rt.mid.symbols.source import Transitions
-from kurt2rt.rla.rla_system import Space
+from kurt2rt.rla.space import Space
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Share = Annotated[float, Field(ge=0, le=1)]

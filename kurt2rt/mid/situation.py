@@ -15,7 +15,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.symbols.source import Transitions
-from kurt2rt.rla.rla_system import Metric
+from kurt2rt.rla.space import Metric
 
 
 class MidSituation(Protocol):

@@ -4,7 +4,7 @@ import numpy as np
 
 from kurt2rt.planning.target import Distance, Vector
 from kurt2rt.rla.matching import exact_distances
-from kurt2rt.rla.rla_system import Space
+from kurt2rt.rla.space import Space
 from kurt2rt.rla.symbol_index import edit_distances, hamming_distances
 
 

@@ -6,19 +6,18 @@ Where a task teaches several behaviours there is one such system for each, and w
 
 import hashlib
 import math
-from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import islice
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.rla.competitors import CompetitorGroups
+from kurt2rt.rla.contest import Contest
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
-from kurt2rt.rla.matching import ConditionIndex
 from kurt2rt.rla.named_situations import NamedSituations
 from kurt2rt.rla.rla import (
     ASK,
@@ -39,11 +38,7 @@ from kurt2rt.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.rla.symbol_index import SymbolIndex
-
-Metric = Literal["euclidean", "hamming", "edit"]
-"""How far apart two points are: of features that measure something, the Euclidean distance; of symbols, which are
-equal or not, in how many places they differ, or how many insertions, deletions and changes make one of the other."""
+from kurt2rt.rla.space import Space
 
 
 class Match(NamedTuple):
@@ -74,59 +69,6 @@ class UnfitEventError(ValueError):
     """A teaching event does not fit the knowledge it should change."""
 
 
-class Space(NamedTuple):
-    """What distances of one level are measured in."""
-
-    dimensions: int
-    radius: float
-    """Confidence radius of RLAs that have none of their own."""
-    weights: NDArray[np.float64] | None = None
-    """Shape (dimensions,): how much each feature counts in a distance; None: all count 1. Symbols have none."""
-    metric: Metric = "euclidean"
-
-
-class _Contest:
-    """The RLAs of one level and taught behaviour, by their ids: the same rows as in the index of their conditions."""
-
-    def __init__(self, space: Space) -> None:
-        self.radius = space.radius
-        self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
-        self.ids: list[int] = []  # oldest first
-        self.index = _index_of(space)
-
-    def enter(self, rla_id: int, condition: Condition) -> None:
-        """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
-        dimensions = len(self.weights)
-        if len(condition) != dimensions:
-            raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
-        position = bisect_left(self.ids, rla_id)
-        self.index.insert(position, tuple(self._weighted(condition).tolist()))
-        self.ids.insert(position, rla_id)
-
-    def leave(self, rla_id: int) -> None:
-        """Take out one that is there."""
-        position = bisect_left(self.ids, rla_id)
-        self.index.remove(position)
-        del self.ids[position]
-
-    def nearest_first(self, condition: Condition) -> list[int]:
-        """Ids of all, the nearest to a condition first; of equally near ones the older."""
-        order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
-        return [self.ids[position] for position in order.tolist()]
-
-    def _weighted(self, condition: Condition) -> NDArray[np.float64]:
-        weighted: NDArray[np.float64] = np.array(condition, dtype=np.float64) * self.weights
-        return weighted
-
-
-def _index_of(space: Space) -> ConditionIndex | SymbolIndex:
-    if space.metric == "euclidean":
-        return ConditionIndex(space.dimensions)
-    if space.weights is not None:
-        raise ValueError(f"symbols are equal or not: a space of metric {space.metric} takes no weights")
-    return SymbolIndex(space.dimensions, edits=space.metric == "edit")
-
-
 class RlaSystem:
     """The fold of teaching events; winner takes all by distance, among the RLAs of one taught behaviour."""
 
@@ -152,7 +94,7 @@ class RlaSystem:
         """How many events were applied: while it stays as it is, equal situations have equal answers."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
         self._rlas: dict[int, Rla] = {}
-        self._contests: dict[tuple[str, str], _Contest] = {}
+        self._contests: dict[tuple[str, str], Contest] = {}
         """By level and behaviour."""
         self._groups = CompetitorGroups()
         self._count_at: Counter[str] = Counter()
@@ -240,7 +182,7 @@ class RlaSystem:
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
-    def _match_passing_over(self, contest: _Contest, situation: NDArray[np.float64]) -> Match | None:
+    def _match_passing_over(self, contest: Contest, situation: NDArray[np.float64]) -> Match | None:
         """The nearest that has an action: looks at all, for it is seldom needed."""
         distances = contest.index.distances(situation * contest.weights)
         order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
@@ -377,7 +319,7 @@ class RlaSystem:
     def _enter(self, rla: Rla) -> None:
         space = self._spaces.get(rla.level)
         if space is not None:
-            contest = self._contests.get((rla.level, rla.behaviour)) or _Contest(space)
+            contest = self._contests.get((rla.level, rla.behaviour)) or Contest(space)
             contest.enter(rla.rla_id, rla.condition)
             self._contests[rla.level, rla.behaviour] = contest
         self._put(rla)

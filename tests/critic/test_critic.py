@@ -6,7 +6,8 @@ import pytest
 from kurt2rt.critic.critic import Critic
 from kurt2rt.critic.settings import NAMES
 from kurt2rt.rla.rla import BASIC, CRITIC, ActionReplaced, ActionWithdrawn, Rla, RlaCreated
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from tests.critic.helpers import FREE, SETTINGS, appraisal, origin
 
 CLOSE = FREE._replace(front_m=0.12)

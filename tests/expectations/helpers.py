@@ -6,7 +6,8 @@ from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.expectations.expectations import End, Expectations
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.rla.rla import BASIC, MID, TeachingEvent
-from kurt2rt.rla.rla_system import Metric, RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Metric, Space
 from tests.rla.helpers import created
 
 

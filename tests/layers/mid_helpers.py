@@ -12,7 +12,8 @@ from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.rla.rla import MID, RlaCreated, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from tests.layers.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 from tests.rla.helpers import created
 

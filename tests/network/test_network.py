@@ -13,7 +13,8 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.network.file import write_network
 from kurt2rt.network.network import RlaNetwork, network_of, read_network, without_rare
 from kurt2rt.rla.rla import BASIC, MID
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from tests.knowledge.lessons import begun
 from tests.rla.helpers import created
 

@@ -8,7 +8,8 @@ import numpy as np
 from kurt2rt.planning.chart import Chart, chart_of
 from kurt2rt.planning.target import Vector
 from kurt2rt.rla.rla import MID, Rla
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from tests.rla.helpers import created
 
 RADIUS = 0.5

@@ -12,7 +12,8 @@ from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.reinforcement.settings import LonelyWorths, ReinforcementSettings, TaughtWorths
 from kurt2rt.rla.rla import CRITIC, Appraised, Phase, RlaDeleted, RlaRewarded, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Command, CommandResult, Drive, Reward, Watch
 from kurt2rt.teaching.recent import RecentDecisions

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from kurt2rt.rla.rla import CRITIC, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from tests.rla.helpers import created, deleted, replaced, undone, withdrawn
 
 

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
-from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.space import Space
 from tests.rla.helpers import created, deleted, origin, replaced, undone, withdrawn
 
 CRITICS = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from kurt2rt.rla.rla import BASIC, CRITIC, MID
-from kurt2rt.rla.rla_system import RlaSystem, Space, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.space import Space
 from tests.rla.helpers import created, named, undone
 
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from kurt2rt.rla.rla import MID, TeachingEvent
-from kurt2rt.rla.rla_system import Metric, RlaSystem, Space, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.space import Metric, Space
 from kurt2rt.rla.symbol_index import SymbolIndex, edit_distances, hamming_distances
 from tests.rla.helpers import created, deleted, replaced, undone
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.rla.rla import MID
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from kurt2rt.teaching.question import Question, WayQuestion, ask, ask_the_way
 from tests.rla.helpers import created, withdrawn
 

@@ -6,7 +6,8 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.critic.settings import NAMES
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import CRITIC, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from kurt2rt.tasks.settings import TaskSettings
 
 

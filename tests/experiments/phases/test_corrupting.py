@@ -10,7 +10,8 @@ from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuf
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
 from kurt2rt.experiments.primitives import primitives
 from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Phase, Rla, RlaCreated, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, Space
+from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.rla.space import Space
 from kurt2rt.tasks.settings import load_task
 
 PERIOD_S = 0.01
