@@ -7,7 +7,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-# Four workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
+# All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
 .PHONY: run demo test test-deep guard mutants hil bench lint types compiled clean
@@ -21,7 +21,7 @@ demo: $(INSTALLED)
 # Types take one processor; the other one compiles the tests meanwhile, once for all that run them.
 test: $(INSTALLED)
 	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types compiled
-	$(PYTEST) -n 4 -q --dist loadfile
+	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
 
 test-deep: $(INSTALLED) guard
 	$(PYTEST) -n 2 -q -m deep

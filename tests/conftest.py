@@ -1,8 +1,27 @@
 """What all tests share: property tests that draw the same examples every time, on any machine."""
 
+import gc
+from pathlib import Path
+
+import pytest
 from hypothesis import settings
 
 # No deadline per example: it would be a wall-clock assertion, and the machine that runs the tests is shared.
 # Fifty examples, for the same ones are drawn each time: what they find they have found at the first run.
 settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True, max_examples=50)
 settings.load_profile("repeatable")
+
+_WAIT = {"page", "cli", "service", "channel", "teaching", "commission"}
+"""Folders whose stories wait most: browsers, programs, real time."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What waits comes first, and not at the end, where no other test would be left to use the time."""
+    here = Path(__file__).parent
+    items.sort(key=lambda item: item.path.relative_to(here).parts[0] not in _WAIT)
+
+
+def pytest_collection_finish() -> None:
+    """What was collected stays to the end: nobody need look for garbage among it again and again."""
+    gc.collect()
+    gc.freeze()

@@ -19,7 +19,9 @@ class Loop:
 @pytest.fixture(autouse=True)
 def collector_as_it_was() -> Iterator[None]:
     enabled = gc.isenabled()
+    gc.unfreeze()  # what the suite has set aside (tests/conftest.py)
     yield
+    gc.freeze()
     if enabled:
         gc.enable()
     else:

@@ -219,8 +219,10 @@ def test_a_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
 def test_a_log_that_cannot_be_written_is_told_of_and_the_robot_drives_on(tmp_path: Path) -> None:
     words = ("run", "--teacher", "none", "--knowledge", "mine.knowledge", "--can-log", "drive.log")
     with running(*words, folder=tmp_path) as robot:
-        robot.wait_for("late")
-        limit_files(robot.process, (tmp_path / "drive.log").stat().st_size)
+        log = tmp_path / "drive.log"
+        while not log.exists() or log.stat().st_size < 200_000:  # so that the limit leaves the knowledge file room
+            robot.wait_for("late")
+        limit_files(robot.process, log.stat().st_size)
         line = robot.wait_for("CAN log drive.log: writing failed ([Errno 27] File too large), ")
         assert "missed" in line
         said = robot.end(signal.SIGTERM)
