@@ -1,6 +1,7 @@
 """The whole tick with a mid level of places: names, goals, plans, and what goes before them."""
 
 import math
+from collections.abc import Sequence
 
 import pytest
 
@@ -8,9 +9,9 @@ from hal.robot import STANDSTILL
 from kurt2rt.layers.decision import Cause
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.planning.step import Course, PlanStep
-from kurt2rt.rla.rla import MID, SituationNamed
+from kurt2rt.rla.rla import MID, SituationNamed, TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teaching.commands import BeAt, NameSituation, Pursue, Seek, Stop, StopSeeking, Teach, Undo
+from kurt2rt.teaching.commands import BeAt, NameSituation, Pursue, Reward, Seek, Stop, StopSeeking, Teach, Undo
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT
@@ -25,13 +26,14 @@ DOOR = NamedGoal("door")
 class Block(Town):
     """Streets round a block: four left turns lead back to where the first one began."""
 
-    def __init__(self) -> None:
+    def __init__(self, events: Sequence[TeachingEvent] | None = None) -> None:
         self.robot = StreetRobot()
         self.notebook = Notebook()
-        self.taught_before = basic_knowledge()
+        self.taught_before = basic_knowledge() if events is None else list(events)
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(self.robot, ROBOT, PLACES, self.taught_before, self.notebook, clock)
-        self.tick = self.passed = self.said = 0
+        self.tick = self.passed = 0
+        self.said = len(self.taught_before)  # ids of commands are not given twice
         self.street()
 
     def go(self, behaviour: str | None = None) -> TickRecord:
@@ -57,9 +59,12 @@ class Block(Town):
         return self.say(Seek, goal)
 
     def plan(self) -> PlanStep:
-        step = self.run().decision.plan
-        assert step is not None
-        return step
+        """How it stands with the goal, once that is settled."""
+        while True:
+            step = self.run().decision.plan
+            assert step is not None
+            if step.course is not Course.PLANNING:
+                return step
 
 
 @pytest.fixture
@@ -87,8 +92,10 @@ def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Bloc
 
 def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     record = block.seek()
-    assert told(record) == (True, "on the way to door: 2 ways left, now turn_left (RLA 4)")
-    assert block.plan().behaviours == ("turn_left", "turn_left")
+    assert told(record) == (True, "planning the way to door")
+    step = block.plan()
+    assert step.says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
+    assert step.behaviours == ("turn_left", "turn_left")
     record = block.go()
     assert record.decision.driving
     record = block.go()
@@ -109,7 +116,8 @@ def test_of_two_ways_from_a_place_it_takes_the_one_that_leads_to_the_goal(block:
     block.teach("straight_on")
     block.say(NameSituation, "yard")
     block.say(BeAt, "door")  # from here nobody ever led it to the yard in one piece
-    assert told(block.seek(NamedGoal("yard")))[1] == "on the way to yard: 3 ways left, now turn_left (RLA 6)"
+    block.seek(NamedGoal("yard"))
+    assert block.plan().says == "on the way to yard: 3 ways left, now turn_left (RLA 6)"
     block.go()
     block.go()
     assert block.run().behaviour == "straight_on"
@@ -142,9 +150,105 @@ def test_where_no_way_leads_it_stands_and_says_so() -> None:
     town.teach("straight_on")
     town.go()
     town.teach("straight_on")
-    record = town.seek(NamedGoal("home"))
-    assert told(record) == (True, "no way from here to home: nothing taught leads there")
+    assert told(town.seek(NamedGoal("home"))) == (True, "planning the way to home")
+    assert town.plan().says == "no way from here to home: nothing taught leads there"
+    record = town.run()
     assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
+
+
+def test_where_it_stood_it_stands_until_the_plan_stands(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.seek(NamedGoal("here"))
+    record = block.seek(DOOR)
+    for _ in range(2):
+        plan = record.decision.plan
+        assert plan is not None
+        assert (plan.course, record.decision.wheel_speeds) == (Course.PLANNING, STANDSTILL)
+        record = block.run()
+    assert block.plan().course is Course.UNDER_WAY
+    assert block.run().decision.driving
+
+
+def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
+    record = block.seek(DOOR)
+    plan = record.decision.plan
+    assert plan is not None
+    assert (plan.course, plan.rla_id, record.decision.driving) == (Course.PLANNING, None, True)
+
+
+def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Block) -> None:
+    block.seek(DOOR)
+    ticks = 0
+    while (step := block.say(Reward, 1).decision.plan) is not None and step.course is Course.PLANNING:
+        ticks += 1
+    assert ticks < 5
+    assert block.plan().course is Course.UNDER_WAY
+
+
+def test_what_is_taught_of_places_meanwhile_begins_the_plan_anew_once_in_a_while(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.seek(NamedGoal("here"))
+    block.seek(DOOR)
+    changes = 0
+    while (step := block.run().decision.plan) is not None and step.course is Course.PLANNING:
+        changes += 1
+        block.teach(("straight_on", "turn_right")[changes % 2], beside=True) if changes < 3 else None
+    assert 2 < changes < 30
+    assert block.plan().says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
+
+
+def test_a_name_that_is_given_again_is_sought_where_it_is_now(block: Block) -> None:
+    block.seek(DOOR)
+    assert len(block.plan().behaviours) == 2
+    block.go()
+    block.say(NameSituation, "door", None)  # here, where the first way leads
+    step = block.plan()
+    assert (step.course, step.says) == (Course.ARRIVED, "arrived: door")
+
+
+def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> None:
+    block.seek(DOOR)
+    block.plan()
+    (name,) = (event.origin.command_id for event in block.notebook.events if isinstance(event, SituationNamed))
+    record = block.say(Undo, name)
+    step = block.plan()
+    assert step.says == "door cannot be gone to any more: nothing was named 'door'; named were: nothing"
+    assert (step.course, record.decision.wheel_speeds) == (Course.NO_WAY, STANDSTILL)
+    block.go()
+    block.say(NameSituation, "door")
+    assert block.plan().course is Course.ARRIVED
+    assert told(block.say(StopSeeking))[0]
+    assert block.run().decision.driving
+
+
+def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
+    block.runtime.set_down()
+    assert block.run().decision.asks_at == MID
+    block.seek(PartialGoal((("east", 1.0),)))  # that is how a reckoning begins
+    step = block.plan()
+    assert step.course is Course.LOST
+
+
+def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+    known = [*block.taught_before, *block.notebook.events]
+    again = Block(known)
+    assert again.run().decision.asks_at == MID
+    assert told(again.say(Teach, "turn_left", None, MID))[1].startswith("the robot does not know where it is")
+    assert told(again.say(BeAt, "door"))[0]
+    assert again.run().behaviour == "turn_left"
+    assert not again.run().decision.asking
+
+
+def test_where_no_place_has_a_name_the_rla_that_knows_it_names_it() -> None:
+    town = Block()
+    town.teach("turn_left")
+    again = Block([*town.taught_before, *town.notebook.events])
+    assert told(again.say(BeAt, "door")) == (
+        False,
+        "nothing was named 'door'; named were: nothing; where an RLA knows is a place, too, such as RLA 12",
+    )
+    assert told(again.say(BeAt, "RLA 4")) == (True, "the robot is at RLA 4")
+    assert not again.run().decision.asking
 
 
 def test_the_teachers_word_goes_before_the_plan_until_the_next_junction(block: Block) -> None:

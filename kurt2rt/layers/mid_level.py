@@ -59,6 +59,11 @@ class MidLevel:
         return self.situation.vector
 
     @property
+    def commanded(self) -> str:
+        """The behaviour that is wanted now."""
+        return self._wanted.behaviour
+
+    @property
     def overridden(self) -> bool:
         """Whether a teacher commands until the next junction has been passed."""
         return self._overridden

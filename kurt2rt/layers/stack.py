@@ -9,7 +9,7 @@ from kurt2rt.planning.navigator import Navigator
 from kurt2rt.planning.step import Course
 from kurt2rt.rla.rla import MID
 
-_STANDS = {Course.ARRIVED: Cause.AT_GOAL, Course.NO_WAY: Cause.NO_WAY}
+_STANDS: dict[Course | None, Cause] = {Course.ARRIVED: Cause.AT_GOAL, Course.NO_WAY: Cause.NO_WAY}
 """Why a robot stands that seeks a goal, whatever its mid level commands."""
 
 
@@ -31,13 +31,13 @@ class LayerStack:
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
         if navigator is not None:
-            navigator.look()
+            navigator.go_on()
         if commanded.asks:
             decision = self.basic.decide(situation, senses, stand_because or Cause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
-                stand_because = stand_because or _STANDS.get(navigator.course)
+                stand_because = stand_because or _STANDS.get(navigator.stands_as)
             decision = self.basic.decide(situation, senses, stand_because)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:

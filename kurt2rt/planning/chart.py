@@ -5,15 +5,21 @@ says that it leads.
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import networkx as nx
 import numpy as np
 
-from kurt2rt.planning.target import GroupAt, Target, Vector
+from kurt2rt.planning.target import GroupAt, Vector
 from kurt2rt.rla.rla import Condition, Rla
+
+Charting = Generator[None, None, "Chart"]
+"""A chart in the making: each piece of the work looks at one RLA, whose situation is matched at most once in it."""
+
+_LIGHT = 8
+"""So many RLAs make a piece of work where none of them is matched."""
 
 
 class Forecast(Protocol):
@@ -64,14 +70,20 @@ class Way(NamedTuple):
 class Chart:
     """Places and ways as a directed graph."""
 
-    def __init__(self, places: Iterable[Place], ways: Iterable[Way]) -> None:
-        self.places = {place.place_id: place for place in places}
+    def __init__(self) -> None:
+        self.places: dict[int, Place] = {}
         self.graph: nx.DiGraph[int] = nx.DiGraph()
-        self.graph.add_nodes_from(self.places)
-        for way in ways:
-            known = (way.start, way.end) in self.graph.edges
-            if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
-                self.graph.add_edge(way.start, way.end, cost=way.cost, way=way)
+
+    def add_place(self, place: Place) -> None:
+        """Put a place on it."""
+        self.places[place.place_id] = place
+        self.graph.add_node(place.place_id)
+
+    def add_way(self, way: Way) -> None:
+        """Put a way on it; of several from one place to another only the cheapest stays."""
+        known = (way.start, way.end) in self.graph.edges
+        if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
+            self.graph.add_edge(way.start, way.end, cost=way.cost, way=way)
 
     def members(self, place_id: int) -> frozenset[int]:
         """Ids of the RLAs on a place."""
@@ -82,33 +94,38 @@ class Chart:
         way: Way = self.graph.edges[start, end]["way"]
         return way
 
-    def places_that_meet(self, target: Target) -> set[int]:
-        """Ids of the places at which a target is reached."""
-        return {each for each, place in self.places.items() if target.met_by(np.array(place.condition))}
 
-
-def chart_of(
+def charting(
     rlas: Iterable[Rla],
     group_at: GroupAt,
     follow_ups: Callable[[int], Mapping[int, int]],
     forecast: Callable[[int], Forecast | None],
-) -> Chart:
-    """The chart of all RLAs of the mid level.
+) -> Charting:
+    """Make the chart of all RLAs of the mid level, which must stay as they are until it stands.
 
     `follow_ups`: how often each RLA followed one.
     `forecast`: what is expected of one, None for one that was never seen to end. An RLA leads to the place that its
     expectation lies in, and as often as follow-ups of that place came; where expectations lie in no place, to where
     its follow-ups stand.
     """
+    chart = Chart()
     members: dict[Condition, list[Rla]] = {}
-    for rla in rlas:
+    forecasts: dict[int, Forecast] = {}
+    for number, rla in enumerate(rlas):
         members.setdefault(rla.condition, []).append(rla)
-    places = {group[0].rla_id: Place(group[0].rla_id, at, tuple(group)) for at, group in members.items()}
-    home = {rla.rla_id: place_id for place_id, place in places.items() for rla in place.members}
-    forecasts = {rla_id: expected for rla_id in home if (expected := forecast(rla_id)) is not None}
+        expected = forecast(rla.rla_id)
+        if expected is not None:
+            forecasts[rla.rla_id] = expected
+        if number % _LIGHT == 0:
+            yield
+    home: dict[int, int] = {}
+    for number, (at, group) in enumerate(members.items()):
+        chart.add_place(Place(group[0].rla_id, at, tuple(group)))
+        home.update((rla.rla_id, group[0].rla_id) for rla in group)
+        if number % _LIGHT == 0:
+            yield
     usual_ticks = float(np.mean([each.ticks for each in forecasts.values()])) if forecasts else 1.0
-    ways: list[Way] = []
-    for start, place in list(places.items()):
+    for start, place in list(chart.places.items()):
         for rla in place.members:
             if rla.asks:
                 continue
@@ -118,15 +135,16 @@ def chart_of(
                     ends[home[after]] += times
             expected = forecasts.get(rla.rla_id)
             if expected is not None:
-                end = _end_of(rla, expected, group_at, home, places)
+                end = _end_of(rla, expected, group_at, home, chart)
                 if end > 0 or not ends:
                     ends[end] = max(ends[end], 1)
             ticks = usual_ticks if expected is None else max(expected.ticks, 1.0)
             seen = ends.total()
-            ways += [
-                Way(rla.rla_id, rla.action, start, end, n / seen, ticks) for end, n in ends.items() if end != start
-            ]
-    return Chart(places.values(), ways)
+            for end, times in ends.items():
+                if end != start:
+                    chart.add_way(Way(rla.rla_id, rla.action, start, end, times / seen, ticks))
+            yield
+    return chart
 
 
 def _end_of(
@@ -134,11 +152,11 @@ def _end_of(
     expected: Forecast,
     group_at: GroupAt,
     home: Mapping[int, int],
-    places: dict[int, Place],
+    chart: Chart,
 ) -> int:
     """The place that an expectation lies in; one that nothing was taught at yet is put on the chart."""
     there = group_at(expected.mean)
     if there:
         return home[there[0].rla_id]
-    places[-rla.rla_id] = Place(-rla.rla_id, tuple(expected.mean.tolist()), ())
+    chart.add_place(Place(-rla.rla_id, tuple(expected.mean.tolist()), ()))
     return -rla.rla_id

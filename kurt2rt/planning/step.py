@@ -9,11 +9,13 @@ class Course(StrEnum):
 
     NONE = "none"
     """There is none: the mid level commands as ever."""
+    PLANNING = "planning"
+    """A plan is being made, and has no wish yet; where the robot stood it stands, else the mid level commands."""
     UNDER_WAY = "under way"
     ARRIVED = "arrived"
     """The robot stands there."""
     NO_WAY = "no way"
-    """From where it is nothing that it knows leads there; the robot stands."""
+    """From where it is nothing that it knows leads there, or the goal means nothing any more; the robot stands."""
     LOST = "lost"
     """It is at no place that it knows; the robot stands, and its mid level asks."""
 

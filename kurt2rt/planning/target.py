@@ -26,7 +26,7 @@ class Target(Protocol):
     """What tells whether a situation is one that was to be reached."""
 
     def met_by(self, situation: Vector) -> bool:
-        """Whether a situation of the mid level is."""
+        """Whether a situation of the mid level is; never that of a robot that does not know where it is."""
         ...
 
 
@@ -34,14 +34,18 @@ class Near:
     """All situations at the same place as one; where one of them is at no place that is known, near enough ones."""
 
     def __init__(self, situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> None:
+        """Good as long as the RLAs of the mid level stay as they are."""
         self._situation = np.array(situation, dtype=np.float64)
         self._within = within
         self._distance = distance
         self._group_at = group_at
+        self._there = group_at(self._situation)
 
     def met_by(self, situation: Vector) -> bool:
         """Whether a situation is."""
-        here, there = self._group_at(situation), self._group_at(self._situation)
+        if not np.isfinite(situation).all():
+            return False
+        here, there = self._group_at(situation), self._there
         if here and there:
             return here[0].rla_id == there[0].rla_id
         return self._distance(situation, self._situation) <= self._within
@@ -58,6 +62,8 @@ class Having:
 
     def met_by(self, situation: Vector) -> bool:
         """Whether all of them are."""
+        if not np.isfinite(situation).all():
+            return False
         return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())
 
 

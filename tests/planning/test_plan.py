@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from kurt2rt.planning.chart import Chart
 from kurt2rt.planning.plan import Plan, plan_to
-from kurt2rt.planning.target import Having, Near
+from kurt2rt.planning.target import Having, Near, Target
 from tests.planning.town import RADIUS, Town
 from tests.rla.helpers import withdrawn
 
@@ -22,10 +23,14 @@ def place_id(town: Town, place: str) -> int:
     return town.group_at(town.at(place))[0].rla_id
 
 
+def meeting(chart: Chart, target: Target) -> set[int]:
+    return {each for each, place in chart.places.items() if target.met_by(np.array(place.condition))}
+
+
 def plan(town: Town, start: str, end: str) -> Plan | None:
     chart = town.chart()
     target = Near(tuple(town.at(end).tolist()), RADIUS, town.distance, town.group_at)
-    return plan_to(chart, place_id(town, start), chart.places_that_meet(target))
+    return plan_to(chart, place_id(town, start), meeting(chart, target))
 
 
 def actions(found: Plan | None) -> list[str]:
@@ -96,7 +101,7 @@ def test_a_partial_goal_is_the_nearest_place_that_has_it() -> None:
         fresh.way(start, "turn_left", end)
     fresh.teach("nw", "turn_left")
     chart = fresh.chart()
-    goals = chart.places_that_meet(Having({2: 1.0}, 0.1))
+    goals = meeting(chart, Having({2: 1.0}, 0.1))
     assert goals == {place_id(fresh, "ne"), place_id(fresh, "nw")}
     found = plan_to(chart, place_id(fresh, "sw"), goals)
     assert actions(found) == ["turn_left", "turn_left"]

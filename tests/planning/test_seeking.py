@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from kurt2rt.planning.chart import charting
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.planning.seeking import Seeking
+from kurt2rt.planning.seeking import PIECES, Seeking
 from kurt2rt.planning.step import Course
-from kurt2rt.planning.target import NoSuchGoalError, Target, target_of
-from kurt2rt.rla.rla import MID
+from kurt2rt.planning.target import NoSuchGoalError, Target, Vector, target_of
+from kurt2rt.rla.rla import MID, Rla
 from tests.planning.town import FEATURES, RADIUS, Town
 from tests.rla.helpers import deleted
 
@@ -25,7 +26,7 @@ def grid() -> Town:
 
 
 def target(town: Town, goal: Goal) -> Target:
-    door = {"door": tuple(town.at("e").tolist())}
+    door = {"door": tuple(town.at("e").tolist())} if "e" in town.places else {}
     return target_of(
         goal,
         named=door,
@@ -42,9 +43,23 @@ DOOR = NamedGoal("door")
 
 
 def seeking(town: Town, goal: Goal = DOOR) -> Seeking:
-    seeks = Seeking(town.chart, town.group_at)
+    seeks = Seeking(town.charting, town.group_at)
     seeks.seek(goal, target(town, goal))
     return seeks
+
+
+def think(seeks: Seeking) -> int:
+    """Until it is settled how it goes on; after how many ticks."""
+    ticks = 0
+    while seeks.course is Course.PLANNING:
+        seeks.think()
+        ticks += 1
+    return ticks
+
+
+def arrive(seeks: Seeking, situation: Vector) -> int:
+    seeks.arrive(situation)
+    return think(seeks)
 
 
 def course(seeks: Seeking) -> Course:
@@ -59,15 +74,15 @@ def chosen(town: Town, seeks: Seeking, place: str) -> str | None:
 def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("a"))
+    arrive(seeks, town.at("a"))
     assert seeks.text == "on the way to door: 3 ways left, now straight_on (RLA 1)"
     assert chosen(town, seeks, "a") == "straight_on"
-    seeks.arrive(town.at("b"))
+    arrive(seeks, town.at("b"))
     assert chosen(town, seeks, "b") == "straight_on"
-    seeks.arrive(town.at("c"))
+    arrive(seeks, town.at("c"))
     assert chosen(town, seeks, "c") == "turn_left"
     assert not seeks.stands
-    seeks.arrive(town.at("e"))
+    arrive(seeks, town.at("e"))
     assert course(seeks) is Course.ARRIVED
     assert seeks.stands
     assert seeks.text == "arrived: door"
@@ -77,23 +92,23 @@ def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
 def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_there() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("a"))
-    seeks.arrive(town.at("b"))
-    seeks.arrive(town.at("d"))  # the robot turned where it was to go straight on
+    arrive(seeks, town.at("a"))
+    arrive(seeks, town.at("b"))
+    arrive(seeks, town.at("d"))  # the robot turned where it was to go straight on
     assert seeks.surprises == 1
     assert chosen(town, seeks, "d") == "turn_right"
-    seeks.arrive(town.at("e"))
+    arrive(seeks, town.at("e"))
     assert course(seeks) is Course.ARRIVED
 
 
 def test_without_a_way_the_robot_stands_and_says_so() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("e"))
+    arrive(seeks, town.at("e"))
     assert course(seeks) is Course.ARRIVED
     back = RlaGoal(1)
     seeks.seek(back, target(town, back))
-    seeks.arrive(town.at("e"))
+    arrive(seeks, town.at("e"))
     assert seeks.stands
     assert seeks.text == "no way from here to the situation of RLA 1: nothing taught leads there"
 
@@ -101,22 +116,26 @@ def test_without_a_way_the_robot_stands_and_says_so() -> None:
 def test_off_all_known_places_it_stands_and_is_lost() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("a"))
-    seeks.arrive(np.array([9.0, 9.0, 0.0]))
+    arrive(seeks, town.at("a"))
+    arrive(seeks, np.array([9.0, 9.0, 0.0]))
     assert course(seeks) is Course.LOST
     assert seeks.choose(town.group_at(town.at("a"))) is None
     assert seeks.text.startswith("lost on the way to door")
-    seeks.arrive(town.at("b"))  # somebody led it back
+    arrive(seeks, town.at("b"))  # somebody led it back
     assert course(seeks) is Course.UNDER_WAY
 
 
 def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
     town = grid()
     seeks = seeking(town, RlaGoal(1))
-    seeks.arrive(town.at("e"))
+    arrive(seeks, town.at("e"))
     assert course(seeks) is Course.NO_WAY
     town.way("e", "turn_left", "a")
     seeks.replan(town.at("e"))
+    assert seeks.text == "planning the way to the situation of RLA 1"
+    assert seeks.stands  # where it stood without a way it stands until there is one
+    think(seeks)
+    assert not seeks.stands
     assert course(seeks) is Course.UNDER_WAY
     assert chosen(town, seeks, "e") == "turn_left"
 
@@ -124,9 +143,9 @@ def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
 def test_a_way_that_was_deleted_under_the_plan_is_planned_around() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("a"))
+    arrive(seeks, town.at("a"))
     town.system.apply(deleted(2))  # from b straight on
-    seeks.arrive(town.at("b"))
+    arrive(seeks, town.at("b"))
     assert chosen(town, seeks, "b") == "turn_left"
     assert seeks.surprises == 0
 
@@ -143,17 +162,17 @@ def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
     fresh.teach("d", "straight_on")
     goal = PartialGoal((("wall_left", 1.0),), tolerance=0.1)
     seeks = seeking(fresh, goal)
-    seeks.arrive(fresh.at("a"))
-    seeks.arrive(fresh.at("b"))
+    arrive(seeks, fresh.at("a"))
+    arrive(seeks, fresh.at("b"))
     assert chosen(fresh, seeks, "b") == "straight_on"
     without_wall = np.array([4.0, 0.0, 0.0])
-    seeks.arrive(without_wall)
+    arrive(seeks, without_wall)
     assert course(seeks) is Course.UNDER_WAY
     assert chosen(fresh, seeks, "c") == "turn_right"
-    seeks.arrive(fresh.at("a"))
-    seeks.arrive(fresh.at("b"))
+    arrive(seeks, fresh.at("a"))
+    arrive(seeks, fresh.at("b"))
     assert chosen(fresh, seeks, "b") == "turn_left"
-    seeks.arrive(fresh.at("d"))
+    arrive(seeks, fresh.at("d"))
     assert course(seeks) is Course.ARRIVED
     assert seeks.text == "arrived: wall_left 1"
 
@@ -161,9 +180,9 @@ def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
 def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
     town = grid()
     seeks = seeking(town)
-    seeks.arrive(town.at("a"))
+    arrive(seeks, town.at("a"))
     seeks.stop()
-    seeks.arrive(town.at("b"))
+    arrive(seeks, town.at("b"))
     assert course(seeks) is Course.NONE
     assert seeks.text == ""
     assert chosen(town, seeks, "b") is None
@@ -182,3 +201,43 @@ def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
 def test_a_goal_that_means_nothing_is_refused_with_what_there_is(goal: Goal, words: str) -> None:
     with pytest.raises(NoSuchGoalError, match=words):
         target(grid(), goal)
+
+
+def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() -> None:
+    row = Town(**{f"p{number}": (2.0 * number, 0.0) for number in range(200)})
+    for number in range(199):
+        row.way(f"p{number}", "straight_on", f"p{number + 1}")
+    last = PartialGoal((("x_m", 398.0),), tolerance=0.1)
+    matched = 0
+
+    def group_at(situation: Vector) -> tuple[Rla, ...]:
+        nonlocal matched
+        matched += 1
+        return row.group_at(situation)
+
+    took = []
+    for _ in range(2):
+        seeks = Seeking(lambda: charting(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
+        seeks.seek(last, target(row, last))
+        seeks.arrive(row.at("p0"))
+        ticks = most = 0
+        while seeks.course is Course.PLANNING:
+            matched = 0
+            seeks.think()
+            ticks, most = ticks + 1, max(most, matched)
+        assert most <= PIECES
+        took.append(ticks)
+    assert took[0] == took[1]
+    assert took[0] > 2 * 200 // PIECES
+    assert seeks.plan is not None
+    assert len(seeks.plan.ways) == 199
+
+
+def test_nowhere_is_no_goal() -> None:
+    town = grid()
+    nowhere = np.array([np.nan, np.nan, 1.0])
+    for goal in (DOOR, PartialGoal((("wall_left", 1.0),))):
+        assert not target(town, goal).met_by(nowhere)
+        seeks = seeking(town, goal)
+        arrive(seeks, nowhere)
+        assert course(seeks) is Course.LOST

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.planning.chart import Chart, chart_of
-from kurt2rt.planning.target import Vector
+from kurt2rt.planning.chart import Chart, Charting, charting
+from kurt2rt.planning.survey import Survey
+from kurt2rt.planning.target import Having, Vector
 from kurt2rt.rla.rla import MID, Rla
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.space import Space
@@ -54,9 +55,17 @@ class Town:
         match = self.system.match(situation, level=MID)
         return self.system.competitors(match.rla) if match is not None and match.known else ()
 
+    def charting(self) -> Charting:
+        """Begin a chart of what is known now."""
+        return charting(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
+
     def chart(self) -> Chart:
         """As it is known now."""
-        return chart_of(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
+        survey = Survey(self.charting(), Having({}, 0.0))
+        while not survey.step(1):
+            pass
+        assert survey.chart is not None
+        return survey.chart
 
     def followed(self, rla_id: int) -> dict[int, int]:
         """How often each RLA followed one."""
