@@ -11,7 +11,19 @@ from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.planning.step import Course, PlanStep
 from kurt2rt.rla.rla import MID, SituationNamed, TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teaching.commands import BeAt, NameSituation, Pursue, Reward, Seek, Stop, StopSeeking, Teach, Undo
+from kurt2rt.teaching.commands import (
+    BeAt,
+    Correct,
+    NameSituation,
+    Pursue,
+    ReplaceAction,
+    Reward,
+    Seek,
+    Stop,
+    StopSeeking,
+    Teach,
+    Undo,
+)
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT
@@ -359,3 +371,39 @@ def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -
     assert [result.accepted for result in record.results] == [True] + [False] * 199
     assert record.results[-1].text == "another goal was given in the same moment; say it again"
     assert told(block.seek())[0]
+
+
+def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place(block: Block) -> None:
+    assert block.runtime.mid is not None
+    known = block.runtime.level.system.get(4)
+    assert known is not None
+    assert tuple(block.runtime.mid.vector) != known.condition  # not quite where it was the first time
+    record = block.say(Teach, "straight_on", None, MID)
+    assert told(record) == (True, "mid-level RLA 8 taught beside mid-level RLA 4: straight_on")
+    added = block.runtime.level.system.get(8)
+    assert added is not None
+    assert added.condition == known.condition
+    assert record.behaviour == "straight_on"  # so it goes now, as it was told
+    assert record.mid is not None
+    assert (record.mid.rla_id, record.mid.overridden) == (8, False)
+
+
+def test_a_correction_to_what_is_taught_there_already_teaches_it_no_second_time_and_has_it_go_there(
+    block: Block,
+) -> None:
+    block.teach("straight_on", beside=True)
+    assert block.run().behaviour == "turn_left"
+    record = block.say(Correct, "straight_on", None, MID)
+    assert told(record) == (True, "mid-level RLA 8 says straight_on there already; nothing was changed")
+    assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left", 8: "straight_on"}
+    assert record.mid is not None
+    assert (record.behaviour, record.mid.rla_id) == ("straight_on", 8)
+    refused = block.say(ReplaceAction, 4, "straight_on")
+    assert told(refused) == (False, "mid-level RLA 8 says straight_on there already; delete mid-level RLA 4 instead")
+
+
+def test_a_correction_to_another_way_changes_the_one_that_was_gone(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    record = block.say(Correct, "turn_right", None, MID)
+    assert told(record) == (True, "mid-level RLA 4 corrected: turn_right instead of turn_left")
+    assert record.behaviour == "turn_right"

@@ -44,11 +44,20 @@ class MidLessons:
         return _known(Meant(moment.vector, "", MID, moment.rla_id, share))
 
     def taught(self, command: Teach | Correct) -> None:
-        """A lesson of the mid level was given just now: where it is about the present, it ends what went before it."""
+        """A lesson of the mid level was given just now: where it is about the present, it ends what went before it.
+
+        Where another RLA on the same condition goes before the one that was taught, the robot still goes that way now.
+        """
         if isinstance(command, Teach) and command.beside:
             return  # what else is possible says nothing of what is to be done
-        if np.array_equal(self.meant(command.decision_tick).vector, self.mid.vector):
-            self.mid.release()
+        mid = self.mid
+        if not np.array_equal(self.meant(command.decision_tick).vector, mid.vector):
+            return
+        match = mid.system.match(mid.vector, level=MID)
+        if match is None or not match.known or match.rla.action == command.action:
+            mid.release()
+        else:
+            mid.override(command.action)
 
 
 def _known(meant: Meant) -> Meant:

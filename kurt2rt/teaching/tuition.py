@@ -69,6 +69,9 @@ class Tuition:
             case ReplaceAction(rla_id=rla_id, action=action):
                 rla = self._require_rla(rla_id)
                 self._require_action_of(rla.level, action)
+                other = self._other_way(action, rla)
+                if other is not None:
+                    raise RefusedError(f"{other.title} says {action} there already; delete {rla.title} instead")
                 return self._replace(rla, action, origin)
             case DeleteRla(rla_id=rla_id):
                 return f"{self._require_rla(rla_id).title} deleted", RlaDeleted(rla_id, origin)
@@ -100,11 +103,16 @@ class Tuition:
             replace_within_share = meant.insert_beyond_share
         elif nearest is not None and nearest.rla.asks:
             replace_within_share = meant.insert_beyond_share  # it waits for this answer
+        elif meant.level == MID and nearest is not None and _may_not_stand_beside(nearest, meant):
+            return self._beside(command.action, meant, nearest, origin)
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
             return self._create(command.action, meant, origin)
         rla = self._of_competitors(nearest.rla, meant)
         if rla.action == command.action:
             return f"{rla.title} says {command.action} already", None
+        other = self._other_way(command.action, rla)
+        if other is not None:
+            return f"{other.title} says {command.action} there already; nothing was changed", None
         return self._replace(rla, command.action, origin)
 
     def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> Meant:
@@ -159,6 +167,12 @@ class Tuition:
         if rla.asks:
             return f"{rla.title} answered anew: {action}", event
         return f"{rla.title} corrected: {action} instead of {rla.action}", event
+
+    def _other_way(self, action: str, rla: Rla) -> Rla | None:
+        """Another RLA on the same condition that says so: at the mid level they are ways, and no two are the same."""
+        if rla.level != MID or rla.asks:
+            return None
+        return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
 
     def _reward(self, command: Reward, origin: Origin) -> Taught:
         meant = self._meant(command.decision_tick)
@@ -223,6 +237,15 @@ class Tuition:
     def _require_known(self, tick: int) -> None:
         if not self._recent.knows(tick):
             raise RefusedError(f"the decision of tick {tick} is not remembered any more; look at the newest picture")
+
+
+def _may_not_stand_beside(nearest: Match, meant: Meant) -> bool:
+    """Whether a situation is at a place that is known, where a second one so near would be the same place twice."""
+    return (
+        meant.insert_beyond_share > 0.0
+        and nearest.known
+        and (nearest.distance <= meant.insert_beyond_share * nearest.radius)
+    )
 
 
 def require_action(action: str, repertoire: Iterable[str]) -> None:
