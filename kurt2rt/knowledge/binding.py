@@ -1,6 +1,6 @@
 """What knowledge is bound to: the features it was taught with, and the task."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -33,10 +33,13 @@ class KnowledgeBinding:
     """Features of further levels than the basic one, by the level's name."""
 
 
-def require_same(taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path) -> None:
+def require_same(
+    taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path, has_lessons: Callable[[str], bool]
+) -> None:
     """Refuse knowledge of other features or of another task: raises KnowledgeError that names the difference.
 
-    A level that only one of the two has is no difference: it is added, or left alone.
+    A level that only one of the two has is no difference: it is added, or left alone. Nor is one that was never taught
+    anything, as `has_lessons` tells: it is bound anew.
     """
     here = LevelFeatures(wanted.feature_hash, wanted.feature_names)
     there = LevelFeatures(taught.feature_hash, taught.feature_names)
@@ -53,7 +56,7 @@ def require_same(taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path)
         )
     for level, features in wanted.levels.items():
         of_file = taught.levels.get(level, features)
-        if of_file != features:
+        if of_file != features and has_lessons(level):
             difference = _difference(of_file, features, "what they are made from differs")
             raise KnowledgeError(
                 f"{path}: its level {level} was taught with other features: {difference}; "

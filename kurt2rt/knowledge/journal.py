@@ -44,7 +44,8 @@ class Journal:
                 journal_file.create(path, binding)
             connection = journal_file.connect(path, "mode=rw")
             try:
-                require_same(journal_file.read_binding(connection, path), binding, path)
+                taught = journal_file.read_binding(connection, path)
+                require_same(taught, binding, path, lambda level: journal_file.has_lessons(connection, path, level))
                 journal_file.make_durable(connection, path)
                 journal_file.complete(connection, path, binding.levels)
                 return cls(path, connection, lock)
@@ -134,6 +135,10 @@ class Journal:
         with self._reading():
             for row in self._connection.execute(_ROWS):
                 yield read_row(row, self._where(row))
+
+    def has_lessons_at(self, level: str) -> bool:
+        """Whether anything was ever taught at a level other than the basic one, or named there."""
+        return journal_file.has_lessons(self._connection, self.path, level)
 
     def events(self) -> list[TeachingEvent]:
         """All teaching events in order: what an RLA system is the fold of."""

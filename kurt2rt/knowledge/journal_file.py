@@ -216,9 +216,12 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, LevelFeatures]) -> None:
-    """Add what a file lacks that was begun by an earlier kurt2rt, or without these levels. Raises KnowledgeError."""
+    """Add what a file lacks that was begun by an earlier kurt2rt, or without these levels. Raises KnowledgeError.
+
+    Levels that it has with other features are bound anew: nothing must have been taught there.
+    """
     known = read_binding(connection, path).levels
-    missing = {level: features for level, features in levels.items() if level not in known}
+    missing = {level: features for level, features in levels.items() if known.get(level) != features}
     try:
         tables = [statement for name, statement in LATER_TABLES.items() if not has_table(connection, name)]
         if not missing and not tables:
@@ -227,7 +230,7 @@ def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, Le
         try:
             for statement in tables:
                 connection.execute(statement)
-            connection.executemany("INSERT INTO binding VALUES (?, ?)", _level_rows(missing).items())
+            connection.executemany("INSERT OR REPLACE INTO binding VALUES (?, ?)", _level_rows(missing).items())
             connection.execute("COMMIT")
         except BaseException:
             if connection.in_transaction:
@@ -235,6 +238,16 @@ def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, Le
             raise
     except sqlite3.Error as error:
         raise explained(error, path) from error
+
+
+def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
+    """Whether any lesson, of those that were undone too, is about a level other than basic. Raises KnowledgeError."""
+    about = f'"level":{json.dumps(level)}'  # as events are written; within a name its quotes would be escaped
+    try:
+        found = connection.execute("SELECT 1 FROM lesson WHERE instr(event, ?) LIMIT 1", (about,)).fetchone()
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    return found is not None
 
 
 def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:

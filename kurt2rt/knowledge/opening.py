@@ -78,7 +78,7 @@ def read_lessons(
     `beside_its_writer`: it may be this very process that writes it.
     """
     with Journal.beside_its_writer(path) if beside_its_writer else Journal.read_only(path) as journal:
-        require_same(journal.binding, _binding(settings, task), path)
+        require_same(journal.binding, _binding(settings, task), path, journal.has_lessons_at)
         entries = journal.entries()
         fold_entries(journal, entries, radius=math.inf)
         return [entry.event for entry in entries]

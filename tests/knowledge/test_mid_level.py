@@ -23,6 +23,7 @@ from tests.knowledge.test_show import printed, rows
 STREETS = load_task("streets")
 TURNS = load_mid("turns")
 ROUTE = STREETS.model_copy(update={"name": "route", "system": "streets", "mid": "turns"})
+ERRANDS = load_task("errands")
 
 
 def basic(rla_id: int) -> RlaCreated:
@@ -57,6 +58,27 @@ def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
     with opened.journal as journal:
         assert opened.events == [basic(1), way(2, 1, 2)]
         assert journal.binding.levels[MID] == features(TURNS)  # stays for who comes with a mid level
+
+
+def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Path) -> None:
+    write(path, basic(1))
+    assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
+    place = RlaCreated(Rla(2, (0.0,) * 6, "turn_left", None, origin("create-2"), level=MID))
+    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+        journal.append([JournalEntry(place, STAMP)])
+    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+        assert journal.binding.levels[MID] == features(load_mid("places"))
+        assert journal.events() == [basic(1), place]
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        open_knowledge(path, ROBOT, ROUTE)
+
+
+def test_a_way_that_was_undone_still_was_taught_in_its_features(path: Path) -> None:
+    write(path, basic(1), way(2, 1), undone("create-2"))
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        open_knowledge(path, ROBOT, ERRANDS)
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        read_lessons(path, ROBOT, ERRANDS)
 
 
 def test_ways_are_not_told_from_other_junctions(path: Path) -> None:

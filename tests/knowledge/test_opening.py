@@ -145,13 +145,23 @@ def test_a_level_that_a_file_lacks_is_added_and_one_that_the_robot_lacks_is_left
 def test_a_level_of_other_features_is_refused_and_the_difference_named(
     path: Path, features: LevelFeatures, difference: str
 ) -> None:
-    Journal.open(path, WITH_CRITIC).close()
+    with Journal.open(path, WITH_CRITIC) as journal:
+        journal.append([JournalEntry(appraisal(1), STAMP)])
 
     message = refusal(path, replace(BINDING, levels={CRITIC: features}))
 
     assert "its level critic was taught with other features: " in message
     assert difference in message
     assert message.endswith("use the critic settings it was taught with, or give another knowledge file")
+
+
+def test_a_level_that_nothing_was_taught_at_is_bound_anew(path: Path) -> None:
+    Journal.open(path, WITH_CRITIC).close()
+    other = replace(BINDING, levels={CRITIC: LevelFeatures("0", ("left_m", "speed_m_s"))})
+    with Journal.open(path, other) as journal:
+        assert journal.binding == other
+        journal.append([JournalEntry(appraisal(1, (0.4, 0.2)), STAMP)])
+    assert "its level critic was taught with other features: " in refusal(path, WITH_CRITIC)
 
 
 def test_an_rla_of_a_level_that_the_file_does_not_know_is_found(path: Path) -> None:
