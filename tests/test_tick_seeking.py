@@ -188,6 +188,25 @@ def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
     assert (plan.course, plan.rla_id, record.decision.driving) == (Course.PLANNING, None, True)
 
 
+def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.go()
+    block.teach("straight_on")
+    block.say(NameSituation, "yard")
+    block.say(BeAt, "here")
+    block.run()
+    block.robot.left_m = block.robot.right_m = 0.2  # so fast that it is far on before the plan stands
+    block.seek(NamedGoal("yard"))
+    step = block.plan()
+    block.robot.left_m = block.robot.right_m = 0.0
+    assert step.says == "on the way to yard: the plan begins behind the next junction"
+    assert block.run().behaviour == "turn_left"
+    block.go()
+    assert block.plan().behaviours == ("turn_left", "turn_left", "turn_left", "straight_on")
+
+
 def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Block) -> None:
     block.seek(DOOR)
     ticks = 0

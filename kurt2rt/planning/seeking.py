@@ -10,8 +10,8 @@ from kurt2rt.planning.survey import Survey
 from kurt2rt.planning.target import GroupAt, Target, Vector
 from kurt2rt.rla.rla import Rla
 
-PIECES = 20
-"""RLAs and places that are looked at in one tick, for a plan; each takes some 30 us."""
+PIECES = 16
+"""RLAs and places that are looked at in one tick, for a plan; each takes 30 to 60 us."""
 
 
 class Seeking:
