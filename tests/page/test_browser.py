@@ -447,7 +447,7 @@ def test_the_critic_of_a_robot_that_drives_is_taught_by_touch(a_phone: Phone, ro
     phone.touch("#tab-teach")
     for appraisal, value in (("good", 1), ("bad", -1)):
         phone.touch(f"[data-appraisal={appraisal}]")
-        assert f": {appraisal}" in said(phone) or "too" in said(phone)
+        phone.wait(lambda: f": {appraisal}" in said(phone) or "too" in said(phone), "the order is told")  # noqa: B023
         phone.wait(lambda: room.state().opinion == value, "the critic thinks so, too")  # noqa: B023 - called at once
         phone.wait(lambda: appraisal in phone.text("#opinion"), "the page says so")  # noqa: B023
     phone.show("12-critic")
