@@ -46,9 +46,9 @@ class Town:
             for on in self.on_from(street).values():
                 self._graph.add_edge(street, on, length_m=street.length_m)
 
-    def street_at(self, pose: Pose, outside_m: float = 0.0) -> Street | None:
-        """The street that a pose lies in and looks along; None within a junction, or not farther out than that."""
-        if any(each.holds(pose, outside_m) for each in self._map.junctions):
+    def street_at(self, pose: Pose) -> Street | None:
+        """The street that a pose lies in and looks along; None within a junction."""
+        if any(each.holds(pose) for each in self._map.junctions):
             return None
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
         ahead = self._map.next_junction(pose, way)

@@ -92,13 +92,14 @@ async def lead_about(
     guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)
     way = WayMade(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
     home = arena.pose
+    unanswered_ticks = round(task.teaching.rescue_after_s / period_s)
     ticks, per_second = round(task.teaching.duration_s / period_s), round(1 / period_s)
     trail: list[tuple[float, float]] = []
-    rescues = corrections = mid_asks = latched_ticks = 0
+    rescues = corrections = mid_asks = latched_ticks = asked_ticks = 0
     asking = False
 
     def after_tick(record: TickRecord) -> None:
-        nonlocal rescues, corrections, mid_asks, latched_ticks, asking
+        nonlocal rescues, corrections, mid_asks, latched_ticks, asked_ticks, asking
         require_carried_out(record, task)
         decision = record.decision
         walk.follow(arena.pose)
@@ -115,7 +116,8 @@ async def lead_about(
             latched_ticks = 0
         mid_asks += decision.asking and decision.asks_at == MID and not asking
         asking = decision.asking
-        if asking:
+        asked_ticks = asked_ticks + 1 if asking else 0
+        if asking and asked_ticks < unanswered_ticks:
             way.restart()
         elif way.none_since_window(arena.position):
             arena.put(home)
