@@ -1,6 +1,5 @@
 """What decides a result shows in its fingerprint, and what does not decide it doesn't."""
 
-
 import pytest
 
 from kurt2rt.experiments.kept.made_of import Fingerprints, code_of, sources
