@@ -44,7 +44,7 @@ Shorten = Callable[[Sequence[str]], list[str]]
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
-    "lesson": lambda words: [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"],
+    "lesson": lambda words: shortened_lesson(words),
     "paper": lambda _: ["paper", "--quick", "--task", "circle", "--no-plain"],
     "phases": lambda _: ["phases", "--help"],  # a quick run of all phases is tests/cli/test_phases.py
     "run": lambda words: [*words, "--seconds", "2", "--port", "0", "--page-port", "0"],
@@ -54,6 +54,14 @@ LONG: dict[str, Shorten] = {
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick", "--only", "match"],
 }
+
+
+def shortened_lesson(words: Sequence[str]) -> list[str]:
+    if words[1] in ("route", "errands"):  # short ones are in tests/cli and tests/experiments
+        return ["lesson", "--help"]
+    return [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"]
+
+
 TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
 
 
