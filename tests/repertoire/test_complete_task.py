@@ -78,7 +78,7 @@ def test_a_task_that_goes_by_places_is_no_action_for_none_of_it_says_where_it_be
 
 
 def test_mid_level_knowledge_of_other_junctions_is_refused(tmp_path: Path) -> None:
-    action = patrol(tmp_path)
+    action = patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID))
     task = load_task(str(tmp_path / "patrol.yaml"))
     mid = yaml.safe_load((CONFIG_DIR / "mid_levels" / "turns.yaml").read_text(encoding="utf-8"))
     mid["junctions"]["wall_m"] += 0.05
