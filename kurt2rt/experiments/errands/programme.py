@@ -10,7 +10,7 @@ from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome
 from kurt2rt.experiments.errands.robot import CONTROLS, PLANNING
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.kept.doing import do_jobs
+from kurt2rt.experiments.kept.doing import do_waves
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
@@ -87,15 +87,7 @@ def robot_time_s(programme: Programme, results: Results) -> float:
 
 def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
     """Do the jobs that are missing, wave by wave. Raises StudyError and what a job raises."""
-    before_s = 0.0
-    for wave in programme.waves:
-        jobs = [wave[place] for place in results.missing(wave)]
-
-        def look(standing: Standing, before_s: float = before_s) -> None:
-            on_standing(Standing(before_s + standing.done_s, standing.running))
-
-        do_jobs(jobs, processes, look)
-        before_s += sum(job.robot_time_s for job in jobs)
+    do_waves(programme.waves, results, processes, on_standing)
 
 
 def read_outcomes(programme: Programme, results: Results) -> tuple[ErrandsOutcome, ...]:

@@ -1,9 +1,15 @@
 """Does jobs that each leave their own result."""
 
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 from kurt2rt.experiments.error import JobKilledError, StudyError
+from kurt2rt.experiments.kept.results import Kept, Results
 from kurt2rt.experiments.pool import Job, Standing, run_jobs
+
+
+class KeptJob(Kept, Job[None], Protocol):
+    """A job that leaves its result in a file."""
 
 
 def do_jobs(jobs: Sequence[Job[None]], processes: int, on_standing: Callable[[Standing], None]) -> None:
@@ -12,3 +18,21 @@ def do_jobs(jobs: Sequence[Job[None]], processes: int, on_standing: Callable[[St
         run_jobs(jobs, processes, on_standing=on_standing)
     except JobKilledError as error:
         raise StudyError(f"{error}; run again, it goes on where it was (with fewer --jobs it needs less)") from error
+
+
+def do_waves(
+    waves: Sequence[Sequence[KeptJob]], results: Results, processes: int, on_standing: Callable[[Standing], None]
+) -> None:
+    """Do the jobs that are missing, wave by wave, for each needs only those before it.
+
+    `on_standing` hears of all waves together. Raises as `do_jobs`.
+    """
+    before_s = 0.0
+    for wave in waves:
+        jobs = [wave[place] for place in results.missing(wave)]
+
+        def look(standing: Standing, before_s: float = before_s) -> None:
+            on_standing(Standing(before_s + standing.done_s, standing.running))
+
+        do_jobs(jobs, processes, look)
+        before_s += sum(job.robot_time_s for job in jobs)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kurt2rt.experiments.kept.doing import do_jobs
+from kurt2rt.experiments.kept.doing import do_waves
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome
 from kurt2rt.experiments.phases.programme import Programme
@@ -26,15 +26,7 @@ def conduct(programme: Programme, results: Results, processes: int, on_standing:
 
     Raises StudyError and what a job raises.
     """
-    before_s = 0.0
-    for wave in programme.waves:
-        jobs = [wave[place] for place in results.missing(wave)]
-
-        def look(standing: Standing, before_s: float = before_s) -> None:
-            on_standing(Standing(before_s + standing.done_s, standing.running))
-
-        do_jobs(jobs, processes, look)
-        before_s += sum(job.robot_time_s for job in jobs)
+    do_waves(programme.waves, results, processes, on_standing)
 
 
 def read_study(programme: Programme, results: Results) -> Study:
