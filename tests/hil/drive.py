@@ -17,6 +17,7 @@ from tests.simbridge.rig import room
 FORWARD = WheelSpeeds(0.3, 0.3)
 _MOST_TICKS = 500
 _PAUSE_S = 0.001
+_SETTLES_S = 0.2
 
 
 class Drive:
@@ -39,6 +40,8 @@ class Drive:
     ) -> None:
         self.kurt2.close()
         self._far_end.shutdown()
+        # The kernel's own thread delivers its last brakes; the next robot must not hear them as another sender's.
+        time.sleep(_SETTLES_S)
 
     @property
     def now_s(self) -> float:
