@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from behaviors.judges.judge import Circumstances
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.agreement import Agreement
@@ -111,7 +110,7 @@ def build_runtime(
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = weights_of(definition, changed, task.learning.past_weight, task.name)
     critic = load_critic(task.critic)
-    appraisals = Space(len(Circumstances._fields), critic.learning.radius, critic.learning.weight_vector)
+    appraisals = Space(len(critic.names), critic.learning.radius, critic.weight_vector)
     others = {CRITIC: appraisals}
     mid_settings = None if task.mid is None else load_mid(task.mid)
     if mid_settings is not None:

@@ -154,6 +154,8 @@ class Tick:
         surprise = None
         if self._expecting is not None:
             surprise = self._expecting.see(tick, decision, situation, behaviour, driving=self._driving)
+            if surprise is not None and surprise.surprising and self._circumstances is not None:
+                self._circumstances.be_surprised()
         self._statistics.count(decision.rla_id if self._driving else None)
         self._mid_uses.count(decision, driving=self._driving)
         # A robot that stands blames nobody, also where it is the guard that has it stand.

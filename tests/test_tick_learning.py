@@ -18,7 +18,7 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -34,12 +34,17 @@ class Drive:
     """The shipped robot, all sensors of which show one count, and one tick in a call."""
 
     def __init__(
-        self, events: Sequence[TeachingEvent] = (), *, saved: Statistics | None = None, asked: bool = True
+        self,
+        events: Sequence[TeachingEvent] = (),
+        *,
+        saved: Statistics | None = None,
+        asked: bool = True,
+        task: TaskSettings = TASK,
     ) -> None:
         self.robot = WideRobot()
         self.notebook = Notebook()
         clock = LockstepClock(lambda: None)
-        self.runtime = build_runtime(self.robot, ROBOT, TASK, events, self.notebook, clock, saved=saved, asked=asked)
+        self.runtime = build_runtime(self.robot, ROBOT, task, events, self.notebook, clock, saved=saved, asked=asked)
         self.tick = 0
 
     def run(self, *commands: Command, ticks: int = 1, counts: int | None = None) -> TickRecord:

@@ -31,6 +31,8 @@ class Circumstances(NamedTuple):
     """1.0 when the robot drives and gets nowhere, else 0.0."""
     no_wall: float
     """1.0 when it has had no wall beside it for long, else 0.0."""
+    surprised: float = 0.0
+    """1.0 when something else than expected came a moment ago, else 0.0; 0.0 for a critic that does not look at it."""
 
 
 class Judge(Protocol):

@@ -39,6 +39,7 @@ class Critic:
     def __init__(self, system: RlaSystem, settings: CriticSettings) -> None:
         self.settings = settings
         self._system = system
+        self._dimensions = len(settings.names)
         self._appraisals: dict[str, AppraisalSettings] = {each.name: each for each in settings.appraisals}
         self._thought: Opinion | None = None
         self._lessons = -1
@@ -68,7 +69,7 @@ class Critic:
 
     def vector_of(self, circumstances: Circumstances) -> NDArray[np.float64]:
         """Appraisal situation vector (d,), unweighted, for `opinion` and for conditions."""
-        return np.array(circumstances, dtype=np.float64)
+        return np.array(circumstances[: self._dimensions], dtype=np.float64)
 
     def opinion(self, vector: NDArray[np.float64]) -> Opinion | None:
         """What it thinks of an appraisal situation vector (d,); None before its first lesson."""

@@ -19,8 +19,9 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-NAMES = Circumstances._fields
-"""Of the features of an appraisal situation, in their order."""
+*_ALWAYS, SURPRISED = Circumstances._fields
+NAMES = tuple(_ALWAYS)
+"""Of the features of an appraisal situation, in their order; a critic may look at SURPRISED, too."""
 
 
 class AppraisalSettings(Settings):
@@ -64,6 +65,8 @@ class CircumstancesSettings(Settings):
     no_progress_s: Annotated[float, Field(gt=0, le=60)]
     no_progress_m: Metres
     """Less way than this in that time, from where to where, while it drives, is no progress."""
+    surprise_held_s: Seconds | None = None
+    """Something surprising (kurt2rt.expectations) is a circumstance for so long; left out: it is none."""
 
 
 class CircumstanceWeights(Settings):
@@ -82,10 +85,11 @@ class CircumstanceWeights(Settings):
     bumped: Weight = 0.0
     no_progress: Weight = 0.0
     no_wall: Weight = 0.0
+    surprised: Weight = 0.0
 
     @model_validator(mode="after")
     def _something_counts(self) -> Self:
-        if not any(getattr(self, name) for name in NAMES):
+        if not any(getattr(self, name) for name in (*NAMES, SURPRISED)):
             raise ValueError("every circumstance weighs 0; give one more")
         return self
 
@@ -97,11 +101,6 @@ class CriticLearningSettings(Settings):
     insert_beyond_share: Share
     """Another opinion farther than this share of the radius from the nearest condition inserts, else it replaces."""
     weights: CircumstanceWeights
-
-    @property
-    def weight_vector(self) -> NDArray[np.float64]:
-        """Weights (d,) in the order of Circumstances."""
-        return np.array([getattr(self.weights, name) for name in NAMES], dtype=np.float64)
 
 
 class AgreementSettings(Settings):
@@ -179,6 +178,22 @@ class CriticSettings(Settings):
             raise ValueError("there must be one of value -1 and one of value 1")
         return appraisals
 
+    @model_validator(mode="after")
+    def _surprise_is_weighed_where_it_is_seen(self) -> Self:
+        if self.learning.weights.surprised and self.perception.surprise_held_s is None:
+            raise ValueError("learning.weights.surprised weighs nothing; say perception.surprise_held_s, too")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the features that it looks at."""
+        return NAMES if self.perception.surprise_held_s is None else (*NAMES, SURPRISED)
+
+    @property
+    def weight_vector(self) -> NDArray[np.float64]:
+        """Weights (d,) in the order of its features."""
+        return np.array([getattr(self.learning.weights, name) for name in self.names], dtype=np.float64)
+
     @property
     def values(self) -> dict[str, int]:
         """What each appraisal is worth, by its name."""
@@ -190,7 +205,8 @@ class CriticSettings(Settings):
 
         Radius, weights and the rest are no part of it: with other ones the same appraisals have other borders.
         """
-        content = {"names": list(NAMES), "perception": self.perception.model_dump(mode="json")}
+        perception = self.perception.model_dump(mode="json", exclude_none=True)
+        content = {"names": list(self.names), "perception": perception}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 

@@ -43,6 +43,7 @@ class CircumstancesPerception:
         self._period_s = period_s
         self._share_of_new = 1.0 - math.exp(-period_s / want.smoothing_s)
         self._bump_held_ticks = round(want.bump_held_s / period_s)
+        self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
         self._no_wall_ticks = round(want.no_wall_s / period_s)
         self._stale_infrared_s = robot.guard.stale_infrared_s
         steps = max(1, round(want.no_progress_s / period_s))
@@ -54,9 +55,14 @@ class CircumstancesPerception:
         """Forget what was: the robot has just been switched on, or was blind."""
         self._speed_m_s = self._turn_rad_s = 0.0
         self._since_bump = self._bump_held_ticks
+        self._since_surprise = self._surprise_held_ticks
         self._without_wall = 0
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
+
+    def be_surprised(self) -> None:
+        """In the tick before something else came than was expected."""
+        self._since_surprise = -1
 
     def perceive(self, senses: Senses, *, driving: bool) -> Circumstances:
         """Circumstances of this tick; `driving`: whether an action drove the wheels until now.
@@ -70,6 +76,7 @@ class CircumstancesPerception:
             senses.encoder_left_ticks * self._metres_per_tick, senses.encoder_right_ticks * self._metres_per_tick
         )
         self._since_bump = 0 if senses.bumpers else self._since_bump + 1
+        self._since_surprise += 1
         if distance_m[max(self._wall(counts))] < self._wall_m:
             self._without_wall = 0
         elif driving:
@@ -88,6 +95,7 @@ class CircumstancesPerception:
             1.0 if self._since_bump < self._bump_held_ticks else 0.0,
             1.0 if self._gets_nowhere(driving=driving) else 0.0,
             1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
+            1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:

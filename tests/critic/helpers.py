@@ -3,7 +3,7 @@
 from itertools import count
 
 from behaviors.judges.judge import Circumstances
-from kurt2rt.critic.settings import load_critic
+from kurt2rt.critic.settings import NAMES, load_critic
 from kurt2rt.rla.rla import CRITIC, Origin, Phase, Rla, RlaCreated
 
 SETTINGS = load_critic()
@@ -20,4 +20,4 @@ def origin(command_id: str | None = None, teacher: str = "ada", phase: Phase = P
 def appraisal(
     rla_id: int, action: str, circumstances: Circumstances = FREE, said_by: Origin | None = None
 ) -> RlaCreated:
-    return RlaCreated(Rla(rla_id, tuple(circumstances), action, None, said_by or origin(), level=CRITIC))
+    return RlaCreated(Rla(rla_id, tuple(circumstances)[: len(NAMES)], action, None, said_by or origin(), level=CRITIC))

@@ -14,8 +14,8 @@ CLOSE = FREE._replace(front_m=0.12)
 
 
 def system() -> RlaSystem:
-    learning = SETTINGS.learning
-    return RlaSystem(2, 1.0, others={CRITIC: Space(len(NAMES), learning.radius, learning.weight_vector)})
+    space = Space(len(SETTINGS.names), SETTINGS.learning.radius, SETTINGS.weight_vector)
+    return RlaSystem(2, 1.0, others={CRITIC: space})
 
 
 def test_before_its_first_lesson_it_thinks_nothing() -> None:
@@ -78,7 +78,7 @@ def test_it_thinks_anew_every_few_ticks_and_after_each_lesson() -> None:
 
 def test_circumstances_become_numbers_in_their_order() -> None:
     critic = Critic(system(), SETTINGS)
-    assert critic.vector_of(FREE).tolist() == list(FREE)
+    assert critic.vector_of(FREE).tolist() == list(FREE)[: len(NAMES)]
     assert critic.vector_of(FREE).dtype == np.float64
     assert critic.appraisals == ("bad", "neutral", "good")
     assert 0 < critic.insert_beyond <= SETTINGS.learning.radius

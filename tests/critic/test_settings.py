@@ -8,7 +8,7 @@ import pytest
 
 from hal.settings import SettingsError, load_settings
 from kurt2rt.critic.features import features
-from kurt2rt.critic.settings import NAMES, CircumstanceWeights, CriticSettings, load_critic
+from kurt2rt.critic.settings import NAMES, SURPRISED, CircumstanceWeights, CriticSettings, load_critic
 from kurt2rt.tasks.settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
@@ -67,7 +67,7 @@ def test_what_makes_no_sense_is_refused(content: dict[str, Any], told: str) -> N
 
 
 def test_each_circumstance_may_be_weighed_and_nothing_else(tmp_path: Path) -> None:
-    assert set(CircumstanceWeights.model_fields) == set(NAMES)
+    assert set(CircumstanceWeights.model_fields) == {*NAMES, SURPRISED}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights.lift_m: no such key; allowed here: left_m, front_m, right_m"):
@@ -79,4 +79,18 @@ def test_a_critic_of_ones_own_may_know_more(tmp_path: Path) -> None:
     long = {"name": "bad_for_long", "value": -1, "trace_s": 3.0}
     mine.write_text(json.dumps(CONTENT | {"appraisals": [*CONTENT["appraisals"], long]}))
     assert load_settings(mine, CriticSettings).values["bad_for_long"] == -1
-    assert load_critic(str(mine)).learning.weight_vector.shape == (len(NAMES),)
+    assert load_critic(str(mine)).weight_vector.shape == (len(NAMES),)
+
+
+def test_surprise_is_a_feature_of_those_that_hold_it_and_of_no_others() -> None:
+    shipped = load_critic()
+    content = json.loads(shipped.model_dump_json())
+    content["perception"]["surprise_held_s"] = 1.0
+    content["learning"]["weights"]["surprised"] = 2.0
+    surprised = CriticSettings.model_validate_json(json.dumps(content))
+    assert (shipped.names, surprised.names) == (NAMES, (*NAMES, SURPRISED))
+    assert surprised.weight_vector.tolist() == [*shipped.weight_vector.tolist(), 2.0]
+    assert surprised.feature_hash != shipped.feature_hash
+    del content["perception"]["surprise_held_s"]
+    with pytest.raises(ValueError, match=r"weights\.surprised weighs nothing; say perception\.surprise_held_s, too"):
+        CriticSettings.model_validate_json(json.dumps(content))

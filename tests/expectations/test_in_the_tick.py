@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.expectations.expectation import Expectation, pack
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.knowledge.statistics import Statistics
@@ -21,7 +22,7 @@ from kurt2rt.teaching.commands import (
 )
 from kurt2rt.tick import TickRecord
 from tests.rla.helpers import created
-from tests.test_tick_learning import Drive
+from tests.test_tick_learning import TASK, Drive
 from tests.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
 
 NEAR, FAR = 400, 50
@@ -70,6 +71,21 @@ def test_the_tick_in_which_an_rla_ends_tells_how_surprising_that_is(drive: Drive
     other = drive.run(counts=FAR + 60)
     assert other.surprise is not None
     assert other.surprise.surprising
+
+
+def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
+    shipped = load_critic()
+    held = shipped.perception.model_copy(update={"surprise_held_s": 0.05})
+    task = TASK.model_copy(update={"critic": shipped.model_copy(update={"perception": held})})
+    again = Drive(drive.notebook.events, task=task)
+    again.run(Resume("r-1", "Ann"), counts=NEAR)
+    comes_and_goes(again, times=8)
+    again.run(counts=NEAR, ticks=30)
+    before = again.run(counts=FAR + 60)
+    assert before.surprise is not None
+    assert before.surprise.surprising
+    seen = [again.run().circumstances for _ in range(7)]
+    assert [each.surprised for each in seen if each is not None] == [1.0] * 5 + [0.0] * 2
 
 
 def test_a_robot_that_is_stopped_expects_nothing_of_it(drive: Drive) -> None:

@@ -185,3 +185,20 @@ def test_a_side_the_wrong_way_round_has_no_angle() -> None:
     sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"right": ["s6", "s5"]}
     with pytest.raises(SettingsError, match="s6 does not sit ahead of s5; give the sensors of a side from front"):
         CircumstancesPerception(changed(sensors=sensors), ROBOT)
+
+
+# Surprise
+
+
+def test_a_surprise_is_a_circumstance_for_as_long_as_it_is_held() -> None:
+    of = CircumstancesPerception(changed(surprise_held_s=1.0), ROBOT)
+    assert of.perceive(senses(), driving=True).surprised == 0.0
+    of.be_surprised()
+    assert after(1.0, of, senses()).surprised == 1.0
+    assert of.perceive(senses(), driving=True).surprised == 0.0
+
+
+def test_a_critic_that_does_not_hold_surprises_sees_none() -> None:
+    of = perception()
+    of.be_surprised()
+    assert after(0.1, of, senses()).surprised == 0.0

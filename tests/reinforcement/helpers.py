@@ -70,7 +70,7 @@ class Track:
         phase: Phase = Phase.REINFORCEMENT,
         saved: Statistics | None = None,
     ) -> None:
-        space = Space(len(FREE), critic.learning.radius, critic.learning.weight_vector)
+        space = Space(len(critic.names), critic.learning.radius, critic.weight_vector)
         self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
         self.recent = RecentDecisions(1)
         self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or SIGNALS_ONLY, PERIOD_S)

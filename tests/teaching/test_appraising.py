@@ -3,6 +3,7 @@
 import pytest
 
 from behaviors.judges.judge import Circumstances
+from kurt2rt.critic.settings import NAMES
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
 from kurt2rt.teaching.authority import Authority
@@ -34,7 +35,7 @@ def test_the_first_appraisal_is_an_rla_of_the_critics_on_the_circumstances_of_th
     assert (result.text, result.lesson) == ("appraisal RLA 2 taught: bad", True)
     event = robot.events[-1]
     assert isinstance(event, RlaCreated)
-    assert (event.rla.level, event.rla.action, event.rla.condition) == (CRITIC, "bad", tuple(CRASHED))
+    assert (event.rla.level, event.rla.action, event.rla.condition) == (CRITIC, "bad", tuple(CRASHED)[: len(NAMES)])
     assert len(robot.system) == 1  # nothing at the wheels has changed
     assert robot.critic.think(robot.tick + 1, CRASHED) is not None
 
@@ -43,7 +44,7 @@ def test_without_a_tick_the_newest_one_is_meant() -> None:
     robot = track()
     robot.go(0.0, 5, CRASHED)
     appraise(robot, "bad")
-    assert robot.system.rlas_at(CRITIC)[0].condition == tuple(CRASHED)
+    assert robot.system.rlas_at(CRITIC)[0].condition == tuple(CRASHED)[: len(NAMES)]
 
 
 def test_the_robot_need_not_drive_to_be_appraised() -> None:
@@ -64,7 +65,7 @@ def test_another_opinion_near_an_appraisal_replaces_and_farther_off_inserts() ->
 
 def beyond(robot: Track) -> Circumstances:
     """Circumstances just farther from CALM than another opinion may replace."""
-    weight = QUICK.learning.weight_vector[Circumstances._fields.index("front_m")]
+    weight = QUICK.weight_vector[Circumstances._fields.index("front_m")]
     return CALM._replace(front_m=CALM.front_m - 1.01 * robot.critic.insert_beyond / weight)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.settings import NAMES
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import CRITIC, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -14,6 +14,8 @@ from kurt2rt.tasks.settings import TaskSettings
 def folded(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
     """The RLA system with all its levels, to look at: it does not match by the task's weights."""
     dimensions = load_situation(task.situation, robot.infrared.names).dimensions
-    system = RlaSystem(dimensions, task.learning.radius, others={CRITIC: Space(len(NAMES), 1.0, None)})
+    system = RlaSystem(
+        dimensions, task.learning.radius, others={CRITIC: Space(len(load_critic(task.critic).names), 1.0, None)}
+    )
     system.apply_all(events)
     return system
