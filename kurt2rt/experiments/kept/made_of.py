@@ -107,6 +107,7 @@ class Fingerprints:
                 of_task,
                 self._settings("situations", task.situation),
                 self._settings("repertoires", task.repertoire),
+                *([self._settings("mid_levels", task.mid)] if isinstance(task.mid, str) else ()),
                 *more,
             ),
             robot=self._robot,

@@ -1,7 +1,10 @@
 """What decides a result shows in its fingerprint, and what does not decide it doesn't."""
 
+from pathlib import Path
+
 import pytest
 
+from config import CONFIG_DIR
 from kurt2rt.experiments.kept.made_of import Fingerprints, code_of, sources
 from kurt2rt.experiments.paper.programme import OWN
 from kurt2rt.tasks.settings import load_task
@@ -25,6 +28,17 @@ def test_a_change_of_the_task_shows(fingerprints: Fingerprints) -> None:
     policy = TASK.model_copy(update={"policy": TASK.policy.model_copy(update={"tolerance_m": 0.03})})
     assert made.differences(fingerprints.of(learning, ("a",))) == ["task"]
     assert made.differences(fingerprints.of(policy, ("a",))) == ["task"]
+
+
+def test_a_change_in_the_file_of_a_mid_level_shows(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.yaml"
+    shipped = (CONFIG_DIR / "mid_levels" / "places.yaml").read_text(encoding="utf-8")
+    mine.write_text(shipped, encoding="utf-8")
+    task = load_task("errands").model_copy(update={"mid": str(mine)})
+    made = Fingerprints(STAGE, ROBOT, "s").of(task, ("manhattan",))
+    assert made == Fingerprints(STAGE, ROBOT, "s").of(task, ("manhattan",))
+    mine.write_text(shipped.replace("wall_m: 0.40", "wall_m: 0.42"), encoding="utf-8")
+    assert made.differences(Fingerprints(STAGE, ROBOT, "s").of(task, ("manhattan",))) == ["task"]
 
 
 def test_what_the_paper_reports_decides_nothing(fingerprints: Fingerprints) -> None:
