@@ -6,12 +6,12 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
-from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult, teach
+from kurt2rt.experiments.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
-from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
-from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
+from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -54,14 +54,10 @@ async def run_lesson(
     """
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
-    opened = go_on_teaching(knowledge, settings, task)
-    with JournalWriter(opened.journal, utc_now) as writer:
+    with lessons_kept(knowledge, settings, task, on_saved) as keeping:
 
         def on_progress(done_s: float) -> None:
-            for acknowledgement in writer.acknowledged():
-                if acknowledgement.error is not None:
-                    raise LessonLostError(f"{knowledge}: {acknowledgement.error}")
-                on_saved(acknowledgement)
+            keeping.look()
             report(f"teaching in world {world}", done_s, whole_s)
 
         arena = stage.open(world, seed, plan.purpose)
@@ -70,20 +66,18 @@ async def run_lesson(
                 arena,
                 settings,
                 task,
-                writer,
-                opened.events,
+                keeping.writer,
+                keeping.opened.events,
                 seed=seed,
                 on_progress=on_progress,
-                statistics=opened.counter,
-                saved=opened.saved,
+                statistics=keeping.opened.counter,
+                saved=keeping.opened.saved,
                 plan=plan,
             )
         finally:
             arena.close()
-        writer.submit_statistics(lesson.saved)
-        if not writer.flush(timeout_s=30.0):
-            raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
-        on_progress(whole_s)
+        keeping.end(lesson.saved)
+        report(f"teaching in world {world}", whole_s, whole_s)
     return lesson, read_lessons(knowledge, settings, task)
 
 

@@ -13,10 +13,9 @@ from kurt2rt.experiments.errands.exam import run_errands
 from kurt2rt.experiments.errands.goals import choose_goals
 from kurt2rt.experiments.errands.lesson import errands_of, lead_about, walk_in
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How, Place
-from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
-from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.experiments.lesson_keeping import lessons_kept
+from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import TaskSettings
 
 PLANNING: tuple[How, ...] = ("planning",)
@@ -40,14 +39,12 @@ async def teach_and_send(
     Raises KnowledgeError, SettingsError, LessonLostError.
     """
     world, exam_world = task.teaching.world, task.exam.worlds[0]
-    opened = go_on_teaching(knowledge, settings, task)
-    with JournalWriter(opened.journal, utc_now) as writer:
+    whole_s = task.teaching.duration_s
+    with lessons_kept(knowledge, settings, task) as keeping:
 
         def on_progress(done_s: float) -> None:
-            for acknowledgement in writer.acknowledged():
-                if acknowledgement.error is not None:
-                    raise LessonLostError(f"{knowledge}: {acknowledgement.error}")
-            report(f"led about world {world}", done_s, task.teaching.duration_s)
+            keeping.look()
+            report(f"led about world {world}", done_s, whole_s)
 
         arena = stage.open(world, seed, "errands")
         try:
@@ -55,19 +52,17 @@ async def teach_and_send(
                 arena,
                 settings,
                 task,
-                writer,
-                opened.events,
+                keeping.writer,
+                keeping.opened.events,
                 seed=seed,
                 on_progress=on_progress,
-                statistics=opened.counter,
-                saved=opened.saved,
+                statistics=keeping.opened.counter,
+                saved=keeping.opened.saved,
             )
         finally:
             arena.close()
-        writer.submit_statistics(led.saved)
-        if not writer.flush(timeout_s=30.0):
-            raise LessonLostError(writer.trouble or f"{knowledge}: the disk did not answer within 30 s")
-        on_progress(task.teaching.duration_s)
+        keeping.end(led.saved)
+        report(f"led about world {world}", whole_s, whole_s)
     events = read_lessons(knowledge, settings, task)
     course, town = errands_of(task), walk_in(stage.plan_of(exam_world), task).town
     start = town.street_at(led.home)

@@ -1,0 +1,53 @@
+"""A knowledge file while a lesson is taught into it."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
+from kurt2rt.tasks.settings import TaskSettings
+
+
+class LessonKeeping:
+    """Keeps lessons, and looks that none is lost."""
+
+    def __init__(
+        self, file: Path, opened: OpenedKnowledge, writer: JournalWriter, on_saved: Callable[[Acknowledgement], None]
+    ) -> None:
+        self.opened = opened
+        """What the file held when it was opened, to go on from."""
+        self.writer = writer
+        """Where lessons go to be kept (kurt2rt.tick.LessonKeeper)."""
+        self._file = file
+        self._on_saved = on_saved
+
+    def look(self) -> None:
+        """Hear what became of lessons so far. Raises LessonLostError."""
+        for acknowledgement in self.writer.acknowledged():
+            if acknowledgement.error is not None:
+                raise LessonLostError(f"{self._file}: {acknowledgement.error}")
+            self._on_saved(acknowledgement)
+
+    def end(self, counted: Statistics) -> None:
+        """Keep what was counted, and wait until all is durable. Raises LessonLostError."""
+        self.writer.submit_statistics(counted)
+        if not self.writer.flush(timeout_s=30.0):
+            raise LessonLostError(self.writer.trouble or f"{self._file}: the disk did not answer within 30 s")
+        self.look()
+
+
+@contextmanager
+def lessons_kept(
+    file: Path,
+    settings: RobotSettings,
+    task: TaskSettings,
+    on_saved: Callable[[Acknowledgement], None] = lambda _: None,
+) -> Iterator[LessonKeeping]:
+    """Go on teaching into a file. `on_saved` hears of each lesson once it is durable. Raises KnowledgeError."""
+    opened = go_on_teaching(file, settings, task)
+    with JournalWriter(opened.journal, utc_now) as writer:
+        yield LessonKeeping(file, opened, writer, on_saved)
