@@ -10,14 +10,13 @@ from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome
 from kurt2rt.experiments.errands.robot import CONTROLS, PLANNING
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.kept.doing import do_waves
+from kurt2rt.experiments.kept.doing import do_waves, time_of_missing_s
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.pool import Standing
 from kurt2rt.experiments.route.job import BasicJob
-from kurt2rt.experiments.route.programme import basic_file
-from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.experiments.route.programme import streets_of
 from kurt2rt.tasks.settings import TaskSettings
 
 OWN = {
@@ -66,23 +65,17 @@ def plan(
     require_course(stage, task, worlds)
     hows = (*PLANNING, *(CONTROLS if controls else ()))
     fingerprints = Fingerprints(stage, robot, source_of(), ("paper", "plain", "phases"))
-    made_basic = fingerprints.of(basic, (basic.teaching.world,))
-    basic_jobs = tuple(BasicJob(stage, robot, basic, seed, made_basic, results) for seed in seeds)
-    files = {job.seed: job.knowledge for job in basic_jobs}
-    lessons = dict.fromkeys(seeds, made_basic.model_dump_json())
-    if basic_folder is not None:
-        files = {seed: basic_file(basic_folder, basic, seed) for seed in seeds}
-        lessons = {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()}
+    streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
     jobs = []
     for seed in seeds:
-        made = fingerprints.of(task, worlds, lessons[seed], " ".join(hows))
-        jobs.append(ErrandsJob(stage, robot, task, hows, seed, files[seed], made, results))
-    return Programme(task, tuple(seeds), basic_jobs if basic_folder is None else (), tuple(jobs))
+        made = fingerprints.of(task, worlds, streets.made_of[seed], " ".join(hows))
+        jobs.append(ErrandsJob(stage, robot, task, hows, seed, streets.files[seed], made, results))
+    return Programme(task, tuple(seeds), streets.jobs, tuple(jobs))
 
 
 def robot_time_s(programme: Programme, results: Results) -> float:
     """What is still to be simulated. Raises StudyError."""
-    return sum(wave[place].robot_time_s for wave in programme.waves for place in results.missing(wave))
+    return time_of_missing_s(programme.waves, results)
 
 
 def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:

@@ -20,6 +20,11 @@ def do_jobs(jobs: Sequence[Job[None]], processes: int, on_standing: Callable[[St
         raise StudyError(f"{error}; run again, it goes on where it was (with fewer --jobs it needs less)") from error
 
 
+def time_of_missing_s(waves: Sequence[Sequence[KeptJob]], results: Results) -> float:
+    """Robot time that is still to be simulated. Raises StudyError."""
+    return sum(wave[place].robot_time_s for wave in waves for place in results.missing(wave))
+
+
 def do_waves(
     waves: Sequence[Sequence[KeptJob]], results: Results, processes: int, on_standing: Callable[[Standing], None]
 ) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
@@ -81,20 +82,14 @@ def plan(
         require_course(stage, each, worlds)
     source = source_of()
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
-    made_basic = fingerprints.of(basic, (basic.teaching.world,))
-    basic_jobs = [BasicJob(stage, robot, basic, seed, made_basic, results) for seed in seeds]
-    files = {job.seed: job.knowledge for job in basic_jobs}
-    lessons = dict.fromkeys(seeds, made_basic.model_dump_json())
-    if basic_folder is not None:
-        files = {seed: basic_file(basic_folder, basic, seed) for seed in seeds}
-        lessons = {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()}
+    streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
 
     def experiment(count: int, variant: Variant) -> Experiment:
         jobs = []
         for seed in seeds:
             own = routes[seed, count]
-            made = fingerprints.of(variant.task(own), worlds, lessons[seed], repr(variant))
-            jobs.append(RouteJob(stage, robot, own, variant, seed, files[seed], made, results))
+            made = fingerprints.of(variant.task(own), worlds, streets.made_of[seed], repr(variant))
+            jobs.append(RouteJob(stage, robot, own, variant, seed, streets.files[seed], made, results))
         return Experiment(count, variant, tuple(jobs))
 
     return Programme(
@@ -102,9 +97,41 @@ def plan(
         basic,
         tuple(seeds),
         source,
-        tuple(basic_jobs) if basic_folder is None else (),
+        streets.jobs,
         tuple(experiment(count, variant) for variant in variants for count in decisions),
     )
+
+
+class Streets(NamedTuple):
+    """What robots are taught before: the streets."""
+
+    jobs: tuple[BasicJob, ...]
+    """Empty where they were taught already."""
+    files: dict[int, Path]
+    """Knowledge of each seed."""
+    made_of: dict[int, str]
+    """What decides that knowledge, or what it holds, of each seed."""
+
+
+def streets_of(
+    basic: TaskSettings,
+    seeds: Sequence[int],
+    stage: StudyStage,
+    robot: RobotSettings,
+    results: Results,
+    fingerprints: Fingerprints,
+    folder: Path | None,
+) -> Streets:
+    """Taught here, or with `folder` taken from files as `kurt2rt lesson` leaves them.
+
+    Raises StudyError, KnowledgeError, SettingsError.
+    """
+    if folder is not None:
+        files = {seed: basic_file(folder, basic, seed) for seed in seeds}
+        return Streets((), files, {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()})
+    made = fingerprints.of(basic, (basic.teaching.world,))
+    jobs = tuple(BasicJob(stage, robot, basic, seed, made, results) for seed in seeds)
+    return Streets(jobs, {job.seed: job.knowledge for job in jobs}, dict.fromkeys(seeds, made.model_dump_json()))
 
 
 def basic_task_of(task: TaskSettings) -> TaskSettings:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from kurt2rt.experiments.kept.doing import do_waves
+from kurt2rt.experiments.kept.doing import do_waves, time_of_missing_s
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.pool import Standing
 from kurt2rt.experiments.report import quartiles
@@ -70,7 +70,7 @@ class Study:
 
 def robot_time_s(programme: Programme, results: Results) -> float:
     """What is still to be simulated. Raises StudyError."""
-    return sum(wave[place].robot_time_s for wave in programme.waves for place in results.missing(wave))
+    return time_of_missing_s(programme.waves, results)
 
 
 def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
