@@ -1,0 +1,106 @@
+"""Reads one file of a recorded run, also one that a power cut tore: up to its last whole chunk."""
+
+import struct
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import zstandard
+from mcap.exceptions import McapError
+from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
+
+from kurt2rt.recording.error import RecordingError
+
+# What mcap raises over bytes that are none of its own, beside its own errors; a wrong checksum is a ValueError.
+_TORN = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
+
+
+class LoggedMessage(NamedTuple):
+    """One message of a recording."""
+
+    topic: str
+    time_ns: int
+    """Since 1970, by the recording's own even clock."""
+    data: bytes
+    schema: str
+    """Name of its schema."""
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentHead:
+    """What stands before the first message of a file."""
+
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    attachments: dict[str, bytes] = field(default_factory=dict)
+
+
+class SegmentReader:
+    """Reads one file; each call reads it anew from its beginning."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.torn = ""
+        """Where and how the file ends too early, in a sentence; empty while nobody has come to a torn place."""
+
+    def head(self) -> SegmentHead:
+        """Metadata and attachments before the first chunk, as far as they are there. Raises RecordingError."""
+        head = SegmentHead()
+        for record in self._records():
+            match record:
+                case Metadata():
+                    head.metadata[record.name] = dict(record.metadata)
+                case Attachment():
+                    head.attachments[record.name] = record.data
+                case Message():
+                    break
+        return head
+
+    def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
+        """Messages of these topics, of all where None, in the order of writing. Raises RecordingError.
+
+        Of a chunk all messages are read, or none. Afterwards `torn` tells whether the file ended as it should.
+        """
+        schemas: dict[int, str] = {0: ""}
+        channels: dict[int, Channel] = {}
+        for record in self._records():
+            match record:
+                case Schema():
+                    schemas[record.id] = record.name
+                case Channel():
+                    channels[record.id] = record
+                case Message():
+                    channel = channels[record.channel_id]
+                    if topics is None or channel.topic in topics:
+                        yield LoggedMessage(channel.topic, record.log_time, record.data, schemas[channel.schema_id])
+
+    def _records(self) -> Iterator[McapRecord]:
+        self.torn = ""
+        try:
+            size = self.path.stat().st_size
+            file = self.path.open("rb")
+        except OSError as error:
+            raise RecordingError(f"{self.path}: cannot be read ({error}); give a recorded run") from error
+        with file:
+            records = _whole_records(StreamReader(file, emit_chunks=True, record_size_limit=size))
+            whole_until = 0
+            while True:
+                try:
+                    several = next(records)
+                except StopIteration:  # after the footer
+                    return
+                except _TORN:
+                    self.torn = (
+                        f"{self.path}: ends without its index; what came after its first {whole_until} bytes was not "
+                        "written, or is still to come"
+                    )
+                    return
+                whole_until = file.tell()
+                yield from several
+
+
+def _whole_records(reader: StreamReader) -> Iterator[list[McapRecord]]:
+    """One record after the other; those of a chunk together, once it has been found whole."""
+    for record in reader.records:
+        yield breakup_chunk(record, validate_crc=True) if isinstance(record, Chunk) else [record]
