@@ -85,6 +85,8 @@ class JournalWriter:
         self._ended = False
         self._submitted = 0
         self._settled = 0
+        self.last_write_s: float | None = None
+        """How long the disk took to keep the last lessons; None before the first."""
         # The worker's own, from here on.
         self._waiting: list[JournalEntry] = []
         self._statistics: Statistics | None = None
@@ -229,7 +231,9 @@ class JournalWriter:
 
     def _write(self) -> None:
         if self._waiting:
+            begun_s = self._clock()
             receipts = self._journal.append(self._waiting)
+            self.last_write_s = self._clock() - begun_s
             self._waiting = []
             for receipt in receipts:
                 self._settle(_acknowledgement(receipt))

@@ -77,5 +77,11 @@ class Ledger:
         """How late ticks began."""
         return self._share(np.array(self._lateness))
 
+    def lateness_of_last(self, ticks: int) -> Share:
+        """How late the last so many ticks began, those that are kept and over."""
+        kept = min(ticks, self.ticks, self._capacity)
+        rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
+        return share_of(np.array(self._lateness)[rows])
+
     def _share(self, nanoseconds: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Share:
         return share_of(nanoseconds[: min(self.ticks, self._capacity)])

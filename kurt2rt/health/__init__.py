@@ -1,0 +1,1 @@
+"""How well the robot's program, its bus, its disk and its machine are."""
