@@ -8,6 +8,7 @@ from kurt2rt.rla.rla import (
     CRITIC,
     ActionReplaced,
     Appraised,
+    LessonRedone,
     LessonUndone,
     RlaCreated,
     RlaRewarded,
@@ -32,6 +33,8 @@ class Agreement:
         """Tick in which the last signal that counts was heard."""
         self._heard: dict[int, deque[tuple[str, bool]]] = {value: deque(maxlen=settings.window) for value in (-1, 0, 1)}
         """Of each value of the teacher's: command id, and whether the critic had said the same."""
+        self._taken_back: dict[str, list[tuple[int, bool]]] = {}
+        """What was heard in lessons that were undone, by command id: the teacher's value, and whether it was right."""
         self._critics: set[int] = set()
         """Ids of all appraisal RLAs that ever lived."""
         self.share: float | None = None
@@ -50,6 +53,9 @@ class Agreement:
         match event:
             case LessonUndone(lesson, _):
                 self._forget(lesson)
+                return
+            case LessonRedone(lesson, _):
+                self._heed_again(lesson)
                 return
             case RlaCreated(rla) if rla.level == CRITIC:
                 self._critics.add(rla.rla_id)
@@ -92,9 +98,16 @@ class Agreement:
 
     def _forget(self, lesson: str) -> None:
         """What was taken back was never said."""
-        for heard in self._heard.values():
+        for value, heard in self._heard.items():
             for each in [each for each in heard if each[0] == lesson]:
                 heard.remove(each)
+                self._taken_back.setdefault(lesson, []).append((value, each[1]))
+        self._sum_up()
+
+    def _heed_again(self, lesson: str) -> None:
+        """What stands again was said, as the newest."""
+        for value, right in self._taken_back.pop(lesson, ()):
+            self._heard[value].append((lesson, right))
         self._sum_up()
 
     def _sum_up(self) -> None:

@@ -8,6 +8,8 @@ from kurt2rt.rla.lesson_book import rla_of
 from kurt2rt.rla.rla import (
     CRITIC,
     Appraised,
+    KnowledgeMerged,
+    LessonRedone,
     LessonUndone,
     Origin,
     Phase,
@@ -77,7 +79,9 @@ class BestKnowledge:
         match event:
             case LessonUndone(lesson, _):
                 self._unproven = [each for each in self._unproven if each.lesson != lesson]
-            case Appraised() | SituationNamed() | SessionBegun() | SessionEnded():
+            case Appraised() | SituationNamed() | SessionBegun() | SessionEnded() | KnowledgeMerged():
+                pass
+            case LessonRedone():  # a person wants it back, whoever it was from: it needs no proof
                 pass
             case _ if event.origin.teacher == CRITIC:
                 self._unproven.append(_Change(event.origin.command_id, rla_of(event), self._events))

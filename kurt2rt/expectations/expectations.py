@@ -8,7 +8,15 @@ from numpy.typing import NDArray
 
 from kurt2rt.expectations.expectation import Expectation, pack
 from kurt2rt.expectations.surprise import Surprise, SurpriseSettings
-from kurt2rt.rla.rla import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.rla.rla import (
+    ActionReplaced,
+    ActionWithdrawn,
+    LessonRedone,
+    LessonUndone,
+    RlaCreated,
+    RlaDeleted,
+    TeachingEvent,
+)
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.space import Space
 
@@ -125,7 +133,7 @@ class Expectations:
 
         Returns its id; None where the event changes no action.
         """
-        if isinstance(event, LessonUndone):
+        if isinstance(event, LessonUndone | LessonRedone):
             record = self._system.lesson(event.lesson)
             return None if record is None else self._forget(record.event)
         return self._forget(event)

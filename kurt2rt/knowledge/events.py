@@ -11,6 +11,8 @@ from kurt2rt.rla.rla import (
     ActionWithdrawn,
     Appraised,
     Credit,
+    KnowledgeMerged,
+    LessonRedone,
     LessonUndone,
     Origin,
     Phase,
@@ -24,13 +26,13 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 
-EVENT_VERSION = 5
+EVENT_VERSION = 6
 """Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
 
 Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
 behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
 rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
-Up to version 4 no situation was named.
+Up to version 4 no situation was named. Up to version 5 nothing was redone, nor merged from another file.
 """
 
 _ADDED: tuple[tuple[int, str, str, object], ...] = (
@@ -41,7 +43,7 @@ _ADDED: tuple[tuple[int, str, str, object], ...] = (
 )
 """Since which version an event of a kind has a field, and what that field is in older ones."""
 
-_SINCE = {"named": 5}
+_SINCE = {"named": 5, "redone": 6, "merged": 6}
 """Since which version there are events of a kind that older programs cannot read."""
 
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
@@ -54,6 +56,8 @@ _FIELDS = {
     "appraised": ("appraisal", "value", "decided_at_tick", *_ORIGIN),
     "named": ("name", "situation", "level", *_ORIGIN),
     "undone": ("lesson", *_ORIGIN),
+    "redone": ("lesson", *_ORIGIN),
+    "merged": ("source", "rows", "last", *_ORIGIN),
     "session begun": ("name", *_ORIGIN),
     "session ended": ("lasted_ticks", *_ORIGIN),
 }
@@ -112,6 +116,10 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
             own = {"kind": "named", "name": name, "situation": list(situation), "level": level}
         case LessonUndone(lesson, _):
             own = {"kind": "undone", "lesson": lesson}
+        case LessonRedone(lesson, _):
+            own = {"kind": "redone", "lesson": lesson}
+        case KnowledgeMerged(source, rows, last, _):
+            own = {"kind": "merged", "source": source, "rows": rows, "last": last}
         case SessionBegun(name, _):
             own = {"kind": "session begun", "name": name}
         case SessionEnded(lasted_ticks, _):
@@ -145,6 +153,11 @@ def _event(content: object) -> TeachingEvent:
     match kind:
         case "undone":
             return LessonUndone(_text(content, "lesson"), origin)
+        case "redone":
+            return LessonRedone(_text(content, "lesson"), origin)
+        case "merged":
+            rows = _whole(content, "rows", least=0)
+            return KnowledgeMerged(_text(content, "source"), rows, _text(content, "last"), origin)
         case "appraised":
             value = _opinion(content, "value")
             return Appraised(_text(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)

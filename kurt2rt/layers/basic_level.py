@@ -14,6 +14,7 @@ from kurt2rt.rla.rla import (
     BASIC,
     ActionReplaced,
     ActionWithdrawn,
+    LessonRedone,
     LessonUndone,
     Rla,
     RlaCreated,
@@ -97,7 +98,7 @@ class BasicLevel:
             case ActionReplaced(rla_id) | ActionWithdrawn(rla_id) | RlaDeleted(rla_id):
                 rla_meant = self.system.get(rla_id)
                 return rla_meant is not None and rla_meant.level == BASIC
-        return isinstance(event, LessonUndone)
+        return isinstance(event, LessonUndone | LessonRedone)
 
     def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""

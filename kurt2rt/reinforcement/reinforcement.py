@@ -22,6 +22,7 @@ from kurt2rt.rla.rla import (
     ActionReplaced,
     Credit,
     Lesson,
+    LessonRedone,
     LessonUndone,
     Origin,
     Phase,
@@ -163,6 +164,8 @@ class Reinforcement:
                 self._repair.there(rla)
             case LessonUndone(lesson, origin):
                 self._hear_undone(lesson, origin)
+            case LessonRedone(lesson, origin):
+                self._hear_redone(lesson, origin)
 
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
         """Learn from a signal that is no event: one of the critic's, which changes the account of phase 5 only.
@@ -285,6 +288,27 @@ class Reinforcement:
                     account.forget(rla.rla_id)
                 self._since.pop(rla.rla_id, None)
                 self._repair.undone(rla, rolled_back=origin.teacher == CRITIC)
+
+    def _hear_redone(self, lesson: str, origin: Origin) -> None:
+        """As when it was taught, but for what was earned in between; a reward's credits are those of then."""
+        record = self._system.lesson(lesson)
+        assert record is not None
+        match record.event:
+            case RlaRewarded(credits=credits_):
+                self._bookings[lesson] = _booked(self.rule, credits_)
+                self.rule.book(self._bookings[lesson], 1)
+                self.choice.forget()
+            case ActionReplaced(rla_id):
+                for account in self._accounts:
+                    account.renew(rla_id)
+                self._since[rla_id] = origin.tick
+            case RlaDeleted(rla_id):
+                for account in self._accounts:
+                    account.leave(rla_id)
+                self._since.pop(rla_id, None)
+                self._repair.gone(rla_id)
+            case RlaCreated(rla):
+                self._repair.there(rla)
 
 
 def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[Booking, ...]:

@@ -1,5 +1,6 @@
 """Which lessons were taught, and which of them still stand: what an undo may take back."""
 
+from bisect import bisect_left
 from dataclasses import dataclass, replace
 
 from kurt2rt.rla.rla import (
@@ -74,7 +75,11 @@ class LessonBook:
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA that ever lived."""
         self._newest: list[int] = []
-        """Places of all lessons but the undone ones at the end: each is put on and taken off once."""
+        """Places of all lessons but the undone ones at the end, ascending."""
+        self._below: list[int | None] = []
+        """Of each lesson: the place of the one that it was put on in its pile."""
+        self._undone: list[int] = []
+        """Places of the lessons that do not stand, in the order in which they were undone."""
 
     @property
     def records(self) -> tuple[LessonRecord, ...]:
@@ -86,6 +91,11 @@ class LessonBook:
         """Command id of the newest lesson that stands."""
         return self._records[self._newest[-1]].event.origin.command_id if self._newest else None
 
+    @property
+    def last_undone(self) -> str | None:
+        """Command id of the lesson that was undone last, of those that do not stand."""
+        return self._records[self._undone[-1]].event.origin.command_id if self._undone else None
+
     def get(self, command_id: str) -> LessonRecord | None:
         """The lesson of that command."""
         place = self._place.get(command_id)
@@ -95,7 +105,9 @@ class LessonBook:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
-        self._standing_of.setdefault(_pile_of(lesson), []).append(place)
+        pile = self._standing_of.setdefault(_pile_of(lesson), [])
+        self._below.append(pile[-1] if pile else None)
+        pile.append(place)
         self._newest.append(place)
         if isinstance(lesson, RlaCreated):
             self._home_of[lesson.rla.rla_id] = (lesson.rla.behaviour, lesson.rla.level)
@@ -126,7 +138,43 @@ class LessonBook:
         if not pile:
             del self._standing_of[_pile_of(lesson)]
         self._records[place] = replace(record, undone=True)
+        self._undone.append(place)
         self.standing -= 1
         while self._newest and self._records[self._newest[-1]].undone:
             self._newest.pop()
         return lesson
+
+    def why_not_redo(self, command_id: str) -> str | None:
+        """Why the lesson of that command cannot stand again, in a sentence; None where it can.
+
+        It can where its RLA, or its name, is again as the lesson found it.
+        """
+        record = self.get(command_id)
+        if record is None:
+            return f"there is no lesson {command_id!r}"
+        if not record.undone:
+            return f"lesson {command_id!r} stands; there is nothing to redo"
+        below = self._below[self._place[command_id]]
+        pile = self._standing_of.get(_pile_of(record.event))
+        top = pile[-1] if pile else None
+        if top == below:
+            return None
+        if below is not None and self._records[below].undone:
+            was = self._records[below]
+            return f"{command_id!r} was taught after {was.event.origin.command_id!r} ({was.text}); redo that one first"
+        assert top is not None  # nothing below it is undone, so it is something above that is in the way
+        newest = self._records[top]
+        later = newest.event.origin.command_id
+        return f"lesson {later!r} came in the place of {command_id!r} ({newest.text}); undo that one first"
+
+    def put_back(self, command_id: str) -> Lesson:
+        """Mark a lesson as standing, for which `why_not_redo` has no reason against it; returns it."""
+        place = self._place[command_id]
+        record = self._records[place] = replace(self._records[place], undone=False)
+        self._standing_of.setdefault(_pile_of(record.event), []).append(place)
+        self._undone.remove(place)
+        self.standing += 1
+        spot = bisect_left(self._newest, place)
+        if self._newest[spot : spot + 1] != [place]:
+            self._newest.insert(spot, place)
+        return record.event

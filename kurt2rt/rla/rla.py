@@ -178,6 +178,28 @@ class LessonUndone:
 
 
 @dataclass(frozen=True, slots=True)
+class LessonRedone:
+    """A lesson that had been taken back stands again, as it was taught."""
+
+    lesson: str
+    """Command id of the lesson."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class KnowledgeMerged:
+    """Lessons of another knowledge file were brought in, in the rows before this one; changes no RLA by itself."""
+
+    source: str
+    """Name of the other file."""
+    rows: int
+    """How many rows it had then; what it holds up to there is here, or was left out on purpose."""
+    last: str
+    """Command id of the last of those rows: tells whether a file is that one, or goes on from it."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
 class SessionBegun:
     """A teacher began to teach; changes no RLA."""
 
@@ -200,5 +222,5 @@ RlaLesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewa
 Lesson = RlaLesson | SituationNamed
 """A teaching act that can be undone."""
 
-TeachingEvent = Lesson | LessonUndone | Appraised | SessionBegun | SessionEnded
+TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun | SessionEnded | KnowledgeMerged
 """What the knowledge journal holds; the RLA system is the fold of these."""

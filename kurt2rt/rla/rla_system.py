@@ -26,7 +26,9 @@ from kurt2rt.rla.rla import (
     ActionWithdrawn,
     Appraised,
     Condition,
+    KnowledgeMerged,
     Lesson,
+    LessonRedone,
     LessonUndone,
     Origin,
     Rla,
@@ -118,6 +120,11 @@ class RlaSystem:
         return tuple(rla for rla in self._all_rlas() if rla.level == level)
 
     @property
+    def living(self) -> tuple[Rla, ...]:
+        """All living RLAs of all levels, in no order: a copy that costs a tick next to nothing."""
+        return tuple(self._rlas.values())
+
+    @property
     def next_id(self) -> int:
         """Id of the next RLA to be taught; ids of deleted or undone RLAs are never given again."""
         return self._last_id + 1
@@ -157,6 +164,15 @@ class RlaSystem:
         """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
         return self._book.why_not_undo(command_id)
 
+    @property
+    def last_undone_lesson(self) -> str | None:
+        """Command id of the lesson that was undone last and does not stand again."""
+        return self._book.last_undone
+
+    def why_not_redo(self, command_id: str) -> str | None:
+        """Why the lesson of that command, taken back, cannot stand again now, in a sentence; None where it can."""
+        return self._book.why_not_redo(command_id)
+
     def comes_back(self, command_id: str) -> Rla | None:
         """The RLA as it will be when the lesson of that command is undone; None where no action comes back by that."""
         return self._before.get(command_id)
@@ -181,6 +197,23 @@ class RlaSystem:
         if math.isnan(nearest.distance):  # of a robot that does not know where it is: far from all, not near nothing
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
+
+    def nearest_first(
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC
+    ) -> tuple[tuple[int, float], ...]:
+        """Ids and distances of all RLAs of a level and behaviour, the nearest to a situation (d,) first.
+
+        Looks at all of them: to explain with, not for every tick.
+        """
+        contest = self._contests.get((level, behaviour))
+        if contest is None or not contest.ids:
+            return ()
+        distances = contest.index.distances(situation * contest.weights)
+        order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
+        return tuple(
+            (contest.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place]))
+            for place in order
+        )
 
     def _match_passing_over(self, contest: Contest, situation: NDArray[np.float64]) -> Match | None:
         """The nearest that has an action: looks at all, for it is seldom needed."""
@@ -219,7 +252,12 @@ class RlaSystem:
                 if problem is not None:
                     raise UnfitEventError(problem)
                 self._take_back(self._book.strike(lesson))
-            case SessionBegun() | Appraised():
+            case LessonRedone(lesson, _):
+                problem = self._book.why_not_redo(lesson)
+                if problem is not None:
+                    raise UnfitEventError(problem)
+                self._learn(self._book.put_back(lesson), again=True)
+            case SessionBegun() | Appraised() | KnowledgeMerged():
                 pass
             case SessionEnded(lasted_ticks, _):
                 self.teaching_ticks += lasted_ticks
@@ -246,17 +284,18 @@ class RlaSystem:
             digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
         return digest.hexdigest()
 
-    def _learn(self, lesson: Lesson) -> None:
+    def _learn(self, lesson: Lesson, *, again: bool = False) -> None:
+        """`again`: it was taken back, and its RLA or name is as it found it."""
         match lesson:
             case RlaCreated(rla):
-                if rla.rla_id <= self._last_id:
+                if rla.rla_id <= self._last_id and not again:
                     raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
                 _require_an_action(rla.action)
                 try:
                     self._enter(rla)
                 except ValueError as error:
                     raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
-                self._last_id = rla.rla_id
+                self._last_id = max(self._last_id, rla.rla_id)
             case ActionReplaced(rla_id, action, _, origin):
                 _require_an_action(action)
                 self._change(self._living(rla_id), action, origin)

@@ -47,13 +47,17 @@ def test_every_command_is_found() -> None:
             "lessons",
             "check",
             "undo",
-            "export",
+            "redo",
+            "table",
             "graph",
             "surprise",
             "faults",
             "bench",
             "doctor",
             "commission",
+            "service",
+            "install",
+            "uninstall",
         )
     }
     assert "--seeds" in commands()["lesson",]

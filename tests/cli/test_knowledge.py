@@ -83,7 +83,7 @@ def test_the_table_goes_where_it_is_wanted_and_never_over_another_one(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path
 ) -> None:
     for _ in range(2):
-        said = kurt2rt("knowledge", "export", lessons, "--out", tmp_path / "tables")
+        said = kurt2rt("knowledge", "table", lessons, "--out", tmp_path / "tables")
         assert said.exit_code == 0
         table = Path(said.out.split()[1])
         with table.open(newline="", encoding="utf-8") as file:
@@ -95,5 +95,5 @@ def test_the_table_goes_where_it_is_wanted_and_never_over_another_one(
 def test_a_table_that_cannot_be_written_is_refused(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     (tmp_path / "tables").write_text("in the way", encoding="utf-8")
     assert "tables: nothing can be saved there" in kurt2rt.refused(
-        "knowledge", "export", lessons, "--out", tmp_path / "tables"
+        "knowledge", "table", lessons, "--out", tmp_path / "tables"
     )

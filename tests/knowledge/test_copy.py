@@ -12,10 +12,10 @@ import pytest
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.copy import save_copy
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.table import export_table
 from kurt2rt.knowledge.writer import JournalWriter
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, entry, tamper
 from tests.knowledge.test_writer import largest_file

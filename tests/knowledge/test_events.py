@@ -16,6 +16,8 @@ from kurt2rt.rla.rla import (
     ActionWithdrawn,
     Appraised,
     Credit,
+    KnowledgeMerged,
+    LessonRedone,
     LessonUndone,
     Origin,
     Phase,
@@ -60,12 +62,16 @@ events = st.one_of(
     ),
     st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
     st.builds(LessonUndone, texts, origins),
+    st.builds(LessonRedone, texts, origins),
+    st.builds(KnowledgeMerged, texts, st.integers(0, 2**62), texts, origins),
     st.builds(SituationNamed, texts, conditions, texts, origins),
     st.builds(SessionBegun, texts, origins),
     st.builds(SessionEnded, st.integers(0, 2**62), origins),
 )
 
 NAMED = SituationNamed("door", (1.0, 2.0), MID, origin("name-1", 500))
+REDONE = LessonRedone("create-1", origin("redo-1", 510))
+MERGED = KnowledgeMerged("other.knowledge", 7, "create-7", origin("merge-1", 520))
 APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
 
 
@@ -101,7 +107,7 @@ def test_foreign_text_is_refused_with_its_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value", "problem"),
     [
-        ("version", 6, "its version 6 is of a newer kurt2rt"),
+        ("version", 7, "its version 7 is of a newer kurt2rt"),
         ("version", True, "version must be a whole number"),
         (
             "kind",
@@ -160,6 +166,10 @@ def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
         (NAMED, "level", 1, "level must be a text"),
         (NAMED, "rla_id", 1, "named has no 'rla_id'"),
         (NAMED, "version", 4, "there was no named in version 4"),
+        (REDONE, "lesson", 1, "lesson must be a text"),
+        (REDONE, "version", 5, "there was no redone in version 5"),
+        (MERGED, "rows", -1, "rows must be a whole number from 0"),
+        (MERGED, "version", 5, "there was no merged in version 5"),
         (session(10)[0], "name", None, "name must be a text"),
         (session(10)[1], "lasted_ticks", -1, "lasted_ticks must be a whole number from 0"),
     ],
@@ -196,7 +206,7 @@ def test_what_an_rla_belongs_to_is_kept() -> None:
     "event",
     [
         *(created(1), replaced(1, "left", "forward"), withdrawn(1), deleted(1), rewarded(1), APPRAISED),
-        *(undone("create-1"), NAMED, *session(10)),
+        *(undone("create-1"), REDONE, MERGED, NAMED, *session(10)),
     ],
 )
 def test_a_missing_field_is_named(event: TeachingEvent) -> None:

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.export import export_table
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.table import export_table
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
 from tests.knowledge.lessons import (
     BINDING,

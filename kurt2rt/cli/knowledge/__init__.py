@@ -1,0 +1,18 @@
+"""`kurt2rt knowledge ...`: one file per command."""
+
+import typer
+
+from kurt2rt.cli.knowledge.check import check
+from kurt2rt.cli.knowledge.graph import graph
+from kurt2rt.cli.knowledge.lessons import lessons
+from kurt2rt.cli.knowledge.show import show
+from kurt2rt.cli.knowledge.table import table
+from kurt2rt.cli.knowledge.undo import redo, undo
+
+knowledge = typer.Typer(
+    help="Look after what the robot was taught. A file is changed only while no robot runs on it; it is read also "
+    "while one does.",
+    no_args_is_help=True,
+)
+for _command in (show, lessons, check, undo, redo, table, graph):
+    knowledge.command()(_command)

@@ -1,0 +1,20 @@
+"""`kurt2rt knowledge lessons`."""
+
+from typing import Annotated
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
+from kurt2rt.cli.printed import console_of
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.show import render_lessons
+
+
+def lessons(
+    file: KnowledgeFile,
+    limit: Annotated[int, typer.Option(min=1, help="Show only the newest so many lessons.")] = 20,
+    of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
+) -> None:
+    """List the lessons, newest first, with their ids and who undid them."""
+    with Journal.read_only(file) as journal:
+        console_of(WIDE).print(render_lessons(journal, limit, of))

@@ -1,0 +1,22 @@
+"""`kurt2rt knowledge table`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.knowledge import journal_file
+from kurt2rt.knowledge.table import export_table
+from kurt2rt.knowledge.writer import utc_now
+
+
+def table(
+    file: KnowledgeFile,
+    out: Annotated[Path, typer.Option(help="Folder for the table; made where it is missing.")] = Path("results/export"),
+) -> None:
+    """Write the RLAs as a table (CSV): one row each, with its condition, who taught it and how it was used."""
+    journal_file.require_ours(file)
+    saved = export_table(file, out, utc_now())
+    say(f"table  {out / saved.name}")
+    say(f"sha256  {saved.sha256}")

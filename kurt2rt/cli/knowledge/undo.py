@@ -1,0 +1,50 @@
+"""`kurt2rt knowledge undo` and `redo`."""
+
+from typing import Annotated
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
+from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
+from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.rla.lesson_book import LessonRecord
+
+
+def undo(
+    file: KnowledgeFile,
+    lesson: Annotated[
+        str | None,
+        typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the last one that stands."),
+    ] = None,
+    of: Annotated[
+        str | None,
+        typer.Option(help="All lessons of this teacher that stand, newest first; the critic's are of: critic."),
+    ] = None,
+) -> None:
+    """Take a lesson back, or all of one teacher: what it made, changed, ended or rewarded is as it was before."""
+    if of is None:
+        undone: tuple[LessonRecord, ...] = (undo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()),)
+    elif lesson is None:
+        undone = undo_lessons_of(file, of, teacher=TEACHER, stamp=utc_now())
+    else:
+        raise typer.BadParameter("give --lesson or --of, not both")
+    for record in undone:
+        say(f"{file}: undone: {_told(record)}")
+    if of is not None:
+        say(f"{file}: {len(undone)} lessons of {of} undone")
+
+
+def redo(
+    file: KnowledgeFile,
+    lesson: Annotated[
+        str | None,
+        typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the one undone last."),
+    ] = None,
+) -> None:
+    """Let a lesson stand again that was undone, where its RLA is still as the lesson found it."""
+    say(f"{file}: stands again: {_told(redo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()))}")
+
+
+def _told(record: LessonRecord) -> str:
+    origin = record.event.origin
+    return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"
