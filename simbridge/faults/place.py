@@ -1,16 +1,13 @@
 """The simulated robot, its bus and its driver in simulated time, with one fault somewhere between them."""
 
 import random
-import struct
 import uuid
 from collections.abc import Callable
-from typing import Literal
 
 import can
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import load_codec
-from hal.frame import Frame
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
@@ -20,19 +17,10 @@ from simbridge.faults.disturbance import Disturbance
 from simbridge.faults.disturbed_end import DisturbedEnd
 from simbridge.faults.event_time import EventTime
 from simbridge.faults.hall import HALL
-from simbridge.faults.motors import DisturbedWheels
-from simbridge.faults.way import Arrive, DisturbedWay, StraightWay, Way
-from simbridge.faults.way_out import DisturbedWayOut
+from simbridge.faults.motors import ChangingWheels
+from simbridge.faults.parts import Part, disturbed_telemetry, disturbed_way_in, disturbed_way_out
+from simbridge.faults.way import Arrive, StraightWay, Way
 from simbridge.simulated_robot import SimulatedRobot
-
-Part = Literal["sensor_board_1", "sensor_board_2", "encoders", "left_motor", "right_motor", "bus_in", "bus_out"]
-"""What can fail on the robot's side of the driver."""
-
-_BOARD_LETTERS = {"sensor_board_1": "ADC", "sensor_board_2": "BDC"}
-_FLOOR_AND_PLATEAU = 620
-"""Sum of the readings with nothing in view and with a wall in front of the sensor."""
-_SOMEBODY_ELSES_ORDER = Frame(CONTROL_ID, struct.pack(">HhhH", 2, 20, 20, 1))
-"""SPEED_CM, 0.2 m/s on both sides."""
 
 
 class FaultyPlace:
@@ -60,7 +48,7 @@ class FaultyPlace:
         self._robots_end: DisturbedEnd | None = None
         self._robots_bus = CanBus(self._spec, self._open_robots_end)
         self.simulation = SimulatedRobot(
-            settings, HALL, self._robots_bus, chance.getrandbits(32), wheels=self._disturbed_wheels()
+            settings, HALL, self._robots_bus, chance.getrandbits(32), wheels=self._wheels()
         )
         self.robot = self._driver()
         self.time.every(settings.can.cycle_s, 0.0, self.simulation.step)
@@ -132,51 +120,20 @@ class FaultyPlace:
             self.on_control(self._carried, bytes(frame.data))
 
     def _way_of_telemetry(self) -> Way:
-        if self._part not in ("encoders", "sensor_board_1", "sensor_board_2"):
-            return StraightWay()
         codec = load_codec(self._settings.can.database)
-        if self._part == "encoders":
-            encoder = codec.message("ENCODER")
-            return DisturbedWay(
-                self.disturbance,
-                self.time,
-                self._chance,
-                {encoder.frame_id},
-                # What an encoder repeats is its count: no ticks since the last frame.
-                freeze=lambda _: encoder.pack(0, 0),
-                falsify=lambda frame: [encoder.pack(*(-ticks for ticks in encoder.unpack(frame.data)))],
-            )
-        letters = _BOARD_LETTERS[self._part]
-        board = {each: message for each, message in codec.by_id.items() if message.name.startswith(letters)}
-
-        def show_far_for_near(frame: can.Message) -> list[can.Message]:
-            message = board[frame.arbitration_id]
-            return [message.pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in message.unpack(frame.data)))]
-
-        return DisturbedWay(self.disturbance, self.time, self._chance, board.keys(), falsify=show_far_for_near)
+        return disturbed_telemetry(self._part, self.disturbance, self.time, self._chance, codec) or StraightWay()
 
     def _way_in(self) -> Way:
-        if self._part != "bus_in":
-            return StraightWay()
-        last_of_a_cycle = load_codec(self._settings.can.database).message("BUMPERC").frame_id
-
-        def hear_somebody_else(frame: can.Message) -> list[can.Message]:
-            return [frame, _SOMEBODY_ELSES_ORDER] if frame.arbitration_id == last_of_a_cycle else [frame]
-
-        return DisturbedWay(self.disturbance, self.time, self._chance, None, falsify=hear_somebody_else)
+        codec = load_codec(self._settings.can.database)
+        return disturbed_way_in(self._part, self.disturbance, self.time, self._chance, codec) or StraightWay()
 
     def _way_out(self) -> Way:
-        if self._part != "bus_out":
-            return StraightWay()
-        return DisturbedWayOut(self.disturbance, self.time, self._chance)
+        return disturbed_way_out(self._part, self.disturbance, self.time, self._chance) or StraightWay()
 
-    def _disturbed_wheels(self) -> DisturbedWheels | None:
-        match self._part:
-            case "left_motor":
-                return DisturbedWheels(self._settings, self.disturbance, "left", self.time, self._chance)
-            case "right_motor":
-                return DisturbedWheels(self._settings, self.disturbance, "right", self.time, self._chance)
-        return None
+    def _wheels(self) -> ChangingWheels:
+        wheels = ChangingWheels(self._settings)
+        wheels.disturb(self._part, self.disturbance, self.time, self._chance)
+        return wheels
 
 
 class _Watched:

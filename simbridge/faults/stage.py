@@ -5,17 +5,8 @@ from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
 from simbridge.faults.disturbance import Disturbance, Kind
-from simbridge.faults.place import FaultyPlace, Part
-
-_PARTS: tuple[Part, ...] = (
-    "sensor_board_1",
-    "sensor_board_2",
-    "encoders",
-    "left_motor",
-    "right_motor",
-    "bus_in",
-    "bus_out",
-)
+from simbridge.faults.parts import part_of
+from simbridge.faults.place import FaultyPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,5 +25,4 @@ class FaultStage:
         chance = random.Random(f"{target} {kind} {seed}")
         phase_s = chance.uniform(0.0, self.settings.can.cycle_s)
         disturbance = Disturbance(kind, begin_s + phase_s, end_s + phase_s, period_s, delay_s)
-        part = next((each for each in _PARTS if each == target), None)
-        return FaultyPlace(self.settings, part, disturbance, chance)
+        return FaultyPlace(self.settings, part_of(target), disturbance, chance)

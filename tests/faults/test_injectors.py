@@ -13,7 +13,7 @@ from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.witness import Stand, Witness
 from simbridge.faults.disturbance import Disturbance, Kind
 from simbridge.faults.event_time import EventTime
-from simbridge.faults.motors import DisturbedWheels
+from simbridge.faults.motors import ChangingWheels
 from simbridge.faults.place import FaultyPlace
 from simbridge.faults.stage import FaultStage
 from simbridge.faults.way import DisturbedWay, StraightWay
@@ -159,7 +159,8 @@ def wheels(kind: Kind, brake_at: int = 28) -> list[tuple[float, float]]:
     """Both sides' speeds after each cycle, told 0.3 m/s, and to brake from a cycle on."""
     time = EventTime()
     wrong = Disturbance(kind, 0.095, 1.0, 1.0, 0.15)
-    driven = DisturbedWheels(ROBOT, wrong, "left", time, random.Random(1))
+    driven = ChangingWheels(ROBOT)
+    driven.disturb("left_motor", wrong, time, random.Random(1))
     speeds = []
     for cycle in range(CYCLES):
         time.run_until(cycle * 0.01)
