@@ -31,6 +31,7 @@ from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.errands import Errands
+from kurt2rt.teaching.happenings import SetDown
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
@@ -65,8 +66,8 @@ class Runtime:
     scheduler: Scheduler
 
     def set_down(self) -> None:
-        """Somebody has set the robot down elsewhere, between two ticks: how it came there says nothing now."""
-        self.tick.set_down()
+        """Somebody has set the robot down elsewhere, between two ticks: the next one begins anew there."""
+        self.inbox.put(SetDown())
 
     def to_save(self) -> Statistics:
         """What was counted of the RLAs that live, and what they are worth, as it is now."""

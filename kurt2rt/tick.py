@@ -13,14 +13,17 @@ from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_uses import MidUses
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
-from kurt2rt.rla.rla import BASIC, TeachingEvent
+from kurt2rt.rla.rla import BASIC, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
+from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
 
 _BLIND = "the infra-red sensors are silent, so there is no situation to teach; wait until the robot sends its readings"
+_TELL_KNOWLEDGE_TICKS = 100
+"""How often a record holds all that is known, at least."""
 
 
 class LessonKeeper(Protocol):
@@ -55,6 +58,14 @@ class TickRecord(NamedTuple):
     """What the critic thinks of it; None where it was taught nothing, or there is none."""
     surprise: Surprise | None = None
     """What came where an RLA ended in this tick, beside what was expected; None while none ends."""
+    commands: tuple[Input, ...] = ()
+    """What the tick took from the inbox, in order."""
+    trouble: str | None = None
+    """Why lessons could not be saved when the tick looked; None when they could."""
+    events: tuple[TeachingEvent, ...] = ()
+    """What was taught in it, by teachers and by the robot itself."""
+    knowledge: tuple[Rla, ...] | None = None
+    """All RLAs that live after it, where something was taught, and once a second; None in the ticks between."""
 
     @property
     def mid(self) -> MidDecision | None:
@@ -103,6 +114,8 @@ class Tick:
         self._now = now
         self._stale_infrared_s = stale_infrared_s
         self._driving = self._latched = False
+        self._trouble: str | None = None
+        self._tell_knowledge_at = 0
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
@@ -118,9 +131,16 @@ class Tick:
 
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
-        for command in self._inbox.take():
+        commands = self._inbox.take()
+        for command in commands:
             if isinstance(command, Watch | Drive):
                 self._school.follow(command, tick)
+                continue
+            if isinstance(command, PressesForgotten):
+                self._school.authority.forget(command.teacher)
+                continue
+            if isinstance(command, SetDown):
+                self._set_down()
                 continue
             new = not self._school.has_taken(command.command_id)
             if new and blind and _is_about_what_is_seen_now(command):
@@ -137,6 +157,8 @@ class Tick:
                 self._begin_anew()
             if event is not None:
                 events.append(event)
+        # Looked at once: another thread may change it meanwhile, and a tick has each of its inputs once.
+        trouble = self._trouble = self._keeper.trouble
         decision = self._decide(tick, situation, senses, blind=blind)
         behaviour = self._school.wanted.behaviour
         mark(Stage.DECIDE)
@@ -174,13 +196,31 @@ class Tick:
                 led_elsewhere = self._expecting.hear(event)
                 if led_elsewhere is not None:
                     self._statistics.drop_follow_ups(led_elsewhere)
+        knowledge = None
+        if events or tick >= self._tell_knowledge_at:
+            knowledge = self._school.living
+            self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
         mark(Stage.PUBLISH)
         return TickRecord(
-            tick, now_s, senses, situation, decision, grant, tuple(results), behaviour, circumstances, opinion, surprise
+            tick,
+            now_s,
+            senses,
+            situation,
+            decision,
+            grant,
+            tuple(results),
+            behaviour,
+            circumstances,
+            opinion,
+            surprise,
+            commands,
+            trouble,
+            tuple(events),
+            knowledge,
         )
 
-    def set_down(self) -> None:
-        """The robot was set down elsewhere: what the mid level comes to next does not follow what was."""
+    def _set_down(self) -> None:
+        """What the mid level comes to next does not follow what was."""
         if self._school.mid is not None:
             self._school.mid.mid.restart()
         self._begin_anew()
@@ -234,7 +274,7 @@ class Tick:
         """Why neither an RLA nor the teacher's hand may drive."""
         if blind:
             return Cause.BLIND
-        if self._keeper.trouble is not None:
+        if self._trouble is not None:
             return Cause.UNSAVED
         return None
 

@@ -434,6 +434,7 @@ def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
 def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
     town.junction(1)
     town.runtime.set_down()
+    town.run()
     assert not town.history
     town.way_to_the_first_junction()
     record = town.junction()

@@ -21,6 +21,7 @@ from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import HandOver, Stop
+from kurt2rt.teaching.happenings import PressesForgotten
 from kurt2rt.teaching.inbox import InboxFullError
 from kurt2rt.tick import TickRecord
 
@@ -134,7 +135,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
     while True:
         await anyio.sleep(_REFRESH_S)
         for name in (await teachers.refresh()).gone:
-            runtime.school.authority.forget(name)
+            runtime.inbox.put(PressesForgotten(name))
             if runtime.school.authority.teacher == name:
                 revoked = f"{name}-gone-{secrets.token_hex(4)}"
                 runtime.inbox.put(Stop(f"{revoked}-stop", name))

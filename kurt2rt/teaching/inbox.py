@@ -2,7 +2,8 @@
 
 from collections import deque
 
-from kurt2rt.teaching.commands import Command, Stop
+from kurt2rt.teaching.commands import Stop
+from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
 
 
 class InboxFullError(RuntimeError):
@@ -13,18 +14,21 @@ class TeacherInbox:
     """A bounded queue that any thread may fill and the tick empties."""
 
     def __init__(self, capacity: int = 256) -> None:
-        self._waiting: deque[Command] = deque()
+        self._waiting: deque[Input] = deque()
         self._capacity = capacity
 
-    def put(self, command: Command) -> None:
-        """Hand a command to the next tick. Raises InboxFullError; a stop is always taken."""
+    def put(self, command: Input) -> None:
+        """Hand a command to the next tick. Raises InboxFullError; a stop, and what has happened, is always taken."""
+        if isinstance(command, PressesForgotten | SetDown):
+            self._waiting.appendleft(command)  # it has happened, and the commands that wait have not
+            return
         if len(self._waiting) >= self._capacity and not isinstance(command, Stop):
             raise InboxFullError(
                 f"{self._capacity} commands wait already; is the robot's loop running? Send it again later"
             )
         self._waiting.append(command)
 
-    def take(self) -> tuple[Command, ...]:
+    def take(self) -> tuple[Input, ...]:
         """All commands that wait, in the order they came; never blocks."""
         if not self._waiting:
             return ()

@@ -9,7 +9,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, TeachingEvent
+from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, Rla, TeachingEvent
 from kurt2rt.rla.rla_system import UnfitEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
@@ -129,6 +129,11 @@ class School:
         self.stopped_because = because
         if by is not None:
             self._stopped_by.add(by)
+
+    @property
+    def living(self) -> tuple[Rla, ...]:
+        """All RLAs that live, of all levels, in no order."""
+        return self._level.system.living
 
     @property
     def session(self) -> str | None:

@@ -196,6 +196,7 @@ async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_th
     mid.situation.vector[0] = 2.0  # as if it had turned left somewhere
     assert picture(desk).mid is not None
     await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))
+    desk.run()
     told = picture(desk).mid
     assert told is not None
     assert told.here == NOTHING_YET
