@@ -19,6 +19,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
 from kurt2rt.page.error import PageError
 from kurt2rt.recording.error import RecordingError
+from kurt2rt.systemd.error import UnitError
 from kurt2rt.teaching.answer import NoAnswerError, RefusedError
 
 _EXTRAS = {
@@ -47,6 +48,7 @@ _ONE_LINERS = (
     RefusedError,
     PageError,
     RecordingError,
+    UnitError,
     DidNotDriveError,
     StudyError,
 )
@@ -78,6 +80,7 @@ _COMMANDS = (
     "knowledge",
     "surprise",
     "commission",
+    "service",
     "faults",
     "bench",
     "doctor",

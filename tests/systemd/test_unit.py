@@ -1,0 +1,112 @@
+"""The unit says what the issue asks of it, and systemd's own tools agree."""
+
+import shlex
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.systemd.error import UnitError
+from kurt2rt.systemd.examination import MOST_EXPOSURE, examine, has_tool
+from kurt2rt.systemd.installing import install, uninstall
+from kurt2rt.systemd.unit import Unit, program, quoted, unit_of
+from tests.cli.helpers import CommandLine
+
+needs_systemd = pytest.mark.skipif(
+    not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"
+)
+
+
+def unit(**changes: str) -> Unit:
+    return unit_of(changes.get("name", "kurt2rt"), changes.get("bus", "can0"), (*program(), "run", "--service"))
+
+
+def settings_of(text: str) -> list[tuple[str, str]]:
+    lines = [line for line in text.splitlines() if "=" in line and not line.startswith("#")]
+    return [(key, value) for key, _, value in (line.partition("=") for line in lines)]
+
+
+def test_it_cannot_stay_dead_and_is_watched() -> None:
+    said = dict(settings_of(unit().service))
+    assert said["Type"] == "notify"
+    assert float(said["WatchdogSec"]) > 0
+    assert (said["Restart"], said["StartLimitIntervalSec"]) == ("always", "0")
+    assert (said["User"], said["StateDirectory"], said["WorkingDirectory"]) == ("kurt2rt", "kurt2rt", "%S/kurt2rt")
+
+
+def test_it_has_the_capability_for_real_time_priority_and_no_other() -> None:
+    said = settings_of(unit().service)
+    of_capabilities = [value for key, value in said if "Capabilit" in key]
+    assert of_capabilities == ["CAP_SYS_NICE", "CAP_SYS_NICE"]
+    assert ("ProtectSystem", "strict") in said
+
+
+def test_it_orders_itself_after_nothing() -> None:
+    assert not {"After", "Requires", "Wants", "BindsTo"} & dict(settings_of(unit().service)).keys()
+
+
+def test_a_folder_elsewhere_may_be_written_also_when_it_comes_late() -> None:
+    made = unit_of("kurt2rt", "can0", program(), [Path("/mnt/my disk/kurt")])
+    assert ("ReadWritePaths", '-"/mnt/my disk/kurt"') in settings_of(made.service)
+
+
+@pytest.mark.parametrize("word", ["a b", "100%", 'say "yes"', "$HOME", "back\\slash", "plain/path.yaml"])
+def test_words_are_read_back_as_they_were(word: str) -> None:
+    (read,) = shlex.split(quoted(word).replace("$$", "$"))
+    assert read.replace("%%", "%") == word
+
+
+@pytest.mark.parametrize("name", ["", "Robot", "../etc", "a b", "9", "x" * 40])
+def test_a_name_that_is_none_is_refused(name: str) -> None:
+    with pytest.raises(UnitError, match="is no name"):
+        unit(name=name)
+
+
+def test_a_bus_with_a_line_break_does_not_add_a_line() -> None:
+    with pytest.raises(UnitError, match="control characters"):
+        unit(bus="can0\nExecStartPre=/bin/sh")
+
+
+@needs_systemd
+def test_systemd_takes_it_and_finds_it_shut() -> None:
+    found = examine(unit())
+    assert found.complaints == ()
+    assert found.exposure <= MOST_EXPOSURE
+    assert found.passed
+
+
+@needs_systemd
+def test_a_misspelt_setting_is_found() -> None:
+    made = unit()
+    broken = Unit(made.name, made.service.replace("Restart=always", "Restart=alwys"), made.sysusers)
+    found = examine(broken)
+    assert any("alwys" in line for line in found.complaints)
+    assert not found.passed
+
+
+def test_it_is_installed_and_taken_away_again(tmp_path: Path) -> None:
+    done: list[tuple[str, ...]] = []
+
+    def note(command: object) -> None:
+        assert isinstance(command, tuple)
+        done.append(command)
+
+    units, users = tmp_path / "system", tmp_path / "sysusers.d"
+    service, sysusers = install(unit(), note, units, users)
+    assert service.read_text(encoding="utf-8") == unit().service
+    assert 'u kurt2rt - "KURT2 robot" /var/lib/kurt2rt' in sysusers.read_text(encoding="utf-8")
+    assert done == [("systemd-sysusers", str(sysusers)), ("systemctl", "daemon-reload")]
+    done.clear()
+    assert uninstall("kurt2rt", note, units, users) == (service, sysusers)
+    assert done == [("systemctl", "disable", "--now", "kurt2rt.service"), ("systemctl", "daemon-reload")]
+    assert [*units.iterdir(), *users.iterdir()] == []
+    with pytest.raises(UnitError, match="there is no such unit"):
+        uninstall("kurt2rt", note, units, users)
+
+
+def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    mine = tmp_path / "mine.yaml"
+    mine.write_text("name: mine\n", encoding="utf-8")
+    said = kurt2rt("service", "show", "--robot", "can1", "--page")
+    assert f"ExecStart={program()[0]} " in said.out
+    assert " run --service --robot can1 --settings default --page\n" in said.out
+    assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")
