@@ -4,7 +4,6 @@ Where a task teaches several behaviours there is one such system for each, and w
 (its level); ids and the history of lessons run through all of them.
 """
 
-import hashlib
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -19,6 +18,7 @@ from kurt2rt.rla.competitors import CompetitorGroups
 from kurt2rt.rla.contest import Contest
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
 from kurt2rt.rla.named_situations import NamedSituations
+from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.rla.rla import (
     ASK,
     BASIC,
@@ -276,13 +276,7 @@ class RlaSystem:
 
     def knowledge_hash(self) -> str:
         """Fingerprint of what the system knows: ids, levels, behaviours, conditions, actions, radii; not who taught."""
-        digest = hashlib.sha256()
-        for rla in self._all_rlas():
-            at = f"at {rla.level} " if rla.level != BASIC else ""
-            of = f"of {rla.behaviour} " if rla.behaviour else ""
-            digest.update(f"{rla.rla_id} {at}{of}{rla.action} {rla.radius!r} ".encode())
-            digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
-        return digest.hexdigest()
+        return knowledge_hash_of(self._all_rlas())
 
     def _learn(self, lesson: Lesson, *, again: bool = False) -> None:
         """`again`: it was taken back, and its RLA or name is as it found it."""
