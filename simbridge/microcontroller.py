@@ -82,6 +82,13 @@ class MicroController:
         elif self.unheard:
             self.orders = _BRAKED
 
+    def switch_on(self) -> None:
+        """Somebody has switched it off and on: it is dead no longer, and braked until it hears a CONTROL."""
+        self.dead = False
+        self._actuators_on = True
+        self.orders = _BRAKED
+        self._silent_cycles = self._watchdog_cycles
+
     @property
     def unheard(self) -> bool:
         """True while the watchdog holds the robot: no valid CONTROL for its time."""

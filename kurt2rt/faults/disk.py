@@ -24,10 +24,11 @@ class DiskOutOfStepError(RuntimeError):
     """The writer's thread did not do in time what it has to."""
 
 
-class _DisturbedJournal(Journal):
+class DisturbedJournal(Journal):
     """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
 
-    disturbance: Disturbance
+    disturbance: Disturbance | None = None
+    """None: the disk is sound."""
     simulated: SimulatedTime
     waits_until_s: float | None = None
     """Simulated time until which a write waits; None while none does."""
@@ -37,20 +38,21 @@ class _DisturbedJournal(Journal):
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         """Write, with what the fault does to it. Raises KnowledgeError."""
         now_s = self.simulated.now_s()
-        if self.given_up or not self.disturbance.acts(now_s):
+        disturbance = self.disturbance
+        if self.given_up or disturbance is None or not disturbance.acts(now_s):
             return super().append(entries)
-        match self.disturbance.kind:
+        match disturbance.kind:
             case "off" | "intermittent":
                 raise explained(_sqlite_error("disk I/O error", sqlite3.SQLITE_IOERR), self.path)
             case "garbage":
                 raise explained(_sqlite_error("database disk image is malformed", sqlite3.SQLITE_CORRUPT), self.path)
             case "stuck":
-                self._wait(self.disturbance.end_s)
+                self._wait(disturbance.end_s)
             case "slow":
-                self._wait(min(now_s + self.disturbance.delay_s, self.disturbance.end_s))
+                self._wait(min(now_s + disturbance.delay_s, disturbance.end_s))
             case "delayed":
                 receipts = super().append(entries)
-                self._wait(min(now_s + self.disturbance.delay_s, self.disturbance.end_s))
+                self._wait(min(now_s + disturbance.delay_s, disturbance.end_s))
                 return receipts
             case "wrong":
                 pass  # the file itself was taken away
@@ -87,15 +89,13 @@ class FailingDisk:
         self._path, self._settings, self._task = path, settings, task
         with open_knowledge(path, settings, task) as new:
             binding = new.binding
-        self._journal = _DisturbedJournal.open(path, binding)
+        self._journal = DisturbedJournal.open(path, binding)
         self._journal.disturbance = disturbance
         self._journal.simulated = simulated
         retry = RetryDelays(first_s=0.001, longest_s=0.001)
         self._writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
         if disturbance.kind == "wrong":
-            away = path.with_name(f"{path.name}.away")
-            simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
-            simulated.at(disturbance.end_s, lambda: _put_back(away, path))
+            exchange_file(simulated, disturbance, path)
 
     @property
     def trouble(self) -> str | None:
@@ -139,6 +139,13 @@ class FailingDisk:
             return self._writer.trouble is None
         fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
         return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
+
+
+def exchange_file(simulated: SimulatedTime, disturbance: Disturbance, path: Path) -> None:
+    """Another file stands in the place of this one, for the disturbance's span."""
+    away = path.with_name(f"{path.name}.away")
+    simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
+    simulated.at(disturbance.end_s, lambda: _put_back(away, path))
 
 
 def _exchange(path: Path, away: Path) -> None:

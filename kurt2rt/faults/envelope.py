@@ -14,6 +14,8 @@ _SET_POINT = struct.Struct(">HhhH")
 _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
 """RAW, both sides: brake, no drive (reference 1.3)."""
 _ROUNDING = 1e-6
+_MOST_UNDER_WAY = 2048
+"""Frames that may be on their way to the robot; what is older was lost."""
 
 
 class Told(NamedTuple):
@@ -52,7 +54,7 @@ class Envelope:
     """Follows all frames of one driver; `violations` says in words what was beyond the limits."""
 
     def __init__(self, limits: EnvelopeSettings, slew_share: float = 1.0) -> None:
-        """`slew_share`: so many times the slew limits are allowed."""
+        """`slew_share`: so many times the slew limits are allowed; may be changed later."""
         self.violations: list[str] = []
         self.frames = 0
         """Handed to the bus."""
@@ -62,8 +64,8 @@ class Envelope:
         """Set points that were older than that when they arrived at the robot."""
         self.unintelligible = 0
         """Frames that arrived garbled; the robot does not obey them."""
+        self.slew_share = slew_share
         self._limits = limits
-        self._slew_share = slew_share
         self._puts: dict[int, _Put] = {}
         self._last_put: _Put | None = None
         self._last_arrived: _Put | None = None
@@ -73,6 +75,8 @@ class Envelope:
         self.frames += 1
         told = told_by(payload)
         put = self._puts[number] = _Put(at_s, age_s, told)
+        if len(self._puts) > _MOST_UNDER_WAY:
+            del self._puts[next(iter(self._puts))]
         if told is None:
             self._violate(at_s, f"no set point and no brake: {payload.hex(' ')}")
             return
@@ -95,7 +99,10 @@ class Envelope:
         if told is None:
             self.unintelligible += 1
             return None
-        put = self._puts[number]
+        put = self._puts.pop(number, None)
+        if put is None:
+            self._violate(at_s, f"frame {number} arrives twice, or after {_MOST_UNDER_WAY} others")
+            return told
         if not told.standing and put.age_s + at_s - put.at_s > self._limits.command_age_s + _ROUNDING:
             self.old_frames += 1
         self._require_slow(at_s, told)
@@ -126,7 +133,7 @@ class Envelope:
                 continue
             gained_m_s = abs(new_m_s) - abs(old_m_s)
             limit_m_s2 = limits.acceleration_m_s2 if gained_m_s > 0 else limits.braking_m_s2
-            allowed_m_s = self._slew_share * limit_m_s2 * elapsed_s + limits.resolution_m_s
+            allowed_m_s = self.slew_share * limit_m_s2 * elapsed_s + limits.resolution_m_s
             if abs(gained_m_s) > allowed_m_s + _ROUNDING:
                 self._violate(
                     at_s,

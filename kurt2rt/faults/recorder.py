@@ -63,7 +63,8 @@ class FailingRecorder:
         self._log = CanLog(self._writer, "a drill's", "sim", _ROOM_FRAMES)
         self._noted = 0
         self._thread: threading.Thread | None = None
-        simulated.every(_PERIOD_S, _PERIOD_S, self._write)
+        self._next_s = simulated.now_s()
+        self._plan()
 
     def heard(self, frame: can.Message, age_s: float) -> None:
         """A frame that came in."""
@@ -93,7 +94,14 @@ class FailingRecorder:
             return f"{self._noted} frames passed, {self._log.written} were written and {self._log.lost} lost"
         return ""
 
+    def _plan(self) -> None:
+        self._next_s += _PERIOD_S
+        self._simulated.at(self._next_s, self._write)
+
     def _write(self) -> None:
+        if self._writer.given_up:
+            return
+        self._plan()
         self._keep_in_step()
         if self._thread is None:
             self._thread = threading.Thread(target=self._log.write_waiting, name="drill's recorder", daemon=True)

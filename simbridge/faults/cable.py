@@ -1,0 +1,83 @@
+"""A cable on which frames take no time: two ends, with stamps and confirmations as SocketCAN has them."""
+
+import copy
+from collections import deque
+from collections.abc import Callable
+
+import can
+
+_MOST_WAITING = 4096
+
+
+class Cable:
+    """Joins its ends; time is that of the clock it is given."""
+
+    def __init__(self, now_s: Callable[[], float]) -> None:
+        self.now_s = now_s
+        self._ends: list[CableEnd] = []
+
+    def open(self) -> "CableEnd":
+        """One more end."""
+        end = CableEnd(self)
+        self._ends.append(end)
+        return end
+
+    def carry(self, frame: can.Message, sender: "CableEnd") -> None:
+        """A copy for everybody, the sender too."""
+        now_s = self.now_s()
+        for end in self._ends:
+            end.hear(frame, now_s, own=end is sender)
+
+    def leave(self, end: "CableEnd") -> None:
+        """One end less; it may have left already."""
+        if end in self._ends:
+            self._ends.remove(end)
+
+
+class CableEnd:
+    """One end (hal.bus_end.BusEnd)."""
+
+    confirms = True
+
+    def __init__(self, cable: Cable) -> None:
+        self._cable = cable
+        self._waiting: deque[can.Message] = deque()
+        self._heard: frozenset[int] | None = None
+        self._open = True
+        self.lost = 0
+        """Frames that found no room, for nobody took them."""
+
+    def now_s(self) -> float | None:
+        """As the cable has it."""
+        return self._cable.now_s()
+
+    def listen_to(self, frame_ids: frozenset[int]) -> None:
+        """Deliver only frames with these standard identifiers, and error frames."""
+        self._heard = frame_ids
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
+        """The frame that waits longest."""
+        return self._waiting.popleft() if self._waiting else None
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
+        """It is there. Raises can.CanOperationError after shutdown."""
+        if not self._open:
+            raise can.CanOperationError("this end of the cable is shut down")
+        self._cable.carry(msg, self)
+
+    def shutdown(self) -> None:
+        """Unplug it; may be called twice."""
+        self._open = False
+        self._cable.leave(self)
+
+    def hear(self, frame: can.Message, now_s: float, *, own: bool) -> None:
+        """Take a copy."""
+        if self._heard is not None and frame.arbitration_id not in self._heard and not frame.is_error_frame:
+            return
+        if len(self._waiting) >= _MOST_WAITING:
+            self.lost += 1
+            return
+        mine = copy.copy(frame)
+        mine.timestamp = now_s
+        mine.is_rx = not own
+        self._waiting.append(mine)

@@ -1,0 +1,180 @@
+"""The simulated robot in a world, in simulated time, for as long as you like: one fault after another, many drivers."""
+
+import math
+import random
+from collections.abc import Callable
+
+import can
+
+from hal.bus import CONTROL_ID, CanBus
+from hal.bus_end import BusEnd
+from hal.codec import load_codec
+from hal.kurt2 import Kurt2
+from hal.robot import WheelSpeeds
+from hal.robot_settings import RobotSettings
+from hal.tap import Tap
+from hal.watchdog import POLL_S, TICKS_CEASED
+from simbridge.faults.cable import Cable
+from simbridge.faults.changing_end import ChangingEnd, NumberedFrame, Ways
+from simbridge.faults.disturbance import Disturbance, Kind
+from simbridge.faults.event_time import EventTime
+from simbridge.faults.motors import ChangingWheels
+from simbridge.faults.parts import disturbed_telemetry, disturbed_way_in, disturbed_way_out, part_of
+from simbridge.pose import Pose
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.wire.end import WireEnd
+from simbridge.wire.line import NO_WIRE
+from simbridge.wire.settings import load_wire
+from simbridge.wire.wire import Wire
+from simbridge.world_settings import load_world
+
+
+class LastingPlace:
+    """Robot, bus and driver (kurt2rt.soak.place.SoakPlace).
+
+    The loop's ticks, the controller's cycle and the watchdog have phases of their own. The watchdog's thread is
+    replaced by a look at moments of simulated time.
+    """
+
+    def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
+        """Stands at a start pose of the world, with nobody at its bus. Raises SettingsError."""
+        self._chance = random.Random(f"lasting place in {world}, seed {seed}")
+        self.time = EventTime()
+        self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
+        """Called with number and payload of each CONTROL that the driver hands to its bus."""
+        self.on_control: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
+        """Called for each of them that the robot takes, with the same number and the time of its arrival."""
+        self.turned_m = [0.0, 0.0]
+        """Way of the rims, left and right, forward counts positive."""
+        self.crashes = 0
+        """How often the micro-controller went dead and was switched off and on."""
+        self._settings = settings
+        self._codec = load_codec(settings.can.database)
+        self._cycle_s = settings.can.cycle_s
+        self._numbers = 0
+        self._robots_ways, self._notebooks_ways = Ways(), Ways()
+        self._join: Callable[[str], BusEnd]
+        self._lay(NO_WIRE)
+        self._robots_bus = CanBus("soak", self._open_robots_end)
+        self._robots_bus.listen_to({CONTROL_ID})
+        world_settings = load_world(world, settings)
+        self._starts = [start.pose for start in world_settings.start_poses]
+        self._wheels = ChangingWheels(settings)
+        self.simulation = SimulatedRobot(
+            settings,
+            world_settings,
+            self._robots_bus,
+            self._chance.getrandbits(32),
+            robot_seed=seed,
+            wheels=self._wheels,
+        )
+        self.set_down()
+        self._notebooks_bus: CanBus | None = None
+        self.robot: Kurt2 | None = None
+        self.time.every(self._cycle_s, 0.0, self._step)
+        self.time.every(POLL_S, self._chance.uniform(0.0, POLL_S), self._poll_watchdog)
+
+    def start_driver(self, wire: str) -> Kurt2:
+        """A driver that knows nothing comes to the bus, over a wire by name or `none`. Raises SettingsError."""
+        self.end_driver()
+        self._lay(wire)
+        self._robots_bus.reopen()
+        self._notebooks_bus = CanBus("soak", self._open_notebooks_end)
+        self.robot = Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self.time.now_s)
+        return self.robot
+
+    def end_driver(self) -> None:
+        """The driver's process is over."""
+        if self.robot is not None:
+            self.robot.close()
+            self.robot = None
+
+    def begin(self, target: str, kind: Kind, *, end_s: float, period_s: float, delay_s: float) -> Disturbance:
+        """Something fails from now on; one that is no part of robot or bus is left to the caller."""
+        disturbance = Disturbance(kind, self.time.now_s(), end_s, period_s, delay_s)
+        part, time, chance = part_of(target), self.time, self._chance
+        self._robots_ways.outward = disturbed_telemetry(part, disturbance, time, chance, self._codec)
+        self._notebooks_ways.inward = disturbed_way_in(part, disturbance, time, chance, self._codec)
+        self._notebooks_ways.outward = disturbed_way_out(part, disturbance, time, chance)
+        self._wheels.disturb(part, disturbance, time, chance)
+        return disturbance
+
+    def end(self) -> None:
+        """All is well again."""
+        self._robots_ways.outward = self._notebooks_ways.inward = self._notebooks_ways.outward = None
+        self._wheels.disturb(None, Disturbance("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
+
+    def look_on(self, tap: Tap | None) -> None:
+        """Somebody looks on at the driver's end of the bus; None: nobody."""
+        if self._notebooks_bus is not None:
+            self._notebooks_bus.tap = tap
+
+    def set_down(self) -> None:
+        """Somebody sets the robot down at a start pose."""
+        self.simulation.place(self._chance.choice(self._starts))
+
+    @property
+    def position_m(self) -> tuple[float, float]:
+        """Where it really is."""
+        pose: Pose = self.simulation.pose
+        return pose.x_m, pose.y_m
+
+    @property
+    def collisions(self) -> int:
+        """Contacts so far."""
+        return self.simulation.collisions
+
+    @property
+    def standing(self) -> bool:
+        """Whether its wheels stand."""
+        speeds: WheelSpeeds = self.simulation.wheel_speeds
+        return math.hypot(*speeds) == 0.0
+
+    def close(self) -> None:
+        """Give the bus back."""
+        self.end_driver()
+        self._robots_bus.shutdown()
+
+    def _step(self) -> None:
+        simulation = self.simulation
+        simulation.step()
+        left_m_s, right_m_s = simulation.wheel_speeds
+        self.turned_m[0] += left_m_s * self._cycle_s
+        self.turned_m[1] += right_m_s * self._cycle_s
+        if simulation.controller.dead:
+            simulation.controller.switch_on()
+            self.crashes += 1
+
+    def _poll_watchdog(self) -> None:
+        robot = self.robot
+        if robot is not None and robot.watchdog.check(self.time.now_s()):
+            robot.emergency_stop(TICKS_CEASED)
+
+    def _lay(self, wire: str) -> None:
+        """Another wire between the two ends that will be opened."""
+        if wire == NO_WIRE:
+            cable = Cable(self.time.now_s)
+            self._join = lambda _end: cable.open()
+            return
+        settings = load_wire(wire)
+        carrier = Wire(settings, self._chance.getrandbits(32))
+        carrier.advance(self.time.now_s())
+        carrier.follow(self.time.now_s)
+        nodes = {"robot": settings.robot, "notebook": settings.notebook}
+        self._join = lambda end: WireEnd(carrier, nodes[end])
+
+    def _open_robots_end(self, _: str) -> BusEnd:
+        return ChangingEnd(self._join("robot"), self._robots_ways, self.time.now_s, on_heard=self._note_arrival)
+
+    def _open_notebooks_end(self, _: str) -> BusEnd:
+        return ChangingEnd(self._join("notebook"), self._notebooks_ways, self.time.now_s, on_send=self._number)
+
+    def _number(self, frame: can.Message) -> can.Message:
+        self._numbers += 1
+        payload = bytes(frame.data)
+        self.on_put(self._numbers, payload)
+        return NumberedFrame(frame.arbitration_id, payload, self._numbers)
+
+    def _note_arrival(self, frame: NumberedFrame) -> None:
+        if frame.arbitration_id == CONTROL_ID:
+            self.on_control(frame.number, frame.data, frame.timestamp)
