@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from kurt2rt.rla.competitors import CompetitorGroups
 from kurt2rt.rla.contest import Contest
+from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
 from kurt2rt.rla.named_situations import NamedSituations
-from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.rla.rla import (
     ASK,
     BASIC,
