@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.channel.channel import Channel
+from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
@@ -53,6 +54,7 @@ class Rounds:
         screen: Screen,
         teacher: Watcher | None,
         channel: Channel | None,
+        health: HealthWatch | None = None,
     ) -> None:
         """`stamps`: when each lesson was written, by command id; goes on here."""
         self._runtime = runtime
@@ -61,6 +63,7 @@ class Rounds:
         self._screen = screen
         self._teacher = teacher
         self._channel = channel
+        self._health = health
         period_s = runtime.robot.can.cycle_s
         self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
         self._status_ticks = round(service.status_period_s / period_s)
@@ -79,6 +82,8 @@ class Rounds:
                 runtime.inbox.put(command)
         if self._channel is not None:
             self._channel.after_tick(record)
+        if self._health is not None:
+            self._health.after_tick(record)
         self._ask(record)
         for acknowledgement in writer.acknowledged():
             self.settled(acknowledgement)

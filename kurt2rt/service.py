@@ -1,5 +1,6 @@
 """The service: the runtime in real time, until somebody ends it."""
 
+import secrets
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -12,9 +13,13 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.ground import Ground
+from kurt2rt.channel.requests import BOOT_BYTES
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.ending import ENDING
+from kurt2rt.health.instruments import Instruments
+from kurt2rt.health.status_socket import StatusSocket, socket_of
+from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
@@ -52,11 +57,13 @@ async def serve(
     duration_s: float | None,
     stopped: bool = False,
     behaviour: str | None = None,
+    instruments: Instruments | None = None,
 ) -> Status | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
     `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
+    `instruments`: what the health report reads beside the runtime.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
     UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
@@ -82,14 +89,19 @@ async def serve(
             )
             if stopped:
                 runtime.school.stop("the robot program was started")
+            boot = secrets.token_bytes(BOOT_BYTES)
+            watch = HealthWatch(runtime, writer, instruments or Instruments(), boot=boot.hex(), knowledge=path)
+            status = StatusSocket(watch, socket_of(path))
+            watch.include(says={"status": lambda: status.trouble})
             async with (
                 anyio.create_task_group() as tasks,
-                _channel(runtime, writer, stamps, service, openness) as channel,
+                _channel(runtime, writer, stamps, service, openness, boot, watch) as channel,
             ):
-                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel)
+                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch)
+                tasks.start_soon(status.serve)
                 await tasks.start(_end_on_signal, runtime)
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
-                with quiet_gc(), short_turns():
+                with quiet_gc(), short_turns(), watch:
                     try:
                         await runtime.scheduler.run(ticks, rounds)
                     finally:
@@ -103,7 +115,13 @@ async def serve(
 
 @asynccontextmanager
 async def _channel(
-    runtime: Runtime, writer: JournalWriter, stamps: dict[str, str], service: ServiceSettings, openness: Openness | None
+    runtime: Runtime,
+    writer: JournalWriter,
+    stamps: dict[str, str],
+    service: ServiceSettings,
+    openness: Openness | None,
+    boot: bytes,
+    watch: HealthWatch,
 ) -> AsyncIterator[Channel | None]:
     if openness is None:
         yield None
@@ -114,10 +132,16 @@ async def _channel(
         stamp_of=lambda command_id: stamps.get(command_id, ""),
     )
     safe = Safe(Path(service.knowledge), writer)
-    surroundings = Surroundings(safekeeping, safe, openness.bus_trouble, openness.ground)
+    surroundings = Surroundings(
+        safekeeping, safe, openness.bus_trouble, openness.ground, boot=boot, health=lambda: watch.newest
+    )
     teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
     try:
         async with open_channel(runtime, teachers, service.port, surroundings) as channel:
+            watch.include(
+                drops={"pictures for teachers": lambda: channel.pictures_skipped},
+                says={"channel": lambda: channel.trouble},
+            )
             openness.listening(channel)
             yield channel
     finally:

@@ -3,7 +3,7 @@
 import secrets
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import anyio
@@ -17,6 +17,7 @@ from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.channel.wire import encode_state
+from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
@@ -38,6 +39,10 @@ class Surroundings:
     copies: Copies
     bus_trouble: Callable[[], str]
     ground: Ground | None
+    boot: bytes = field(default_factory=lambda: secrets.token_bytes(BOOT_BYTES))
+    """Random bytes of this start."""
+    health: Callable[[], HealthReport | None] = lambda: None
+    """The newest report; None before the first."""
 
 
 class Channel:
@@ -80,6 +85,11 @@ class Channel:
         """How many devices get the pictures."""
         return self._site.observers
 
+    @property
+    def pictures_skipped(self) -> int:
+        """Pictures that observers did not get, because the one before was still on its way."""
+        return self._site.pictures_skipped
+
     def after_tick(self, record: TickRecord) -> None:
         """Answer the commands that the tick took, and show the picture when it is time. Never waits."""
         reception, tick = self._reception, record.tick
@@ -111,11 +121,15 @@ async def open_channel(
     runtime: Runtime, teachers: Teachers, port: int, surroundings: Surroundings
 ) -> AsyncIterator[Channel]:
     """Listen for the teachers of `teachers`: on this machine only while none is paired. Raises ChannelError."""
-    boot = secrets.token_bytes(BOOT_BYTES)
+    boot = surroundings.boot
     hello = describe(runtime, boot, simulated=surroundings.ground is not None)
     stamp_of = surroundings.safekeeping.stamp_of
-    reception = Reception(runtime, boot, hello, stamp_of, surroundings.copies, surroundings.ground)
-    telling = Telling(runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground)
+    reception = Reception(
+        runtime, boot, hello, stamp_of, surroundings.copies, surroundings.ground, health=surroundings.health
+    )
+    telling = Telling(
+        runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health
+    )
     site = RobotSite(teachers, reception)
     endpoint = await open_endpoint(site, LOOPBACK if teachers.only_local else EVERYWHERE, port, hears=site.hears)
     site.doorkeeper = endpoint

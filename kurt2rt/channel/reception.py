@@ -14,6 +14,7 @@ from kurt2rt.channel.requests import (
     CommandRequest,
     DriveRequest,
     ExportRequest,
+    HealthRequest,
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
@@ -31,6 +32,8 @@ from kurt2rt.channel.requests import (
     TakeRequest,
     WorldRequest,
 )
+from kurt2rt.health.plain import plain_of
+from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.rla.rla import MID
@@ -88,8 +91,12 @@ class Reception:
         ground: Ground | None,
         *,
         longest_wait_s: float = LONGEST_WAIT_S,
+        health: Callable[[], HealthReport | None] = lambda: None,
     ) -> None:
-        """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing."""
+        """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
+
+        `health`: the newest report; None before the first.
+        """
         self._runtime = runtime
         self._boot = boot
         self._hello = hello
@@ -97,6 +104,7 @@ class Reception:
         self._copies = copies
         self._ground = ground
         self._longest_wait_s = longest_wait_s
+        self._health = health
         self._outcomes = Outcomes()
         self._newest: dict[str, Sender] = {}
         self._under_way: set[asyncio.Task[None]] = set()
@@ -128,6 +136,9 @@ class Reception:
                 return Reply(Verdict.DONE, {"lessons": self._lessons(count)})
             case SituationsRequest():
                 return Reply(Verdict.DONE, {"situations": self._situations()})
+            case HealthRequest():
+                health = self._health()
+                return Reply(Verdict.DONE, {"health": None if health is None else plain_of(health)})
             case WorldRequest():
                 return self._world()
         return Reply(Verdict.NOT_HERE)

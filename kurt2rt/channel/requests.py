@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, get_args, get_type_hints
 from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
 from kurt2rt.rla.rla import BASIC, MID, Phase
 
-VERSION = 3
+VERSION = 4
 """Of the wire contract: what /hello and /state hold. A device refuses another one and says what to do."""
 BOOT_BYTES = 4
 COMMAND_ID_BYTES = 8
@@ -311,6 +311,13 @@ class LessonsRequest(Request):
 
 
 @dataclass(frozen=True, slots=True)
+class HealthRequest(Request):
+    """How the robot's program, its bus, its disk and its machine are."""
+
+    path: ClassVar[str] = "/health"
+
+
+@dataclass(frozen=True, slots=True)
 class WorldRequest(Request):
     """The simulated world."""
 
@@ -365,6 +372,7 @@ REQUESTS: tuple[type[Request], ...] = (
     SaveRequest,
     ExportRequest,
     LessonsRequest,
+    HealthRequest,
     WorldRequest,
     MoveWallRequest,
     PlaceRequest,

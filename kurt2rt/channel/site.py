@@ -71,10 +71,13 @@ class _Observer:
         self.asked_s = float("-inf")
         """When he was last asked whether he is there."""
         self.over = False
+        self.skipped = 0
+        """Pictures that came before the one before them was taken."""
         self._newest = b""
         self._is_new = asyncio.Event()
 
     def show(self, picture: bytes) -> None:
+        self.skipped += self._is_new.is_set()
         self._newest = picture
         self._is_new.set()
 
@@ -97,6 +100,7 @@ class RobotSite:
         self._reception = reception
         self._observers: set[_Observer] = set()
         self._picture = b""
+        self._skipped = 0
         self.doorkeeper: Doorkeeper | None = None
         """To be set once the endpoint is open; before that nothing arrives."""
         self.failures = 0
@@ -106,6 +110,11 @@ class RobotSite:
     def observers(self) -> int:
         """How many get the pictures."""
         return len(self._observers)
+
+    @property
+    def pictures_skipped(self) -> int:
+        """Pictures that observers did not get, because the one before was still on its way to them."""
+        return self._skipped + sum(each.skipped for each in self._observers)
 
     def hears(self, remote: Any) -> bool:
         """Whether an observer there has just said something, so that he is not gone."""
@@ -194,6 +203,7 @@ class RobotSite:
                 picture = await observer.picture()
         finally:  # aiocoap cancels this task when the other side is gone
             self._observers.discard(observer)
+            self._skipped += observer.skipped
 
 
 def path_of(request: Any) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
+from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.question import FeatureDifference, ask
@@ -35,12 +36,15 @@ class Telling:
         safekeeping: Safekeeping,
         bus_trouble: Callable[[], str],
         ground: Ground | None,
+        health: Callable[[], HealthReport | None] = lambda: None,
     ) -> None:
+        """`health`: the newest report, which spares the loop the percentiles; None where nobody makes one."""
         self._runtime = runtime
         self._boot = boot
         self._safekeeping = safekeeping
         self._bus_trouble = bus_trouble
         self._ground = ground
+        self._health = health
         self._pictures = 0
         self._late_p99_ms = 0.0
         self._surprise: SurpriseState | None = None
@@ -54,7 +58,7 @@ class Telling:
         runtime, decision, match = self._runtime, record.decision, record.decision.match
         school, system = runtime.school, runtime.level.system
         if self._pictures % _LATENESS_EVERY == 0:
-            self._late_p99_ms = runtime.ledger.lateness().p99_us / 1000.0
+            self._late_p99_ms = self._late()
         self._pictures += 1
         question: tuple[FeatureDifference, ...] = ()
         if decision.asking and match is not None and decision.asks_at == BASIC:
@@ -111,6 +115,10 @@ class Telling:
             plan=() if plan is None else plan.behaviours,
             plan_says="" if plan is None else plan.says,
         )
+
+    def _late(self) -> float:
+        health = self._health()
+        return self._runtime.ledger.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
 
     def _radius(self, level: str) -> float:
         mid = self._runtime.mid

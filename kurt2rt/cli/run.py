@@ -18,6 +18,7 @@ from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing
 from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.options import WireName
 from kurt2rt.cli.printer import Printer
+from kurt2rt.health.instruments import Instruments
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.recording.can_log import open_can_log
@@ -167,6 +168,11 @@ def run(
         log = None if can_log is None else ending.enter_context(open_can_log(can_log, robot))
         opened = ending.enter_context(open_robot(robot_settings, robot, service.world, seed, log, wire))
 
+        drops, says = {"lines for the terminal": lambda: printer.dropped}, {}
+        if log is not None:
+            drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
+        instruments = Instruments(lambda: opened.robot.health, drops, says)
+
         def line(status: Status) -> str:
             trouble = "" if log is None else log.trouble
             return " | ".join(part for part in (status_line(status, opened.robot.health), trouble) if part)
@@ -197,6 +203,7 @@ def run(
                 duration_s=seconds,
                 stopped=robot != SIMULATED and teacher == "channel",
                 behaviour=behaviour,
+                instruments=instruments,
             )
 
         last = anyio.run(serve_it)

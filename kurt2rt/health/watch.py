@@ -60,6 +60,15 @@ class HealthWatch:
         self._made: HealthReport | None = None
         self._thread = threading.Thread(target=self._run, name="health", daemon=True)
 
+    def include(
+        self,
+        *,
+        drops: Mapping[str, Callable[[], int]] | None = None,
+        says: Mapping[str, Callable[[], str]] | None = None,
+    ) -> None:
+        """Read these of the program's parts as well, from now on: a channel opens when the network is there."""
+        self._instruments = self._instruments.with_more(drops, says)
+
     def listen(self, listener: Callable[[HealthReport], None]) -> None:
         """Call `listener` with each report, in the loop, after a tick; it must not wait."""
         self._listeners.append(listener)

@@ -20,6 +20,7 @@ from kurt2rt.channel.requests import (
     BeAtRequest,
     BehaviourRequest,
     ExportRequest,
+    HealthRequest,
     HelloRequest,
     MoveWallRequest,
     PhaseRequest,
@@ -37,6 +38,8 @@ from kurt2rt.channel.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.state import State
+from kurt2rt.health.plain import report_of
+from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.asking import Asking, facts_of
@@ -45,6 +48,7 @@ from kurt2rt.teaching.hand import Hand
 from kurt2rt.teaching.hello import Hello, hello_of
 from kurt2rt.teaching.lessons import Lessons
 from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.oscore_requests import Response
 from kurt2rt.teaching.pictures import Pictures
 from kurt2rt.teaching.situations import situations_of
 from kurt2rt.teaching.stopping import Stopping
@@ -141,6 +145,15 @@ class TeacherClient(Lessons):
         hello = await self._asking.told(HelloRequest(), lambda response: hello_of(facts_of(response)))
         self._pictures.hear(hello.boot, hello.tick)
         return hello
+
+    async def health(self) -> HealthReport | None:
+        """How the robot's program is; None in its first second."""
+
+        def read(response: Response) -> HealthReport | None:
+            told = facts_of(response).get("health")
+            return None if told is None else report_of(told)
+
+        return await self._asking.told(HealthRequest(), read)
 
     async def world(self) -> World | None:
         """The simulated world; None where the robot is a real one."""

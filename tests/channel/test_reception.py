@@ -15,6 +15,7 @@ from kurt2rt.channel.requests import (
     CorrectRequest,
     DeleteRequest,
     ExportRequest,
+    HealthRequest,
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
@@ -75,7 +76,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
 }
 COMMANDS = {**MOVING, **LASTING}
-READING = {HelloRequest, LessonsRequest, SituationsRequest, WorldRequest}
+READING = {HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WorldRequest}
 
 
 @pytest.fixture

@@ -1,0 +1,138 @@
+"""The health report for other programs of this machine: a socket beside the knowledge file, one line a second."""
+
+import json
+import os
+import socket
+import threading
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
+
+import anyio
+from anyio.abc import Listener, SocketStream
+
+from kurt2rt.channel.schema import WireError
+from kurt2rt.health.plain import plain_of, report_of
+from kurt2rt.health.report import HealthReport
+from kurt2rt.health.watch import HealthWatch
+
+_MOST_READERS = 8
+_TAKEN_WITHIN_S = 2.0
+_REMOVED_WITHIN_S = 0.2
+_LONGEST_LINE = 65_536
+
+
+class StatusError(Exception):
+    """No status can be had; the message says why, and what to do."""
+
+
+def socket_of(knowledge: Path) -> Path:
+    """Where the program that teaches on in a knowledge file tells how it is; there is one such program at most."""
+    return knowledge.with_name(f"{knowledge.name}.status")
+
+
+class StatusSocket:
+    """Tells every reader each report. One that does not read is left."""
+
+    def __init__(self, watch: HealthWatch, path: Path) -> None:
+        """`path`: of the socket; whoever may write it may read the status."""
+        self._watch = watch
+        self._path = path
+        self._news = anyio.Event()
+        self._readers = 0
+        self.trouble = ""
+        """Why nobody can read; empty while somebody could."""
+        watch.listen(self._wake)
+
+    async def serve(self) -> None:
+        """Until cancelled. A place where no socket can be made is told, and nothing else ends."""
+        try:
+            async with _listener(self._path) as listener:
+                await listener.serve(self._tell)
+        except OSError as error:
+            self.trouble = f"{self._path}: no status is told there ({error.strerror}); give a file in another folder"
+
+    def _wake(self, _: HealthReport) -> None:
+        self._news.set()
+        self._news = anyio.Event()
+
+    async def _tell(self, reader: SocketStream) -> None:
+        if self._readers >= _MOST_READERS:
+            await reader.aclose()
+            return
+        self._readers += 1
+        try:
+            async with reader:
+                while True:
+                    report, news = self._watch.newest, self._news
+                    if report is not None:
+                        with anyio.fail_after(_TAKEN_WITHIN_S):
+                            await reader.send(json.dumps(plain_of(report)).encode() + b"\n")
+                    await news.wait()
+        except (anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):
+            return  # gone, or too slow
+        finally:
+            self._readers -= 1
+
+
+def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
+    """Each report of the program that tells at `path`, the newest first; waits for each, so not in a loop of events.
+
+    Raises StatusError when none runs, when nothing comes for `patience_s`, or for another version's words.
+    """
+    with socket.socket(socket.AF_UNIX) as reader:
+        reader.settimeout(patience_s)
+        try:
+            with _short(path) as short:
+                reader.connect(short)
+        except (FileNotFoundError, ConnectionRefusedError) as error:
+            raise StatusError(
+                f"no robot program runs with the knowledge {path.with_suffix('')}; start one with kurt2rt run, or name "
+                "its knowledge file"
+            ) from error
+        except OSError as error:
+            raise StatusError(f"{path}: cannot be read ({error}); be the user of the robot program") from error
+        lines = reader.makefile("rb")
+        while True:
+            try:
+                line = lines.readline(_LONGEST_LINE)
+            except TimeoutError as error:
+                raise StatusError(
+                    f"the robot program at {path} has said nothing for {patience_s:g} s; it hangs or was stopped: end "
+                    "it and start it anew"
+                ) from error
+            except OSError as error:
+                raise StatusError(f"{path}: the robot program ended ({error})") from error
+            if not line:
+                raise StatusError(f"{path}: the robot program has ended")
+            try:
+                yield report_of(json.loads(line))
+            except (ValueError, WireError) as error:
+                raise StatusError(
+                    f"{path}: is not understood ({error}); use the kurt2rt that the robot runs"
+                ) from error
+
+
+@asynccontextmanager
+async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
+    with _short(path) as short:
+        # It takes the place of one that a killed program left: the knowledge file is ours alone.
+        listener = await anyio.create_unix_listener(short, mode=0o600)
+    try:
+        async with listener:
+            yield listener
+    finally:
+        # A disk that hangs must not hold up the end of the program.
+        removing = threading.Thread(target=path.unlink, args=(True,), name="end of status", daemon=True)
+        removing.start()
+        removing.join(_REMOVED_WITHIN_S)
+
+
+@contextmanager
+def _short(path: Path) -> Iterator[str]:
+    """Another name of the same file, as long as the folder is open: the kernel takes no more than 107 bytes."""
+    folder = os.open(path.parent, os.O_PATH | os.O_DIRECTORY)
+    try:
+        yield f"/proc/self/fd/{folder}/{path.name}"
+    finally:
+        os.close(folder)
