@@ -1,7 +1,10 @@
 """The one loader of settings: a YAML file becomes a checked, frozen model, or one clear line says why not."""
 
+import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -68,11 +71,40 @@ def _loaded(text: str) -> Any:
     return yaml.load(text, Loader=_QuickLoader if quick else _Loader)
 
 
+# Whoever builds a runtime anew as it once was does so in one call, and all loaders below it look here; passing a
+# folder through each of them would put it into fifty signatures for the sake of a replay.
+_KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
+
+
+@contextmanager
+def kept_settings(folder: Path) -> Iterator[None]:
+    """While it lasts, `find_config` finds what was kept in `folder`, as `<kind>/<kept_name>`, and nothing else."""
+    token = _KEPT.set(folder)
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
+
+
+def kept_name(name_or_path: str) -> str:
+    """File name under which settings are kept: the shipped one, or one of its own for each path."""
+    path = Path(name_or_path)
+    if path.suffix != ".yaml":
+        return f"{name_or_path}.yaml"
+    return f"{path.stem}-{hashlib.sha256(name_or_path.encode()).hexdigest()[:8]}.yaml"
+
+
 def find_config(kind: str, name_or_path: str) -> Path:
     """Path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
     Raises SettingsError that lists the shipped names when there is no such file.
     """
+    kept = _KEPT.get()
+    if kept is not None:
+        path = kept / kind / kept_name(name_or_path)
+        if path.is_file():
+            return path
+        raise SettingsError(f"{name_or_path}: is not among the settings in {kind} that were kept with the run")
     given = Path(name_or_path)
     if given.suffix == ".yaml" and given.is_file():
         return given

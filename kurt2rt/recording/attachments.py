@@ -1,0 +1,131 @@
+"""What a replay needs beside the ticks: the settings of a run, and what was known at its start, as files within it."""
+
+import base64
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
+from hal.robot_settings import RobotSettings
+from hal.settings import find_config, kept_name, load_settings
+from kurt2rt.expectations.expectation import Expectation
+from kurt2rt.knowledge.entry import StoredEntry
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.tasks.settings import TaskSettings, load_task
+
+ROBOT, TASK = "settings/robot.json", "settings/task.json"
+"""As they were in force, whatever file or option said so."""
+KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
+_SETTINGS = "settings"
+
+
+@dataclass(frozen=True, slots=True)
+class KnownLesson:
+    """A teaching event that was there when the run began."""
+
+    event: TeachingEvent
+    stamped_at: str
+    """UTC, ISO 8601; empty where nobody knows."""
+
+
+def attachments_of(
+    robot: RobotSettings,
+    task: TaskSettings,
+    entries: Iterable[StoredEntry | KnownLesson] = (),
+    saved: Statistics | None = None,
+) -> dict[str, bytes]:
+    """All attachments of a run, by name: take them before the first tick. Raises SettingsError, KnowledgeError."""
+    attached = {
+        ROBOT: robot.model_dump_json(serialize_as_any=True, exclude_unset=True).encode(),
+        TASK: task.model_dump_json(serialize_as_any=True, exclude_unset=True).encode(),
+        KNOWLEDGE: "".join(
+            json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))}) + "\n"
+            for each in entries
+        ).encode(),
+    }
+    if saved is not None:
+        attached[STATISTICS] = encode_statistics(saved)
+    for kind, name in _used_by(task, set()):
+        attached[f"{_SETTINGS}/{kind}/{kept_name(name)}"] = find_config(kind, name).read_bytes()
+    return attached
+
+
+def fingerprints_of(attached: Mapping[str, bytes]) -> dict[str, str]:
+    """SHA-256 of each attachment, hexadecimal."""
+    return {name: hashlib.sha256(data).hexdigest() for name, data in attached.items()}
+
+
+def read_lessons_of(data: bytes) -> list[KnownLesson]:
+    """What `knowledge.jsonl` says. Raises RecordingError."""
+    lessons = []
+    try:
+        for number, line in enumerate(data.decode().splitlines(), start=1):
+            content = json.loads(line)
+            event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
+            lessons.append(KnownLesson(event, content["stamped_at"]))
+    except (KnowledgeError, ValueError, KeyError, TypeError) as error:
+        raise RecordingError(f"{KNOWLEDGE} of the run cannot be read: {error}") from error
+    return lessons
+
+
+def encode_statistics(statistics: Statistics) -> bytes:
+    """JSON, exact to the last bit."""
+    return json.dumps(
+        {
+            "uses": list(statistics.uses.items()),
+            "transitions": [[*key, value] for key, value in statistics.transitions.items()],
+            "values": list(statistics.values.items()),
+            "edge_weights": [[*key, value] for key, value in statistics.edge_weights.items()],
+            "numbers": dict(statistics.numbers),
+            "expectations": [
+                [rla_id, each.lesson, each.count, each.ticks, _text(each.packed_mean), _text(each.packed_squares)]
+                for rla_id, each in statistics.expectations.items()
+            ],
+        }
+    ).encode()
+
+
+def decode_statistics(data: bytes) -> Statistics:
+    """What `encode_statistics` wrote. Raises RecordingError."""
+    try:
+        content: dict[str, Any] = json.loads(data)
+        return Statistics(
+            dict(content["uses"]),
+            {(before, after): count for before, after, count in content["transitions"]},
+            dict(content["values"]),
+            {(before, after): weight for before, after, weight in content["edge_weights"]},
+            dict(content["numbers"]),
+            {
+                rla_id: Expectation(lesson, count, ticks, base64.b64decode(mean), base64.b64decode(squares))
+                for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
+            },
+        )
+    except (ValueError, KeyError, TypeError) as error:
+        raise RecordingError(f"{STATISTICS} of the run cannot be read: {type(error).__name__}: {error}") from error
+
+
+def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterable[tuple[str, str]]:
+    """Kind and name of every settings file that the runtime of a task reads by itself."""
+    named: list[tuple[str, object]] = [("situations", task.situation), ("repertoires", task.repertoire)]
+    named += [("critics", task.critic), ("mid_levels", task.mid)]
+    for kind, name in named:
+        if not isinstance(name, str) or (kind, name) in seen:  # settings that stand in the task are in its own file
+            continue
+        seen.add((kind, name))
+        yield kind, name
+        if kind != "repertoires":
+            continue
+        for action in load_settings(find_config(kind, name), RepertoireSettings).actions:
+            if isinstance(action, TaughtAction | TaskAction):
+                yield "tasks", action.task
+                yield from _used_by(load_task(action.task), seen)
+
+
+def _text(packed: bytes) -> str:
+    return base64.b64encode(packed).decode()
