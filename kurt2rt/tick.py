@@ -64,6 +64,8 @@ class TickRecord(NamedTuple):
     """Why lessons could not be saved when the tick looked; None when they could."""
     events: tuple[TeachingEvent, ...] = ()
     """What was taught in it, by teachers and by the robot itself."""
+    number: int = 0
+    """1, 2, 3 ... of the ticks that were run; `tick` skips those that were missed."""
     knowledge: tuple[Rla, ...] | None = None
     """All RLAs that live after it, where something was taught, and once a second; None in the ticks between."""
 
@@ -116,10 +118,12 @@ class Tick:
         self._driving = self._latched = False
         self._trouble: str | None = None
         self._tell_knowledge_at = 0
+        self._run = 0
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
         mark = self._ledger.mark
+        self._run += 1
         senses = self._robot.sense(now_s)
         mark(Stage.SENSE)
 
@@ -216,6 +220,7 @@ class Tick:
             commands,
             trouble,
             tuple(events),
+            self._run,
             knowledge,
         )
 

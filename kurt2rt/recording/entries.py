@@ -77,6 +77,8 @@ class TickEntry(NamedTuple):
     """One tick: what a replay feeds in, and what has to come out again, bit for bit."""
 
     # What went in.
+    number: int
+    """1, 2, 3 ... of the ticks that were run: where one is missing, it was not recorded."""
     tick: int
     now_s: float
     senses: Senses
@@ -104,6 +106,7 @@ class TickEntry(NamedTuple):
 def tick_entry_of(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:
     """The entry of a tick. `knowledge`: the hash of `record.knowledge` where that is there."""
     return TickEntry(
+        record.number,
         record.tick,
         record.now_s,
         record.senses,
@@ -186,6 +189,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
     senses, grant = entry.senses, entry.grant
     return _present(
         {
+            "number": entry.number,
             "tick": entry.tick,
             "now_s": _number(entry.now_s),
             "senses": {
@@ -262,6 +266,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
     senses, grant = content["senses"], content["grant"]
     opinion, surprise = content.get("opinion"), content.get("surprise")
     return TickEntry(
+        content["number"],
         content["tick"],
         float(content["now_s"]),
         Senses(

@@ -1,6 +1,7 @@
 """Where commands wait for the next tick."""
 
 from collections import deque
+from collections.abc import Iterable
 
 from kurt2rt.teaching.commands import Stop
 from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
@@ -27,6 +28,10 @@ class TeacherInbox:
                 f"{self._capacity} commands wait already; is the robot's loop running? Send it again later"
             )
         self._waiting.append(command)
+
+    def hold(self, commands: Iterable[Input]) -> None:
+        """Have the next tick take exactly these, in this order, as a recorded one did."""
+        self._waiting = deque(commands)
 
     def take(self) -> tuple[Input, ...]:
         """All commands that wait, in the order they came; never blocks."""

@@ -101,6 +101,7 @@ events = (
 )
 entries = some.builds(
     TickEntry,
+    some.integers(1),
     some.integers(0),
     number,
     senses,
