@@ -13,6 +13,15 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
+def sync_file(path: Path) -> None:
+    """Make durable what any program wrote to a file. Raises OSError."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
 def write_durably(path: Path, text: str) -> None:
     """A file that is there whole after a power cut, or as it was before. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import BinaryIO
 
-from kurt2rt.durable import sync_folder
+from kurt2rt.durable import sync_file, sync_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.error import KnowledgeError, explained
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES, has_table
@@ -203,14 +203,25 @@ def identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
 
 
 def make_durable(connection: sqlite3.Connection, path: Path) -> None:
-    """Every commit is on the disk when it returns, from now on. Raises KnowledgeError if the file cannot do that."""
+    """What stands there is on the disk, and every commit when it returns, from now on.
+
+    Raises KnowledgeError if the file cannot do that.
+    """
     try:
         (mode,) = connection.execute("PRAGMA journal_mode = WAL").fetchone()
         connection.execute("PRAGMA synchronous = FULL")
         connection.execute("BEGIN IMMEDIATE")  # finds a read-only or full disk now, not at the first lesson
         connection.execute("ROLLBACK")
+        # What a program wrote that was killed before it was synced is shown by the kernel, and lost if the power goes:
+        # what is found here counts as saved, so it is written to the disk anew.
+        busy, in_log, merged = connection.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
+        if busy or merged < in_log:  # somebody reads in it, and what he does not see yet stays in the log
+            sync_file(log_of(path))
+            sync_folder(path.parent)
     except sqlite3.Error as error:
         raise explained(error, path) from error
+    except OSError as error:
+        raise KnowledgeError(f"{path}: its log cannot be synced ({error}); look at the disk's health") from error
     if mode != "wal":
         raise KnowledgeError(f"{path}: its disk cannot hold an SQLite log (mode {mode}); give a path on a local disk")
 

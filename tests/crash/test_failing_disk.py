@@ -1,0 +1,54 @@
+"""Each call that SQLite makes to the disk fails once, or for a while: no lesson is lost, none comes twice."""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.knowledge.writer import Acknowledgement
+from tests.crash.patience import LESSONS, a_lesson_at_a_time, with_patience
+from tests.crash.taught import require_kept
+from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched
+from tests.knowledge.lessons import BINDING, STAMP
+
+
+def calls_of_a_lesson_at_a_time(path: Path) -> list[Call]:
+    disk = WatchedDisk()
+    with watched(disk):
+        a_lesson_at_a_time(path, disk)
+    return disk.calls
+
+
+def fail_each_call(folder: Path, failure: Failure, lasts: int, every: int) -> Counter[Call]:
+    """Let each call fail in turn, each on a file of its own; which ones failed."""
+    failed: Counter[Call] = Counter()
+    calls = len(calls_of_a_lesson_at_a_time(folder / "sound"))
+    for number in range(1, calls + 1, every):
+        path = folder / f"{number}"
+        disk = WatchedDisk(Fault(number, failure, lasts))
+        with watched(disk):
+            acknowledged, refused = with_patience(path, disk)
+        expected = [Acknowledgement(f"create-{lesson}", lesson, None, STAMP) for lesson in LESSONS]
+        assert acknowledged[-len(LESSONS) :] == expected, (number, disk.failed, refused)
+        for line in refused:
+            assert line.startswith(f"{path}: "), line
+            assert "\n" not in line
+        with Journal.open(path, BINDING) as journal:
+            assert journal.statistics() == Statistics({1: 8}, {(1, 2): 8})
+        require_kept(path, told=len(LESSONS))
+        failed.update(disk.failed[:1])
+    return failed
+
+
+@pytest.mark.parametrize("failure", Failure)
+def test_a_call_that_fails_costs_no_lesson(folder: Path, failure: Failure) -> None:
+    assert fail_each_call(folder, failure, lasts=1, every=4).total() > 50
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("lasts", [1, 2, 7, 40])
+@pytest.mark.parametrize("failure", Failure)
+def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(folder: Path, failure: Failure, lasts: int) -> None:
+    assert set(fail_each_call(folder, failure, lasts, every=1)) == set(Call)

@@ -1,0 +1,130 @@
+"""The power goes at any moment: what was said to be saved is there, once, and the file opens."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge import journal_file
+from kurt2rt.knowledge.journal import Journal
+from tests.crash.operations import Operation
+from tests.crash.patience import a_lesson_at_a_time, with_patience
+from tests.crash.power_cut import Disk, power_cuts
+from tests.crash.taught import a_day, require_kept, taught, teach
+from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched
+from tests.knowledge.lessons import BINDING, entry
+
+LEAST_STATES = 400
+
+
+def files_of(folder: Path) -> dict[str, bytes]:
+    """What stands on the disk; a lock is none of it."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.suffix != ".lock"}
+
+
+def new_file(folder: Path) -> Path:
+    path = folder / "knowledge"
+    Journal.open(path, BINDING).close()
+    return path
+
+
+def after_each_cut(disk: Disk, operations: list[Operation], path: Path, seed: int) -> int:
+    """Look at the file after every power cut there may be; how many those are."""
+    elsewhere = path.parent / "after"
+    elsewhere.mkdir(exist_ok=True)
+    states = 0
+    for states, cut in enumerate(power_cuts(disk, operations, seed), start=1):
+        cut.put(elsewhere)
+        try:
+            require_kept(elsewhere / path.name, cut.told)
+        except Exception as error:
+            sizes = {name: len(content) for name, content in cut.files.items()}
+            error.add_note(f"state {states}, after operation {cut.after}, {cut.told} lessons told, files {sizes}")
+            raise
+    return states
+
+
+def test_nothing_that_was_said_to_be_saved_is_lost_in_any_power_cut(folder: Path) -> None:
+    path, disk = new_file(folder), WatchedDisk()
+    before = Disk.holding(files_of(folder))
+    with watched(disk):
+        a_day(path, disk)
+    assert after_each_cut(before, disk.operations, path, seed=1) > LEAST_STATES
+
+
+def test_what_a_killed_program_had_written_is_on_the_disk_before_anybody_is_told_that_it_is_saved(folder: Path) -> None:
+    """The kernel shows the next program what the first never synced; the teacher's device sends its lesson again."""
+    assert killed_after(folder, range(9)) > LEAST_STATES // 4
+
+
+@pytest.mark.deep
+def test_it_is_so_wherever_it_is_killed(folder: Path) -> None:
+    assert killed_after(folder, range(1000)) > 10 * LEAST_STATES
+
+
+def killed_after(folder: Path, moments: range) -> int:
+    """Kill the program after so many operations, start it again, cut the power; how many states were looked at."""
+    path, first = new_file(folder), WatchedDisk()
+    whole = files_of(folder)
+    with watched(first):
+        a_day(path, first)
+    return sum(
+        killed_then_cut(folder / "killed", path.name, whole, first.operations[:moment], seed=moment)
+        for moment in moments
+        if moment <= len(first.operations)
+    )
+
+
+def killed_then_cut(folder: Path, name: str, whole: dict[str, bytes], operations: list[Operation], seed: int) -> int:
+    disk, second = Disk.holding(whole), WatchedDisk()
+    for operation in operations:
+        disk.do(operation)
+    folder.mkdir(exist_ok=True)
+    disk.now().put(folder)
+    with watched(second), taught(folder / name) as journal:
+        known = len(journal.events())
+        if known:
+            teach(journal, second, known)
+    return after_each_cut(disk, second.operations, folder / name, seed)
+
+
+def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = new_file(folder)
+    synced: list[Path] = []
+    monkeypatch.setattr(journal_file, "sync_file", synced.append)
+    killed = Journal.open(path, BINDING)
+    killed.append([entry(1), entry(2), entry(3)])
+    with Journal.read_only(path) as reader:
+        reading = reader._connection.execute("SELECT sequence FROM lesson")
+        assert reading.fetchone() == (1,)
+        killed.append([entry(4)])
+        assert killed._lock is not None
+        killed._lock.close()  # as the kernel does it for a program that is killed; its log stays
+        with Journal.open(path, BINDING) as journal:
+            assert len(journal.events()) == 4
+        reading.close()
+    assert synced == [journal_file.log_of(path)]
+    killed.close()
+
+
+@pytest.mark.parametrize("shard", [0, pytest.param(1, marks=pytest.mark.deep), pytest.param(2, marks=pytest.mark.deep)])
+def test_what_a_failed_sync_left_in_doubt_is_written_again_before_anybody_is_told(folder: Path, shard: int) -> None:
+    """After an error the kernel takes what it could not write for written: asking it once more does not help."""
+    path, sound = new_file(folder), WatchedDisk()
+    whole = files_of(folder)
+    with watched(sound):
+        a_lesson_at_a_time(path, sound)
+    syncs = [number for number, call in enumerate(sound.calls, start=1) if call is Call.SYNC]
+    chosen = syncs[3::12] if shard == 0 else syncs[shard - 1 :: 2]
+    states = 0
+    for number in chosen:
+        again = folder / f"{number}"
+        again.mkdir()
+        (again / path.name).write_bytes(whole[path.name])
+        disk = WatchedDisk(Fault(number, Failure.BROKEN))
+        with watched(disk):
+            with_patience(again / path.name, disk)
+        assert disk.failed == [Call.SYNC]
+        states += after_each_cut(Disk.holding(whole), disk.operations, again / path.name, seed=number)
+    assert states > LEAST_STATES
