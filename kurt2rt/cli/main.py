@@ -15,6 +15,7 @@ from hal.settings import SettingsError
 from kurt2rt.channel.error import ChannelError
 from kurt2rt.experiments.error import JobKilledError, LessonLostError, StudyError
 from kurt2rt.faults.error import DidNotDriveError
+from kurt2rt.health.error import StatusError
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
 from kurt2rt.page.error import PageError
@@ -51,6 +52,7 @@ _ONE_LINERS = (
     UnitError,
     DidNotDriveError,
     StudyError,
+    StatusError,
 )
 """Errors whose message tells the user what, where and what to do."""
 
@@ -70,6 +72,7 @@ _MENDED_BY_ANOTHER_PATH = {
 _COMMANDS = (
     "demo",
     "run",
+    "status",
     "sim",
     "teach",
     "pair",

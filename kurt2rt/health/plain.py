@@ -82,7 +82,7 @@ _REPORT = _Map(
         discharging=Flag(),
     ),
     drops=ManyOf(_Map(Drops, of=_NAME, count=_COUNT), most=MOST_ROWS),
-    troubles=ManyOf(_Map(Trouble, what=_LINE, since_s=_TIME, to_do=_LINE, urgent=Flag()), most=MOST_ROWS),
+    troubles=ManyOf(_Map(Trouble, about=_NAME, what=_LINE, since_s=_TIME, to_do=_LINE, urgent=Flag()), most=MOST_ROWS),
 )
 
 

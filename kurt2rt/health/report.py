@@ -7,6 +7,8 @@ from dataclasses import dataclass
 class Trouble:
     """Something that is not as it should be, in words for the teacher."""
 
+    about: str
+    """The subject: lateness, ticks, sensors, bus, lessons, disk, queues, machine, or program for the rest."""
     what: str
     since_s: float
     """For how long it has been so."""

@@ -12,6 +12,7 @@ import anyio
 from anyio.abc import Listener, SocketStream
 
 from kurt2rt.channel.schema import WireError
+from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of, report_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.watch import HealthWatch
@@ -20,10 +21,6 @@ _MOST_READERS = 8
 _TAKEN_WITHIN_S = 2.0
 _REMOVED_WITHIN_S = 0.2
 _LONGEST_LINE = 65_536
-
-
-class StatusError(Exception):
-    """No status can be had; the message says why, and what to do."""
 
 
 def socket_of(knowledge: Path) -> Path:

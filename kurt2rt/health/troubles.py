@@ -22,6 +22,7 @@ EMPTY_BATTERY = 0.07
 
 
 class _Found(NamedTuple):
+    about: str
     key: str
     """Stays the same while the words change with the numbers."""
     what: str
@@ -73,7 +74,9 @@ class TroubleBook:
         ]
         now_s = snapshot.now_s
         self._since_s = {each.key: self._since_s.get(each.key, now_s) for each in found}
-        troubles = [Trouble(each.what, now_s - self._since_s[each.key], each.to_do, each.urgent) for each in found]
+        troubles = [
+            Trouble(each.about, each.what, now_s - self._since_s[each.key], each.to_do, each.urgent) for each in found
+        ]
         return tuple(sorted(troubles, key=lambda each: (not each.urgent, -each.since_s)))
 
     def _of_senses(self, snapshot: Snapshot) -> Iterator[_Found]:
@@ -87,17 +90,17 @@ class TroubleBook:
                 continue
             silent = "have never been heard" if math.isinf(age_s) else f"are silent, the newest is {age_s:.1f} s old"
             to_do = "look whether the robot is switched on and its CAN cable sits; the robot stands until they are back"
-            yield _Found(name, f"the {name} {silent}", to_do, True)
+            yield _Found("sensors", name, f"the {name} {silent}", to_do, True)
 
     def _of_ticks(self, punctuality: Punctuality) -> Iterator[_Found]:
         to_do = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"
         if punctuality.missed_lately:
             what = f"{_many(punctuality.missed_lately, 'tick')} missed in the last minute, {punctuality.missed} in all"
-            yield _Found("missed", what, to_do, False)
+            yield _Found("ticks", "missed", what, to_do, False)
         bound_ms = LATE_SHARE * self._settings.can.cycle_s * 1000
         if punctuality.p99_ms > bound_ms:
             what = f"one tick in a hundred begins {punctuality.p99_ms:.1f} ms late or later"
-            yield _Found("late", what, to_do, False)
+            yield _Found("lateness", "late", what, to_do, False)
 
 
 def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
@@ -105,7 +108,7 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     if bus is None:
         return
     if bus.trouble:
-        yield _told("bus", bus.trouble, urgent=bus.latched is not None)
+        yield _told("bus", "bus", bus.trouble, urgent=bus.latched is not None)
     check = "check cable, termination and bit rate"
     for name, what, to_do in (
         ("junk", "CAN frames with junk in them", check),
@@ -116,33 +119,33 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     ):
         lately = counted.lately(name)
         if lately:
-            yield _Found(name, f"{lately} {what} in the last minute", to_do, False)
+            yield _Found("bus", name, f"{lately} {what} in the last minute", to_do, False)
 
 
 def _of_keeping(snapshot: Snapshot, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
     if snapshot.keeper_trouble:
-        yield _told("keeper", snapshot.keeper_trouble, urgent=True)
+        yield _told("lessons", "keeper", snapshot.keeper_trouble, urgent=True)
     if snapshot.last_write_s is not None and snapshot.last_write_s > SLOW_WRITE_S:
         what = f"the disk took {snapshot.last_write_s:.1f} s to keep the last lessons"
-        yield _Found("slow disk", what, "end what else writes to it; kurt2rt doctor measures it", False)
+        yield _Found("lessons", "slow disk", what, "end what else writes to it; kurt2rt doctor measures it", False)
     for disk in disks:
         if disk.free_bytes is None:
             what = f"the disk of {disk.of} does not answer"
-            yield _Found(f"disk {disk.of}", what, "look at its health and its mount", True)
+            yield _Found("disk", f"disk {disk.of}", what, "look at its health and its mount", True)
         elif disk.free_bytes < LITTLE_ROOM_BYTES:
             what = f"only {disk.free_bytes / 10**6:.0f} MB are free for {disk.of}"
             urgent = disk.free_bytes < NO_ROOM_BYTES
-            yield _Found(f"disk {disk.of}", what, "make room on that disk, or move old recordings away", urgent)
+            yield _Found("disk", f"disk {disk.of}", what, "make room on that disk, or move old recordings away", urgent)
 
 
 def _of_machine(machine: Machine) -> Iterator[_Found]:
     if machine.battery is not None and machine.discharging and machine.battery < LOW_BATTERY:
         what = f"this machine's battery has {machine.battery:.0%} left"
-        yield _Found("battery", what, "plug it in", machine.battery < EMPTY_BATTERY)
+        yield _Found("machine", "battery", what, "plug it in", machine.battery < EMPTY_BATTERY)
     available = machine.available_bytes
     if available is not None and available < LITTLE_MEMORY_BYTES:
         what = f"this machine has {available / 10**6:.0f} MB of memory left"
-        yield _Found("memory", what, "end other programs", False)
+        yield _Found("machine", "memory", what, "end other programs", False)
 
 
 def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
@@ -150,17 +153,17 @@ def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
         lately = counted.lately(f"drops {queue}")
         if lately:
             what = f"{queue}: {lately} thrown away in the last minute, for they came quicker than they were taken"
-            yield _Found(f"drops {queue}", what, "", False)
+            yield _Found("queues", f"drops {queue}", what, "", False)
 
 
 def _said(part: str, line: str) -> _Found:
-    return _told(f"says {part}", line, urgent=False)
+    return _told("program", f"says {part}", line, urgent=False)
 
 
-def _told(key: str, line: str, *, urgent: bool) -> _Found:
+def _told(about: str, key: str, line: str, *, urgent: bool) -> _Found:
     """A line as all of this project are: what is wrong, and behind a semicolon what to do."""
     what, _, to_do = line.partition("; ")
-    return _Found(key, what, to_do, urgent)
+    return _Found(about, key, what, to_do, urgent)
 
 
 def _many(count: int, noun: str) -> str:

@@ -35,6 +35,7 @@ def test_every_command_is_found() -> None:
         *(
             "demo",
             "run",
+            "status",
             "sim",
             "teach",
             "pair",

@@ -1,0 +1,164 @@
+"""`kurt2rt status`."""
+
+import json as json_lines
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Annotated
+
+import anyio
+import anyio.from_thread
+import typer
+from rich.console import Console, Group
+from rich.live import Live
+from rich.table import Table
+from rich.text import Text
+
+from kurt2rt.channel.credentials import Device, read_device
+from kurt2rt.health.error import StatusError
+from kurt2rt.health.plain import plain_of
+from kurt2rt.health.report import HealthReport
+from kurt2rt.health.status_socket import reports_at, socket_of
+from kurt2rt.health.words import URGENT, WARNS, headline, rows_of, trouble_in
+from kurt2rt.service_settings import load_service
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.client import TeacherClient
+
+_PATIENCE_S = 5.0
+_STYLES = {WARNS: "yellow", URGENT: "bold red"}
+
+
+def status(
+    knowledge: Annotated[
+        Path | None,
+        typer.Argument(help="Knowledge file that the robot program teaches on in. Default: as the settings say."),
+    ] = None,
+    task: Annotated[
+        str | None, typer.Option(help="Task that the robot program was started with, where no file is given.")
+    ] = None,
+    settings: Annotated[
+        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+    ] = "default",
+    watch: Annotated[bool, typer.Option("--watch", help="Go on, once a second, until Ctrl-C.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the report as JSON, for programs; with --watch a line each second.")
+    ] = False,
+    name: Annotated[
+        str | None,
+        typer.Option("--as", help="Ask over the teacher's channel instead, as this paired device; from any machine."),
+    ] = None,
+    robot: Annotated[
+        str | None, typer.Option(help="With --as, address of the robot. Default: as noted with the pairing.")
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(min=1, max=65535, help="With --as, UDP port of the robot. Default: as noted with the pairing."),
+    ] = None,
+) -> None:
+    """Tell how a robot program that runs is: from another terminal, or another machine.
+
+    How late its ticks begin, what it missed, how old what it senses is, its bus,
+    its disk, what its queues threw away, and what is wrong, since when, and what
+    to do about it.
+
+        kurt2rt status
+        kurt2rt status --watch
+        kurt2rt status --as phone
+
+    A robot program tells it beside its knowledge file, whether it listens to
+    teachers or not, to its own user and to root. Ends with code 1 where
+    something urgent is wrong: the robot stands because of it, or lessons are at
+    risk; with 2 where no robot program runs.
+    """
+    if name is None and (robot is not None or port is not None):
+        raise typer.BadParameter("only the teacher's channel has an address; give --as", param_hint="--robot, --port")
+    service = load_service(settings)
+    if name is not None:
+        reports = _over_the_channel(read_device(Path(service.devices) / name), robot, port)
+    else:
+        beside = Path(service.knowledge)
+        if task is not None:
+            beside = beside.with_name(f"{load_task(task).name}.knowledge")
+        reports = reports_at(socket_of(knowledge or beside), _PATIENCE_S)
+    newest = _show(reports, watch=watch, json=json)
+    if newest.urgent:
+        raise typer.Exit(1)
+
+
+def _show(reports: Iterator[HealthReport], *, watch: bool, json: bool) -> HealthReport:
+    newest = next(reports)
+    with suppress(KeyboardInterrupt), _screen(newest, watch=watch, json=json) as show:
+        for newest in reports if watch else ():
+            show(newest)
+    return newest
+
+
+@contextmanager
+def _screen(first: HealthReport, *, watch: bool, json: bool) -> Iterator[Callable[[HealthReport], None]]:
+    console = Console()
+    if json:
+        typer.echo(_line(first))
+        yield lambda report: typer.echo(_line(report))
+    elif watch:
+        with Live(as_rich(first), console=console, auto_refresh=False) as live:
+            yield lambda report: live.update(as_rich(report), refresh=True)
+    else:
+        console.print(as_rich(first))
+        yield _nothing
+
+
+def as_rich(report: HealthReport) -> Group:
+    """The report as a table, its troubles below."""
+    table = Table(show_header=False, box=None, pad_edge=False)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for row in rows_of(report):
+        style = _STYLES.get(row.level, "")
+        table.add_row(Text(row.name, style=style or "bold"), Text(row.text, style=style))
+    told = [Text(f"! {trouble_in(each)}", style=_STYLES[URGENT if each.urgent else WARNS]) for each in report.troubles]
+    return Group(Text(headline(report), style=_style_of(report)), table, *told)
+
+
+def _style_of(report: HealthReport) -> str:
+    return _STYLES[URGENT] if report.urgent else _STYLES[WARNS] if report.troubles else "green"
+
+
+def _line(report: HealthReport) -> str:
+    return json_lines.dumps(plain_of(report))
+
+
+def _over_the_channel(device: Device, host: str | None, port: int | None) -> Iterator[HealthReport]:
+    """Ask once a second. Raises StatusError when nobody answers, CredentialsError."""
+    with anyio.from_thread.start_blocking_portal() as portal, _asking(portal, device, host, port) as client:
+        last = None
+        while True:
+            try:
+                report = portal.call(client.health)
+            except NoAnswerError as error:
+                where = f"{host or device.host}:{port or device.port}"
+                raise StatusError(
+                    f"no robot answers at {where} as {device.name}; is kurt2rt run running? ({error})"
+                ) from error
+            if report is not None and report != last:
+                yield report
+                last = report
+            portal.call(anyio.sleep, 1.0 if report is not None else 0.2)
+
+
+@contextmanager
+def _asking(
+    portal: anyio.from_thread.BlockingPortal, device: Device, host: str | None, port: int | None
+) -> Iterator[TeacherClient]:
+    with portal.wrap_async_context_manager(TeacherClient(device.folder, host, port)) as client:
+        portal.call(_look_away, client)
+        yield client
+
+
+async def _look_away(client: TeacherClient) -> None:
+    """Whoever asks how the robot is does not look at it: it is not told that its teacher is there."""
+    client.watching = False
+
+
+def _nothing(_: HealthReport) -> None:
+    pass
