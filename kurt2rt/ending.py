@@ -1,6 +1,147 @@
-"""The signals that end a program which drives a robot."""
+"""The end of a program that drives a robot: the signals that ask for it, the wheels first, over within a second."""
 
+import math
+import os
 import signal
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from types import FrameType, TracebackType
+from typing import Self
 
 ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
+
+LONGEST_S = 1.0
+"""From the signal to the end of the process, whatever hangs."""
+_GIVES_UP_S = 0.9
+_KEPT_BACK_S = 0.2
+"""Of that for what comes after the one who is patient."""
+_LAST_WORD_S = 0.05
+
+Act = Callable[[], object]
+
+
+class Ending:
+    """Hears signals in a thread of its own: also while the loop, or whatever it waits for, hangs.
+
+    At the first signal that ends the program it does what `first` was given, then gives the rest its time. Use it in
+    the main thread, as a context manager.
+    """
+
+    def __init__(
+        self, *, others: Mapping[signal.Signals, Act] | None = None, give_up: Callable[[str], None] | None = None
+    ) -> None:
+        """`others`: what other signals ask for, done in this thread, too; they end nothing.
+
+        `give_up` is called when the time is over, with what was waited for; it ends the process. None: nobody does.
+        """
+        self._others = dict(others or {})
+        self._give_up = give_up
+        self._acts: list[Act] = []
+        self._failures: list[Exception] = []
+        self._deadline_s = math.inf
+        self._lock = threading.Lock()
+        self._before: dict[signal.Signals, signal._HANDLER] = {}
+        self._wakeup_before = -1
+        self._bell, self._ear = socket.socketpair()
+        self._bell.setblocking(False)
+        self._thread = threading.Thread(target=self._listen, name="ending", daemon=True)
+        self.waits_for = "its start"
+        """What the program is busy with, for the last word when the time is over."""
+
+    @property
+    def asked(self) -> bool:
+        """Whether the program was told to end."""
+        return self._deadline_s < math.inf
+
+    def patience_s(self, most_s: float) -> float:
+        """How long somebody may be waited for who would like `most_s`: less when the program was told to end."""
+        return max(0.0, min(most_s, self._deadline_s - _KEPT_BACK_S - time.monotonic()))
+
+    @contextmanager
+    def first(self, *acts: Act) -> Iterator[None]:
+        """What to do at once when the program is told to end while the block runs, in this order; none may wait.
+
+        Done by the thread that hears, or here where it was told so before.
+        """
+        with self._lock:
+            self._acts += acts
+            late = self.asked
+        if late:
+            self._do(acts)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._acts = [each for each in self._acts if each not in acts]
+
+    def __enter__(self) -> Self:
+        self._wakeup_before = signal.set_wakeup_fd(self._bell.fileno(), warn_on_full_buffer=False)
+        self._thread.start()
+        for number in (*ENDING, *self._others):
+            self._before[number] = signal.signal(number, _is_heard_elsewhere) or signal.SIG_DFL
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self.asked and self._give_up is not None:
+            return  # the interpreter's own end may hang as well
+        for number, before in self._before.items():
+            signal.signal(number, before)
+        signal.set_wakeup_fd(self._wakeup_before)
+        self._bell.close()
+        self._thread.join()
+        self._ear.close()
+        if error is None and self._failures:
+            raise self._failures[0]
+
+    def _listen(self) -> None:
+        while True:
+            left_s = self._deadline_s - time.monotonic()
+            if left_s <= 0 and self._give_up is not None:
+                self._give_up(self.waits_for)
+                return
+            self._ear.settimeout(left_s if 0 < left_s < math.inf else None)
+            try:
+                numbers = self._ear.recv(64)
+            except TimeoutError:
+                continue
+            if not numbers:
+                return
+            for number in numbers:
+                self._hear(number)
+
+    def _hear(self, number: int) -> None:
+        other = self._others.get(signal.Signals(number))
+        if other is not None:
+            self._do((other,))
+        elif number in ENDING and not self.asked:
+            with self._lock:
+                self._deadline_s = time.monotonic() + _GIVES_UP_S
+                acts = tuple(self._acts)
+            self._do(acts)
+
+    def _do(self, acts: tuple[Act, ...]) -> None:
+        for act in acts:
+            try:
+                act()
+            except Exception as error:  # noqa: BLE001  # the next ones are done all the same; raised at the end
+                self._failures.append(error)
+
+
+def leave(waited_for: str) -> None:
+    """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
+    line = f"kurt2rt: ended without {waited_for}, which did not end in time; look at disk and network\n"
+    # A terminal may hang as well.
+    word = threading.Thread(target=os.write, args=(2, line.encode()), daemon=True)
+    word.start()
+    word.join(_LAST_WORD_S)
+    os._exit(2)
+
+
+def _is_heard_elsewhere(_number: int, _frame: FrameType | None) -> None:
+    """Python wants a handler; the number goes to the thread that listens before this is called."""

@@ -64,10 +64,8 @@ class Rounds:
         self._teacher = teacher
         self._channel = channel
         self._health = health
-        period_s = runtime.robot.can.cycle_s
-        self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
-        self._status_ticks = round(service.status_period_s / period_s)
-        self._ticks_per_second = round(1 / period_s)
+        self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
+        self.take(service)
         self._asking = False
         self._asked_at = -self._ticks_per_second
         self.last: Status | None = None
@@ -95,6 +93,12 @@ class Rounds:
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
             sweep()
+
+    def take(self, service: ServiceSettings) -> None:
+        """Go by these periods from now on."""
+        period_s = self._runtime.robot.can.cycle_s
+        self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
+        self._status_ticks = round(service.status_period_s / period_s)
 
     def settled(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never can be."""

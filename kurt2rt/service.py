@@ -1,13 +1,12 @@
 """The service: the runtime in real time, until somebody ends it."""
 
 import secrets
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
-import anyio.abc
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
@@ -16,21 +15,33 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.requests import BOOT_BYTES
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
-from kurt2rt.ending import ENDING
+from kurt2rt.ending import Ending
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import StatusSocket, socket_of
 from kurt2rt.health.watch import HealthWatch
-from kurt2rt.knowledge.opening import go_on_teaching
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.rounds import Rounds, Screen, Status, Watcher
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.systemd.heartbeat import Heartbeat
+from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tick import TickRecord
+from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.short_turns import short_turns
 from kurt2rt.timing.timerfd import TimerfdClock
+from kurt2rt.upkeep import Upkeep
+
+_ENDS = "the service ends"
+_JOURNAL_S = 10.0
+"""For the disk to keep the last lessons, where nobody told the program to end."""
+_KEYS_S = 2.0
+"""The same for the counters of the teachers' messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +69,15 @@ async def serve(
     stopped: bool = False,
     behaviour: str | None = None,
     instruments: Instruments | None = None,
+    upkeep: Upkeep | None = None,
+    knowledge: OpenedKnowledge | None = None,
 ) -> Status | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
     `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
-    `instruments`: what the health report reads beside the runtime.
+    `instruments`: what the health report reads beside the runtime. `upkeep`: of the program around, with a service
+    manager perhaps. `knowledge`: that of the settings, where it is open already; it is closed here.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
     UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
@@ -71,10 +85,13 @@ async def serve(
     wanted = Wanted(task.behaviours)
     if behaviour is not None:
         wanted.pursue(behaviour)
-    with TimerfdClock() as clock:
-        opened = go_on_teaching(path, settings, task)
+    with ExitStack() as around:
+        clock = around.enter_context(TimerfdClock())
+        upkeep = upkeep or Upkeep(around.enter_context(Ending()), Notifier({}))
+        ending = upkeep.ending
+        opened = knowledge or go_on_teaching(path, settings, task)
         stamps = opened.stamps
-        with JournalWriter(opened.journal, utc_now) as writer:
+        with _writing(opened.journal, ending) as writer:
             runtime = build_runtime(
                 robot,
                 settings,
@@ -93,21 +110,33 @@ async def serve(
             watch = HealthWatch(runtime, writer, instruments or Instruments(), boot=boot.hex(), knowledge=path)
             status = StatusSocket(watch, socket_of(path))
             watch.include(says={"status": lambda: status.trouble})
+            parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.parts}
+            heartbeat = Heartbeat(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
             async with (
                 anyio.create_task_group() as tasks,
-                _channel(runtime, writer, stamps, service, openness, boot, watch) as channel,
+                _channel(runtime, writer, stamps, service, openness, boot, watch, ending) as channel,
             ):
                 rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch)
+
+                def after_tick(record: TickRecord) -> None:
+                    rounds(record)
+                    heartbeat.beat(record.now_s)
+
                 tasks.start_soon(status.serve)
-                await tasks.start(_end_on_signal, runtime)
+                if upkeep.reloading is not None:
+                    tasks.start_soon(upkeep.reloading.serve, _Taking(rounds, service, upkeep.tell))
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
-                with quiet_gc(), short_turns(), watch:
+                # The wheels first, also where the loop hangs.
+                acts = (lambda: robot.emergency_stop(_ENDS), runtime.scheduler.end, upkeep.notifier.stopping)
+                with quiet_gc(), short_turns(), watch, ending.first(*acts):
                     try:
-                        await runtime.scheduler.run(ticks, rounds)
+                        await runtime.scheduler.run(ticks, after_tick)
                     finally:
-                        robot.emergency_stop("the service ends")
+                        robot.emergency_stop(_ENDS)
+                ending.waits_for = "the teachers' channel"
                 tasks.cancel_scope.cancel()
             rounds.save_statistics()
+            ending.waits_for = "the newest lessons"
         for acknowledgement in writer.acknowledged():
             screen.settled(acknowledgement)
     return rounds.last
@@ -122,6 +151,7 @@ async def _channel(
     openness: Openness | None,
     boot: bytes,
     watch: HealthWatch,
+    ending: Ending,
 ) -> AsyncIterator[Channel | None]:
     if openness is None:
         yield None
@@ -145,11 +175,30 @@ async def _channel(
             openness.listening(channel)
             yield channel
     finally:
-        teachers.close()
+        # In a thread, for the disk may hang; what was reserved and not used is skipped at the next start.
+        with anyio.move_on_after(ending.patience_s(_KEYS_S), shield=True):
+            await anyio.to_thread.run_sync(teachers.close, abandon_on_cancel=True)
 
 
-async def _end_on_signal(runtime: Runtime, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(*ENDING) as signals:
-        task_status.started()
-        async for _ in signals:
-            runtime.scheduler.end()
+@contextmanager
+def _writing(journal: Journal, ending: Ending) -> Iterator[JournalWriter]:
+    writer = JournalWriter(journal, utc_now)
+    try:
+        yield writer
+    finally:
+        writer.close(ending.patience_s(_JOURNAL_S))
+
+
+class _Taking:
+    """Takes settings that were read anew."""
+
+    def __init__(self, rounds: Rounds, service: ServiceSettings, tell: Callable[[str], None]) -> None:
+        self._rounds = rounds
+        self._priority = service.real_time_priority
+        self._tell = tell
+
+    def __call__(self, service: ServiceSettings) -> None:
+        self._rounds.take(service)
+        if service.real_time_priority != self._priority:
+            self._priority = service.real_time_priority
+            self._tell(take_real_time_priority(self._priority))

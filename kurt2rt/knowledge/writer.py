@@ -106,6 +106,11 @@ class JournalWriter:
         """Lessons submitted and not yet settled."""
         return self._submitted - self._settled
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether its thread still works; one that ended keeps nothing more."""
+        return self._thread.is_alive()
+
     def submit(self, event: TeachingEvent) -> None:
         """Hand over a lesson; never waits. Raises KnowledgeError after `close`."""
         self._require_open()
@@ -138,13 +143,17 @@ class JournalWriter:
         return flush.durable
 
     def close(self, timeout_s: float = 10.0) -> None:
-        """Flush, then close the journal. Raises KnowledgeError that says why and how many lessons were not written."""
+        """Flush, then close the journal; waits so long for the disk, all in all.
+
+        Raises KnowledgeError that says why and how many lessons were not written.
+        """
         if not self._accepting:
             return
         self._accepting = False
+        until_s = time.monotonic() + timeout_s
         self.flush(timeout_s)
         self._inbox.put(_Stop())
-        self._thread.join(timeout_s)
+        self._thread.join(max(0.0, until_s - time.monotonic()))
         if self.trouble is not None or self._thread.is_alive():
             why = self.trouble or f"{self._journal.path}: the disk does not answer; look at its health"
             raise KnowledgeError(f"{why}; closed with {self.unwritten} lessons not written")

@@ -14,11 +14,21 @@ class Heartbeat:
     There is no timer: a loop that hangs sends nothing.
     """
 
-    def __init__(self, notifier: Notifier, period_s: float, parts: Mapping[str, Callable[[], bool]]) -> None:
-        """`period_s`: between two ticks. `parts`: what else has to be alive, by name for whoever reads the status."""
+    def __init__(
+        self,
+        notifier: Notifier,
+        period_s: float,
+        parts: Mapping[str, Callable[[], bool]],
+        tell: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        """`period_s`: between two ticks. `parts`: what else has to be alive, by name for whoever reads the status.
+
+        `tell` takes what is wrong, for the log; it may not wait.
+        """
         self._notifier = notifier
         self._period_s = period_s
         self._parts = parts
+        self._tell = tell
         self._pings_every_s = None if notifier.watchdog_s is None else notifier.watchdog_s / 2
         self._ticks = 0
         self._since_s: float | None = None
@@ -38,6 +48,7 @@ class Heartbeat:
             self._since_s, self._ticks = now_s, 0
             if self.trouble:
                 self._notifier.status(f"not well: {self.trouble}")
+                self._tell(f"not well: {self.trouble}")
             else:
                 self._notifier.ping()
 

@@ -1,0 +1,22 @@
+"""What keeps the program up and ends it well, for whoever serves."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from kurt2rt.ending import Ending
+from kurt2rt.reloading import Reloading
+from kurt2rt.systemd.notifier import Notifier
+
+
+@dataclass(frozen=True, slots=True)
+class Upkeep:
+    """Made by the program around its service."""
+
+    ending: Ending
+    notifier: Notifier
+    reloading: Reloading | None = None
+    """None: settings stay as they were at the start."""
+    parts: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
+    """What has to be alive beside the loop, by name."""
+    tell: Callable[[str], None] = lambda _: None
+    """Takes what whoever reads the log should know. Called from the loop: it may not wait."""
