@@ -9,6 +9,9 @@ from kurt2rt.recording.error import RecordingError
 RUN_VERSION = 1
 """Raise it when head, entries or attachments change so that an older program would misread them."""
 
+RUN_METADATA = "run"
+"""Name of the metadata record that holds the head, in each segment."""
+
 
 @dataclass(frozen=True, slots=True)
 class RunHead:

@@ -1,0 +1,50 @@
+"""Compares a tick as it was recorded with the same tick replayed, bit for bit."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from kurt2rt.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.rla.fingerprint import knowledge_hash_of
+from kurt2rt.tick import TickRecord
+
+
+class Difference(NamedTuple):
+    """Something that came out differently."""
+
+    tick: int
+    now_s: float
+    field: str
+    """Dots between its levels."""
+    recorded: object
+    replayed: object
+
+    def __str__(self) -> str:
+        return (
+            f"at {self.now_s:.2f} s (tick {self.tick}) {self.field} was {_said(self.recorded)}, "
+            f"and is {_said(self.replayed)} now"
+        )
+
+
+def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
+    """All that a replayed tick has otherwise than the recorded one; empty where all is the same to the last bit."""
+    knowledge = None
+    if entry.knowledge is not None and record.knowledge is not None:
+        knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))
+    again = tick_entry_of(record, saved=entry.saved, knowledge=knowledge)
+    if again == entry:
+        return []
+    return [Difference(entry.tick, entry.now_s, *each) for each in _differences("", entry, again)]
+
+
+def _differences(place: str, recorded: object, replayed: object) -> Iterator[tuple[str, object, object]]:
+    if isinstance(recorded, tuple) and hasattr(recorded, "_fields") and type(recorded) is type(replayed):
+        for name in recorded._fields:
+            below = f"{place}.{name}" if place else name
+            yield from _differences(below, getattr(recorded, name), getattr(replayed, name))
+    elif recorded != replayed and repr(recorded) != repr(replayed):  # NaN is not equal to itself
+        yield place, recorded, replayed
+
+
+def _said(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 120 else f"{text[:117]}..."

@@ -1,0 +1,50 @@
+"""Reads a recorded run from its files."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from kurt2rt.recording.entries import TickEntry, decode_tick
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.run_folder import segments_in
+from kurt2rt.recording.run_head import RUN_METADATA, decode_head
+from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.replay.run import Run
+
+_TICK = "/tick"
+
+
+def read_run(path: Path) -> Run:
+    """The run in a folder, or of which `path` is a segment. Raises RecordingError in a sentence."""
+    try:
+        segments = segments_in(path) if path.is_dir() else _beside(path)
+    except OSError as error:
+        raise RecordingError(f"{path}: cannot be read ({error}); give the folder of a recorded run") from error
+    if not segments:
+        raise RecordingError(f"{path}: holds no recorded run; give a folder with files such as 0001.mcap")
+    files = _Files([SegmentReader(each) for each in segments])
+    head = files.readers[0].head()
+    if RUN_METADATA not in head.metadata:
+        raise RecordingError(f"{segments[0]}: says of no run of kurt2rt, or is torn at its very beginning")
+    return Run(str(path), decode_head(head.metadata[RUN_METADATA]), head.attachments, files.ticks, files.torn)
+
+
+class _Files:
+    """Segments of one run, one after the other."""
+
+    def __init__(self, readers: Sequence[SegmentReader]) -> None:
+        self.readers = readers
+
+    def ticks(self) -> Iterator[TickEntry]:
+        for reader in self.readers:
+            for message in reader.messages({_TICK}):
+                yield decode_tick(message.data)
+
+    def torn(self) -> str:
+        """What the last that was torn says; a tick that went missing between two is told as a gap."""
+        return next((reader.torn for reader in reversed(self.readers) if reader.torn), "")
+
+
+def _beside(segment: Path) -> list[Path]:
+    """All segments of the run that this one belongs to; a file of another name stands alone."""
+    siblings = segments_in(segment.parent)
+    return siblings if segment in siblings else [segment]

@@ -1,0 +1,95 @@
+"""Replays a run: what was recorded goes through the same tick again."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from hal.settings import SettingsError
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
+from kurt2rt.layers.wanted import Wanted
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.replay.run import Run
+from kurt2rt.replay.surroundings import Replayed
+from kurt2rt.rla.rla_system import UnfitEventError
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.tick import TickRecord
+
+
+class ReplayedTick(NamedTuple):
+    """A tick twice: as it was recorded, and as it came out again."""
+
+    entry: TickEntry
+    record: TickRecord
+
+
+class Replay:
+    """A runtime as it was at the start of a run, and its ticks, one after the other."""
+
+    def __init__(self, run: Run) -> None:
+        """Raises RecordingError where this program cannot build what the run began with."""
+        self.run = run
+        self._replayed = Replayed()
+        self.runtime = self._build()
+
+    def step(self, entry: TickEntry) -> TickRecord:
+        """The next tick, with all that went into it."""
+        runtime = self.runtime
+        self._replayed.entry = entry
+        runtime.inbox.hold(entry.commands)
+        runtime.ledger.begin(0.0)
+        record = runtime.tick.run(entry.tick, entry.now_s)
+        runtime.ledger.end()
+        if entry.saved:
+            runtime.to_save()  # drops the counts of RLAs that are no more, and plans are made of counts
+        return record
+
+    def __iter__(self) -> Iterator[ReplayedTick]:
+        """All ticks, once. Raises RecordingError."""
+        for entry in self.run.entries():
+            yield ReplayedTick(entry, self.step(entry))
+
+    def _build(self) -> Runtime:
+        run, head = self.run, self.run.head
+        try:
+            wanted = Wanted(run.task.behaviours)
+            if head.behaviour:
+                wanted.pursue(head.behaviour)
+            with run.settings():
+                runtime = build_runtime(
+                    self._replayed,
+                    run.robot,
+                    run.task,
+                    [lesson.event for lesson in run.lessons],
+                    self._replayed,
+                    self._replayed,
+                    statistics=StatisticsCounter(dict(run.saved.uses), dict(run.saved.transitions)),
+                    attended=head.attended,
+                    wanted=wanted,
+                    saved=run.saved,
+                    asked=head.asked,
+                )
+        except (SettingsError, KnowledgeError, UnfitEventError, UnknownActionError, UnknownBehaviourError) as error:
+            raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error
+        except ValueError as error:
+            raise RecordingError(f"{run.name}: cannot be replayed: {error}") from error
+        if head.stopped:
+            runtime.school.stop(head.stopped)
+        return runtime
+
+
+def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
+    """The runtime as it was after the last tick that began by `now_s` of the runtime's clock, and that tick.
+
+    Of a time before the first tick, the first. Raises RecordingError, also for a run without ticks.
+    """
+    replay = Replay(run)
+    last = None
+    for entry in run.entries():
+        if last is not None and entry.now_s > now_s:
+            break
+        last = ReplayedTick(entry, replay.step(entry))
+    if last is None:
+        raise RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")
+    return replay.runtime, last

@@ -1,0 +1,126 @@
+"""A recorded run, as it is read."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pydantic import ValidationError
+
+from hal.robot_settings import RobotSettings
+from hal.settings import kept_settings
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.recording.attachments import (
+    KNOWLEDGE,
+    ROBOT,
+    STATISTICS,
+    TASK,
+    KnownLesson,
+    decode_statistics,
+    fingerprints_of,
+    read_lessons_of,
+)
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.run_head import RunHead
+from kurt2rt.tasks.settings import TaskSettings
+
+
+class Run:
+    """One start of the robot program until its end: what stood at its beginning, and its ticks."""
+
+    def __init__(
+        self,
+        name: str,
+        head: RunHead,
+        attachments: Mapping[str, bytes],
+        read: Callable[[], Iterator[TickEntry]],
+        torn: Callable[[], str] = str,
+    ) -> None:
+        """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
+
+        Raises RecordingError where what a replay needs is missing or damaged.
+        """
+        self.name = name
+        self.head = head
+        self._attachments = attachments
+        self._read = read
+        self._torn = torn
+        self._gap = ""
+        self._check()
+
+    @property
+    def trouble(self) -> str:
+        """Why `entries` ended before the run did, in a sentence; empty where it did not, as far as it has come."""
+        return self._gap or self._torn()
+
+    @property
+    def whole(self) -> bool:
+        """Whether no tick was missing between those that were read: the end alone may be."""
+        return not self._gap
+
+    @cached_property
+    def robot(self) -> RobotSettings:
+        """Settings of the robot, as they were in force."""
+        return RobotSettings.model_validate_json(self._attachments[ROBOT])
+
+    @cached_property
+    def task(self) -> TaskSettings:
+        """Settings of the task, as they were in force."""
+        return TaskSettings.model_validate_json(self._attachments[TASK])
+
+    @cached_property
+    def lessons(self) -> tuple[KnownLesson, ...]:
+        """What had been taught before the run."""
+        return tuple(read_lessons_of(self._attachments[KNOWLEDGE]))
+
+    @cached_property
+    def saved(self) -> Statistics:
+        """What had been counted before the run."""
+        data = self._attachments.get(STATISTICS)
+        return Statistics() if data is None else decode_statistics(data)
+
+    @contextmanager
+    def settings(self) -> Iterator[None]:
+        """While it lasts all settings are those that were kept with the run."""
+        with TemporaryDirectory(prefix="kurt2rt-replay-") as folder:
+            for name, data in self._attachments.items():
+                path = Path(folder, name)
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(data)
+            with kept_settings(Path(folder, "settings")):
+                yield
+
+    def entries(self) -> Iterator[TickEntry]:
+        """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
+        self._gap = ""
+        for number, entry in enumerate(self._read(), start=1):
+            if entry.number != number:
+                missing = entry.number - number
+                self._gap = (
+                    f"{missing} ticks before {entry.now_s:.2f} s (tick {entry.tick}) are not in the recording, "
+                    "so what came after them cannot be replayed"
+                )
+                return
+            yield entry
+
+    def _check(self) -> None:
+        missing = [name for name in (ROBOT, TASK, KNOWLEDGE) if name not in self._attachments]
+        if missing:
+            raise RecordingError(
+                f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
+                "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
+            )
+        found = fingerprints_of(self._attachments)
+        for name, fingerprint in self.head.fingerprints.items():
+            if name in found and found[name] != fingerprint:
+                raise RecordingError(f"{self.name}: {name} is damaged; give another copy of the run")
+        try:
+            _ = self.robot, self.task
+        except ValidationError as error:
+            problem = error.errors(include_url=False)[0]
+            raise RecordingError(
+                f"{self.name}: was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
+                f"({'.'.join(map(str, problem['loc']))}: {problem['msg']}); replay it with that one"
+            ) from error
