@@ -1,0 +1,173 @@
+"""From a runtime and the record of its newest tick to the facts of that decision."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.layers.decision import Decision, MidDecision
+from kurt2rt.rla.lesson_book import LessonRecord, rla_of
+from kurt2rt.rla.rla import BASIC, MID, Rla, RlaRewarded, SituationNamed
+from kurt2rt.rla.rla_system import Match, RlaSystem
+from kurt2rt.runtime import Runtime
+from kurt2rt.tick import TickRecord
+
+StampOf = Callable[[str], str]
+"""When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
+
+
+def facts_of(runtime: Runtime, record: TickRecord, stamp_of: StampOf, *, most: int | None = None) -> DecisionFacts:
+    """What the decision of `record`, the newest tick of `runtime`, rested on.
+
+    `most`: how many RLAs behind the nearest are told of each level; None: all. With 8 it takes less than a millisecond.
+    """
+    decision, school = record.decision, runtime.school
+    reader = _Reader(runtime, stamp_of, most)
+    mid = decision.mid
+    return DecisionFacts(
+        tick=record.tick,
+        now_s=record.now_s,
+        robot=runtime.robot.name,
+        task=runtime.task.name,
+        phase=int(school.phase),
+        cause=decision.cause.value,
+        action=decision.action,
+        asks_at=decision.asks_at,
+        decided=decision.wheel_speeds,
+        granted=record.grant.wheel_speeds,
+        reasons=record.grant.reasons,
+        latched=record.grant.latched,
+        stopped_because=school.stopped_because,
+        trouble=record.trouble or "",
+        teacher=school.authority.teacher or "",
+        infrared_counts=record.senses.infrared_counts,
+        infrared_age_s=record.senses.infrared_age_s,
+        basic=reader.basic(record, decision),
+        mid=None if mid is None else reader.mid(mid),
+        overridden=mid is not None and mid.overridden,
+        plan_says="" if decision.plan is None else decision.plan.says,
+    )
+
+
+class _Reader:
+    """Looks things up in one runtime."""
+
+    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None) -> None:
+        self._runtime = runtime
+        self._system: RlaSystem = runtime.level.system
+        self._stamp_of = stamp_of
+        self._most = most
+        self._lessons = _by_rla(self._system.lessons)
+
+    def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
+        vector, system = record.situation.vector, self._system
+        # Where the mid level asks, the decision holds that level's match.
+        match = decision.match if decision.asks_at == BASIC else system.match(vector, record.behaviour)
+        return self._level(
+            BASIC, record.behaviour, self._runtime.definition.names, vector, system.weights, match, decision.rla_id
+        )
+
+    def mid(self, decision: MidDecision) -> LevelFacts | None:
+        mid = self._runtime.mid
+        if mid is None:
+            return None
+        space, vector = mid.settings.space, mid.vector
+        weights = np.ones(space.dimensions) if space.weights is None else space.weights
+        symbols = space.metric != "euclidean"
+        facts = self._level(
+            MID, "", mid.settings.features, vector, weights, decision.match, decision.rla_id, symbols=symbols
+        )
+        words = mid.settings.situation.words
+        there = () if facts.nearest is None else words(facts.nearest.condition)
+        return _with_words(facts, words(vector), there)
+
+    def _level(
+        self,
+        level: str,
+        behaviour: str,
+        names: tuple[str, ...],
+        vector: NDArray[np.float64],
+        weights: NDArray[np.float64],
+        match: Match | None,
+        driver_id: int | None,
+        *,
+        symbols: bool = False,
+    ) -> LevelFacts:
+        ranking = self._system.nearest_first(vector, behaviour, level)
+        distances: Mapping[int, float] = dict(ranking)
+        nearest = None if match is None else self._story(match.rla, match.radius, match.distance)
+        driver_rla = None if driver_id is None else self._system.get(driver_id)
+        driver = None
+        if driver_rla is not None:
+            driver = self._story(driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf))
+        others: list[RlaStory] = []
+        for rla_id, distance in ranking:
+            rla = self._system.get(rla_id)
+            if rla is None or (match is not None and rla_id == match.rla.rla_id):
+                continue
+            if self._most is not None and len(others) >= self._most:
+                break
+            others.append(self._story(rla, self._radius_of(rla), distance))
+        return LevelFacts(
+            level=level,
+            behaviour=behaviour,
+            names=names,
+            vector=tuple(vector.tolist()),
+            weights=tuple(weights.tolist()),
+            euclidean=not symbols,
+            nearest=nearest,
+            driver=driver,
+            others=tuple(others),
+            count=len(ranking),
+        )
+
+    def _radius_of(self, rla: Rla) -> float:
+        if rla.radius is not None:
+            return rla.radius
+        mid = self._runtime.mid
+        return self._system.radius if rla.level == BASIC or mid is None else mid.settings.learning.radius
+
+    def _story(self, rla: Rla, radius: float, distance: float) -> RlaStory:
+        counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
+        rewarded = appraisal.rewards or appraisal.punishments
+        return RlaStory(
+            rla_id=rla.rla_id,
+            title=rla.title,
+            action=rla.action,
+            condition=rla.condition,
+            distance=distance,
+            radius=radius,
+            acts=tuple(self._act(each) for each in self._lessons.get(rla.rla_id, ())),
+            uses=counted.uses.get(rla.rla_id, 0),
+            rewards=appraisal.rewards,
+            punishments=appraisal.punishments,
+            value=float(self._runtime.reinforcement.worth(rla.rla_id)) if rewarded else None,
+            asks=rla.asks,
+        )
+
+    def _act(self, record: LessonRecord) -> Act:
+        origin = record.event.origin
+        return Act(
+            text=record.text,
+            teacher=origin.teacher,
+            phase=int(origin.phase),
+            tick=origin.tick,
+            stamp=self._stamp_of(origin.command_id),
+            undone=record.undone,
+            reward=isinstance(record.event, RlaRewarded),
+        )
+
+
+def _with_words(facts: LevelFacts, here: tuple[str, ...], there: tuple[str, ...]) -> LevelFacts:
+    return replace(facts, words=here, nearest_words=there)
+
+
+def _by_rla(lessons: tuple[LessonRecord, ...]) -> dict[int, list[LessonRecord]]:
+    found: dict[int, list[LessonRecord]] = {}
+    for record in lessons:
+        if not isinstance(record.event, SituationNamed):
+            found.setdefault(rla_of(record.event), []).append(record)
+    return found

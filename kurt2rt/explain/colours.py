@@ -1,0 +1,46 @@
+"""One colour for each action: what turns left is blue, what turns right is orange, ahead is green."""
+
+from collections.abc import Iterable, Mapping
+
+ASKS = "#c2304b"
+"""Where the robot stands and asks."""
+STANDS = "#b9bfc6"
+"""Where it stands for another reason."""
+TEACHER = "#7a4fa3"
+"""What a teacher's hand drives."""
+INK, PALE_INK, PAPER = "#20262d", "#68727d", "#ffffff"
+
+_FAMILIES: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("left", ("#9ecae9", "#5da5da", "#2b7bba", "#0b4f8a", "#06305a")),
+    ("right", ("#fdd0a2", "#fdae6b", "#f58518", "#c85a0a", "#853a05")),
+    ("forward", ("#3f9b5c", "#7cc48f", "#1f6b3a")),
+    ("straight", ("#3f9b5c", "#7cc48f", "#1f6b3a")),
+    ("ahead", ("#3f9b5c", "#7cc48f", "#1f6b3a")),
+    ("back", ("#8c6d46", "#b79a73")),
+)
+_OTHERS = ("#4c9a9a", "#8f5f8f", "#a9a13c", "#5d7a8c", "#b06a7a", "#6a8f3c")
+_SHARPNESS = ("bear", "curve", "sharp", "spin")
+
+
+def colours_of(actions: Iterable[str]) -> Mapping[str, str]:
+    """A colour for each action, the darker the sharper it turns, whatever the order they come in."""
+    colours: dict[str, str] = {}
+    taken: dict[str, int] = {}
+    for action in sorted(set(actions), key=lambda each: (_sharpness(each), each)):
+        family, palette = next(((word, row) for word, row in _FAMILIES if word in action), ("", _OTHERS))
+        place = _sharpness(action)
+        if place == len(_SHARPNESS):
+            place = taken.get(family, 0)
+            taken[family] = place + 1
+        colours[action] = palette[place % len(palette)]
+    return colours
+
+
+def ink_on(colour: str) -> str:
+    """Black or white, whichever is read on it."""
+    red, green, blue = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
+    return PAPER if 0.30 * red + 0.59 * green + 0.11 * blue < 140 else INK
+
+
+def _sharpness(action: str) -> int:
+    return next((place for place, word in enumerate(_SHARPNESS) if action.startswith(word)), len(_SHARPNESS))

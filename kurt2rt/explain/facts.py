@@ -1,0 +1,126 @@
+"""What is known of one decision: all that an explanation is made of, as plain values that can be sent elsewhere."""
+
+from dataclasses import dataclass
+
+from hal.robot import WheelSpeeds
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """One lesson about an RLA, or its undoing."""
+
+    text: str
+    """In words, such as: RLA 17 corrected: forward instead of spin_left."""
+    teacher: str
+    phase: int
+    tick: int
+    """Of the run in which it was taught."""
+    stamp: str
+    """When it was written, UTC, ISO 8601; empty where that is not known."""
+    undone: bool = False
+    reward: bool = False
+    """Whether it only praised or blamed, and left the action as it was."""
+
+
+@dataclass(frozen=True, slots=True)
+class RlaStory:
+    """One RLA: what it says, who taught it, when, instead of what, and how often it was used."""
+
+    rla_id: int
+    title: str
+    action: str
+    condition: tuple[float, ...]
+    """Shape (d,)."""
+    distance: float
+    """To the situation that was decided on, weighted; infinite where the robot did not know where it was."""
+    radius: float
+    acts: tuple[Act, ...]
+    """Oldest first."""
+    uses: int
+    """How often it became the one that drives, since it was first taught."""
+    rewards: int
+    punishments: int
+    value: float | None
+    """What rewards made it worth; None where nobody rewarded."""
+    asks: bool
+    """Whether its action was withdrawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class LevelFacts:
+    """One level of the robot in one tick."""
+
+    level: str
+    behaviour: str
+    """The taught behaviour whose RLAs competed; empty where there is only one."""
+    names: tuple[str, ...]
+    """One per feature."""
+    vector: tuple[float, ...]
+    """The situation, shape (d,)."""
+    weights: tuple[float, ...]
+    """What each feature counts in a distance, shape (d,)."""
+    euclidean: bool
+    """False: of symbols, which are equal or not; a distance counts places."""
+    nearest: RlaStory | None
+    """None before the first lesson."""
+    driver: RlaStory | None
+    """The one whose action was followed; None while none was."""
+    others: tuple[RlaStory, ...]
+    """Those behind the nearest, the nearer first: the runner-up is the first."""
+    count: int
+    """How many competed."""
+    words: tuple[str, ...] = ()
+    """The situation as people say it, where the level has words for it."""
+    nearest_words: tuple[str, ...] = ()
+    """The condition of the nearest, likewise."""
+
+    @property
+    def runner_up(self) -> RlaStory | None:
+        """The second nearest."""
+        return self.others[0] if self.others else None
+
+    @property
+    def otherwise(self) -> RlaStory | None:
+        """The nearest that says something else than the nearest of all; None where none is known."""
+        if self.nearest is None:
+            return None
+        return next((other for other in self.others if other.action != self.nearest.action), None)
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionFacts:
+    """One tick's decision with all that it rested on."""
+
+    tick: int
+    now_s: float
+    """On the runtime's clock."""
+    robot: str
+    task: str
+    phase: int
+    cause: str
+    """A value of kurt2rt.layers.decision.Cause."""
+    action: str | None
+    """What drove; None while the robot stood."""
+    asks_at: str
+    """The level that asked, where one did."""
+    decided: WheelSpeeds
+    granted: WheelSpeeds
+    reasons: tuple[str, ...]
+    """Why the guard changed what was decided."""
+    latched: bool
+    """Whether the guard kept the robot stopped."""
+    stopped_because: str
+    """Why a teacher's stop, or something like it, held; empty where none did."""
+    trouble: str
+    """Why lessons could not be saved; empty where they could."""
+    teacher: str
+    """Who the teacher was; empty where nobody was."""
+    infrared_counts: tuple[int, ...]
+    infrared_age_s: float
+    basic: LevelFacts
+    mid: LevelFacts | None
+    """None where the task has no mid level."""
+    overridden: bool
+    """Whether a teacher commanded the behaviour, and not the mid level."""
+    plan_says: str
+    """How it stood with the goal; empty without one."""

@@ -1,0 +1,281 @@
+"""A run as stretches: what the robot did from when to when, by which rules, and where it stood or asked."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from itertools import groupby
+
+from hal.guard import SLEW_LIMIT
+from hal.robot_settings import RobotSettings
+from kurt2rt.layers.decision import Cause
+from kurt2rt.recording.entries import DecisionEntry, TickEntry
+from kurt2rt.rla.lesson_book import LessonRecord
+from kurt2rt.rla.rla import (
+    BASIC,
+    Appraised,
+    KnowledgeMerged,
+    LessonRedone,
+    LessonUndone,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+
+
+class Kind(StrEnum):
+    """What a stretch is."""
+
+    DRIVES = "drives"
+    """By its RLAs."""
+    LED = "led"
+    """By a teacher."""
+    ASKS = "asks"
+    STANDS = "stands"
+    """For another reason."""
+
+
+@dataclass(slots=True)
+class Stretch:
+    """Ticks on end in which the robot did one thing. Grows while the run is read."""
+
+    kind: Kind
+    what: str
+    """The action, or why the robot stood."""
+    behaviour: str
+    """The taught behaviour that was wanted; empty where there is only one."""
+    from_s: float
+    """From the first tick of the run."""
+    to_s: float
+    rlas: dict[int, int] = field(default_factory=dict)
+    """How many ticks each RLA drove; where the robot asked or stood, was nearest."""
+    worst: float = 0.0
+    """Largest distance as a share of R; infinite where nothing was near."""
+    guarded: dict[str, int] = field(default_factory=dict)
+    """In how many ticks the guard changed what was decided, by its reasons; the slew limit, which is everyday, left out."""
+
+    @property
+    def lasts_s(self) -> float:
+        """How long."""
+        return self.to_s - self.from_s
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something that happened in one tick."""
+
+    at_s: float
+    kind: str
+    """lesson, alarm."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One tick, for curves."""
+
+    at_s: float
+    share: float
+    """Distance of the nearest RLA as a share of R; NaN where there is none."""
+    rla_id: int | None
+    """The one that drives; None while none does."""
+    action: str | None
+    left_m_s: float
+    """As the guard let it through."""
+    right_m_s: float
+    held_back: bool
+    """Whether the guard changed what was decided, for another reason than its slew limit."""
+    x_m: float
+    """By the encoders, from where the first tick found it, looking along x."""
+    y_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """A run, or a part of it."""
+
+    stretches: tuple[Stretch, ...]
+    notes: tuple[Note, ...]
+    samples: tuple[Sample, ...]
+    ticks: int
+    missed: int
+    """Ticks that were skipped."""
+
+    @property
+    def from_s(self) -> float:
+        """Of the first tick."""
+        return self.stretches[0].from_s if self.stretches else 0.0
+
+    @property
+    def to_s(self) -> float:
+        """Of the end of the last one."""
+        return self.stretches[-1].to_s if self.stretches else 0.0
+
+
+def timeline_of(
+    entries: Iterable[TickEntry],
+    robot: RobotSettings,
+    *,
+    from_s: float = 0.0,
+    to_s: float = math.inf,
+    every: int = 5,
+) -> Timeline:
+    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample."""
+    reader = _Reader(robot, from_s, to_s, every)
+    for entry in entries:
+        if not reader.take(entry):
+            break
+    return reader.timeline
+
+
+class _Reader:
+    """Goes through a run once."""
+
+    def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
+        self._period_s = robot.can.cycle_s
+        self._metres_per_tick = robot.geometry.metres_per_tick
+        self._track_m = robot.geometry.effective_track_m
+        self._from_s, self._to_s, self._every = from_s, to_s, every
+        self._began_s: float | None = None
+        self._x_m = self._y_m = self._heading_rad = 0.0
+        self._stretches: list[Stretch] = []
+        self._notes: list[Note] = []
+        self._samples: list[Sample] = []
+        self._ticks = self._missed = 0
+        self._before: int | None = None
+        self._latched = False
+
+    @property
+    def timeline(self) -> Timeline:
+        return Timeline(tuple(self._stretches), tuple(self._notes), tuple(self._samples), self._ticks, self._missed)
+
+    def take(self, entry: TickEntry) -> bool:
+        """Take in one tick; False behind the end."""
+        if self._began_s is None:
+            self._began_s = entry.now_s
+        at_s = entry.now_s - self._began_s
+        self._reckon(entry)
+        if at_s > self._to_s:
+            return False
+        if at_s < self._from_s:
+            return True
+        if self._before is not None:
+            self._missed += max(0, entry.tick - self._before - 1)
+        self._before = entry.tick
+        kind, what = _doing(entry)
+        last = self._stretches[-1] if self._stretches else None
+        if last is None or (last.kind, last.what, last.behaviour) != (kind, what, entry.behaviour):
+            if last is not None:
+                last.to_s = at_s
+            last = Stretch(kind, what, entry.behaviour, at_s, at_s)
+            self._stretches.append(last)
+        last.to_s = at_s + self._period_s
+        self._count(last, entry)
+        self._note(entry, at_s)
+        if self._ticks % self._every == 0:
+            self._samples.append(self._sample(entry, at_s))
+        self._ticks += 1
+        return True
+
+    def _reckon(self, entry: TickEntry) -> None:
+        left_m = entry.senses.encoder_left_ticks * self._metres_per_tick
+        right_m = entry.senses.encoder_right_ticks * self._metres_per_tick
+        turn_rad, step_m = (right_m - left_m) / self._track_m, (left_m + right_m) / 2
+        middle_rad = self._heading_rad + turn_rad / 2
+        self._x_m += step_m * math.cos(middle_rad)
+        self._y_m += step_m * math.sin(middle_rad)
+        self._heading_rad += turn_rad
+
+    def _count(self, stretch: Stretch, entry: TickEntry) -> None:
+        decision = entry.decision
+        nearest = None if decision.match is None else decision.match.rla_id
+        rla_id = nearest if decision.rla_id is None else decision.rla_id
+        if rla_id is not None:
+            stretch.rlas[rla_id] = stretch.rlas.get(rla_id, 0) + 1
+        share = _share(decision)
+        if not math.isnan(share):
+            stretch.worst = max(stretch.worst, share)
+        for reason in _out_of_the_ordinary(entry):
+            stretch.guarded[reason] = stretch.guarded.get(reason, 0) + 1
+
+    def _note(self, entry: TickEntry, at_s: float) -> None:
+        for event in entry.events:
+            self._notes.append(Note(at_s, "lesson", lesson_text(event)))
+        if entry.grant.latched and not self._latched:
+            self._notes.append(Note(at_s, "alarm", ", ".join(entry.grant.reasons)))
+        self._latched = entry.grant.latched
+
+    def _sample(self, entry: TickEntry, at_s: float) -> Sample:
+        return Sample(
+            at_s=at_s,
+            share=_share(entry.decision),
+            rla_id=entry.decision.rla_id,
+            action=entry.decision.action,
+            left_m_s=entry.grant.wheel_speeds.left_m_s,
+            right_m_s=entry.grant.wheel_speeds.right_m_s,
+            held_back=bool(_out_of_the_ordinary(entry)),
+            x_m=self._x_m,
+            y_m=self._y_m,
+        )
+
+
+def summary(timeline: Timeline) -> str:
+    """How much of the time the robot drove, asked and stood, in a line."""
+    whole_s = timeline.to_s - timeline.from_s
+    if not whole_s > 0:
+        return "Nothing was recorded in that time."
+    words = {Kind.DRIVES: "drove by its RLAs", Kind.LED: "was led", Kind.ASKS: "asked", Kind.STANDS: "stood"}
+    parts = []
+    for kind, word in words.items():
+        lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
+        if lasts_s > 0:
+            times = sum(each is kind for each, _ in groupby(stretch.kind for stretch in timeline.stretches))
+            often = f" ({times} times)" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
+    lessons = sum(note.kind == "lesson" for note in timeline.notes)
+    alarms = sum(note.kind == "alarm" for note in timeline.notes)
+    parts += [f"{lessons} lessons"] if lessons else []
+    parts += [f"{alarms} alarms"] if alarms else []
+    parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
+    return f"{whole_s:.1f} s: {', '.join(parts)}"
+
+
+def lesson_text(event: TeachingEvent) -> str:
+    """A teaching event in a few words, with who taught it."""
+    by = event.origin.teacher
+    match event:
+        case LessonUndone():
+            return f"{by} took a lesson back"
+        case LessonRedone():
+            return f"{by} had a lesson stand again"
+        case SessionBegun(name):
+            return f"session {name} begun by {by}"
+        case SessionEnded():
+            return f"session ended by {by}"
+        case Appraised(appraisal):
+            return f"{by} called it {appraisal}"
+        case KnowledgeMerged(source):
+            return f"{by} brought in lessons of {source}"
+        case _:
+            return f"{LessonRecord(event).text} ({by})"
+
+
+def _doing(entry: TickEntry) -> tuple[Kind, str]:
+    decision = entry.decision
+    if entry.grant.latched:
+        return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
+    if decision.action is not None:
+        return (Kind.LED if decision.cause is Cause.TEACHER else Kind.DRIVES), decision.action
+    if decision.cause is Cause.UNKNOWN:
+        return Kind.ASKS, "asks the way" if decision.asks_at != BASIC else "asks"
+    return Kind.STANDS, decision.cause.value
+
+
+def _out_of_the_ordinary(entry: TickEntry) -> tuple[str, ...]:
+    """Why the guard changed what was decided, but for the slew at each change of action."""
+    return tuple(reason for reason in entry.grant.reasons if reason != SLEW_LIMIT)
+
+
+def _share(decision: DecisionEntry) -> float:
+    match = decision.match
+    return math.nan if match is None or not match.radius > 0 else match.distance / match.radius
