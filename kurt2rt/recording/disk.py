@@ -1,5 +1,6 @@
 """The disk under a recording: the few calls that can fail, in one place, so that tests can have them fail."""
 
+import fcntl
 import os
 from pathlib import Path
 from typing import Protocol
@@ -42,6 +43,8 @@ class RealFile:
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
+        # Tells other programs, until this one ends however it ends, that the file is still being written.
+        fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def write_at(self, offset: int, data: bytes | bytearray) -> None:
         """Write all of `data` from `offset` bytes on. Raises OSError."""
@@ -79,6 +82,18 @@ class RealDisk:
         """That may still be written where `path` is. Raises OSError."""
         room = os.statvfs(path)
         return room.f_bavail * room.f_frsize
+
+
+def is_being_written(path: Path) -> bool:
+    """Whether some program has the file open to record on. Raises OSError."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
 
 
 def _keep_names_in(folder: Path) -> None:

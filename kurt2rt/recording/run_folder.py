@@ -1,10 +1,10 @@
 """Folders of recorded runs: what they are called, which is the newest, and which go when there is no more room."""
 
 import re
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from kurt2rt.recording.disk import is_being_written
 from kurt2rt.recording.error import RecordingError
 
 SEGMENT_ENDING = ".mcap"
@@ -31,7 +31,12 @@ def runs_in(folder: Path) -> list[Path]:
 
 def segments_in(run: Path) -> list[Path]:
     """Files of a run, the oldest first. Raises OSError."""
-    return sorted((each for each in run.iterdir() if _SEGMENT_NAME.fullmatch(each.name)), key=_number_of)
+    return sorted((each for each in run.iterdir() if _SEGMENT_NAME.fullmatch(each.name)), key=number_of)
+
+
+def number_of(segment: Path) -> int:
+    """The n of a run's n-th file."""
+    return int(segment.stem)
 
 
 def find_run(given: Path | None, recordings: Path) -> Path:
@@ -40,7 +45,7 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     None: the newest run of `recordings`. Raises RecordingError in a sentence.
     """
     if given is None:
-        runs = runs_in(recordings)
+        runs = [each for each in runs_in(recordings) if segments_in(each)]
         if not runs:
             raise RecordingError(f"{recordings}: no recorded run is there; kurt2rt run makes one, or give its folder")
         return runs[-1]
@@ -50,39 +55,35 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     raise RecordingError(f"{given}: no recorded run; give a folder of {recordings}, or a file {segment_name(1)} in one")
 
 
-def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> list[Path]:
+def used_bytes(recordings: Path) -> int:
+    """That all runs take together. Raises OSError."""
+    return sum(segment.stat().st_size for run in runs_in(recordings) for segment in segments_in(run))
+
+
+def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> int:
     """Delete the oldest runs, then the oldest segments of `current`, until all together fit in the budget.
 
-    The newest segment of `current` stays, whatever it takes. Returns what was deleted. Raises OSError.
+    The newest segment of `current` stays, whatever it takes, and so does a run that another program records. Returns
+    the bytes that are left in use. Raises OSError.
     """
-    files = list(_oldest_first(recordings, current))
-    sizes = [(path, path.stat().st_size) for path in files]
-    too_much = sum(size for _, size in sizes) - budget_bytes
-    newest = files[-1] if files and current is not None and files[-1].parent == current else None
-    deleted = []
-    for path, size in sizes:
-        if too_much <= 0 or path == newest:
+    used = used_bytes(recordings)
+    for segment in _may_go(recordings, current):
+        if used <= budget_bytes:
             break
-        path.unlink()
-        deleted.append(path)
-        too_much -= size
-        if path.parent != current:
-            _remove_if_empty(path.parent)
-    return deleted
+        size = segment.stat().st_size
+        segment.unlink()
+        used -= size
+        if segment.parent != current and not any(segment.parent.iterdir()):
+            segment.parent.rmdir()
+    return used
 
 
-def _oldest_first(recordings: Path, current: Path | None) -> Iterator[Path]:
+def _may_go(recordings: Path, current: Path | None) -> list[Path]:
+    segments = []
     for run in runs_in(recordings):
-        if run != current:
-            yield from segments_in(run)
+        of_run = segments_in(run)
+        if run != current and of_run and not is_being_written(of_run[-1]):
+            segments += of_run
     if current is not None and current.is_dir():
-        yield from segments_in(current)
-
-
-def _remove_if_empty(run: Path) -> None:
-    if not any(run.iterdir()):
-        run.rmdir()
-
-
-def _number_of(segment: Path) -> int:
-    return int(segment.stem)
+        segments += segments_in(current)[:-1]
+    return segments

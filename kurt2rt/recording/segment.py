@@ -11,6 +11,7 @@ from kurt2rt.recording.disk import Disk, WritableFile
 PROFILE = "kurt2rt"
 KEPT_BYTES = 4_000_000
 """That wait for a disk which fails, some minutes of a run; then the segment is given up."""
+_MEDIA_TYPES = {".json": "application/json", ".jsonl": "application/jsonl", ".yaml": "application/yaml"}
 
 
 class Collected:
@@ -40,17 +41,6 @@ class Collected:
         """What came since the last call."""
         taken, self._bytes = self._bytes, bytearray()
         return taken
-
-
-class Attachment:
-    """A file within the file."""
-
-    __slots__ = ("data", "media_type", "name")
-
-    def __init__(self, name: str, media_type: str, data: bytes) -> None:
-        self.name = name
-        self.media_type = media_type
-        self.data = data
 
 
 class Segment:
@@ -94,15 +84,10 @@ class Segment:
         """Put a metadata record in."""
         self._writer.write_metadata(name, metadata)
 
-    def attach(self, attachment: Attachment, time_ns: int) -> None:
+    def attach(self, name: str, data: bytes, time_ns: int) -> None:
         """Put a file in."""
-        self._writer.attach(
-            log_time=time_ns,
-            create_time=time_ns,
-            name=attachment.name,
-            media_type=attachment.media_type,
-            data=attachment.data,
-        )
+        media_type = _MEDIA_TYPES.get(Path(name).suffix, "application/octet-stream")
+        self._writer.attach(log_time=time_ns, create_time=time_ns, name=name, media_type=media_type, data=data)
 
     def save(self) -> None:
         """End the chunk, and have the disk keep all that came so far. Raises OSError: nothing is lost, try again."""

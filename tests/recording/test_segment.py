@@ -9,7 +9,7 @@ import pytest
 from foxglove import Channel, Context
 
 from kurt2rt.recording.disk import RealDisk, WritableFile
-from kurt2rt.recording.segment import KEPT_BYTES, Attachment, Segment
+from kurt2rt.recording.segment import KEPT_BYTES, Segment
 from kurt2rt.recording.segment_reader import SegmentReader
 
 
@@ -54,7 +54,7 @@ def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path) -> None:
     channel = Channel("/number", message_encoding="json", context=context)
     segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
     segment.describe("run", {"task": "wall_following"})
-    segment.attach(Attachment("settings/x.yaml", "text/yaml", b"a: 1\n"), 5)
+    segment.attach("settings/x.yaml", b"a: 1\n", 5)
     saved: list[tuple[int, int]] = []
     for number in range(1, 2001):
         channel.log(b"%d" % number, log_time=number)
@@ -96,7 +96,7 @@ def test_metadata_and_attachments_come_before_the_first_message(tmp_path: Path) 
     channel = Channel("/number", message_encoding="json", context=context)
     segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
     segment.describe("run", {"task": "wall_following"})
-    segment.attach(Attachment("statistics.json", "application/json", b"{}"), 5)
+    segment.attach("statistics.json", b"{}", 5)
     segment.save()
     channel.log(b"1", log_time=1)
     segment.save()

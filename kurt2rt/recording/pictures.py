@@ -1,0 +1,201 @@
+"""What a recording shows without a word of the project's own: Foxglove's scan, pose, transform, scene and log."""
+
+import math
+from collections.abc import Iterable
+
+from foxglove.messages import (
+    Color,
+    CubePrimitive,
+    CylinderPrimitive,
+    Duration,
+    FrameTransform,
+    FrameTransforms,
+    LaserScan,
+    LinePrimitive,
+    LinePrimitiveLineType,
+    Point3,
+    Pose,
+    PoseInFrame,
+    Quaternion,
+    SceneEntity,
+    SceneUpdate,
+    TextPrimitive,
+    Timestamp,
+    Vector3,
+)
+
+from hal.robot_settings import RobotSettings, SensorSettings
+from kurt2rt.channel.ground import WorldView
+from kurt2rt.layers.decision import Decision
+from kurt2rt.recording.odometry import PlanePose
+from kurt2rt.rla.rla import rla_title
+
+ROBOT, START, WORLD = "robot", "start", "world"
+"""Frames: the robot's centre; where it was switched on, by its encoders; the simulated world."""
+
+SCAN_STEP_DEG = 3
+_SCAN_RAYS = 360 // SCAN_STEP_DEG
+_DRIVES = Color(r=0.15, g=0.55, b=0.3, a=1.0)
+_ASKS = Color(r=0.9, g=0.6, b=0.1, a=1.0)
+_STANDS = Color(r=0.7, g=0.2, b=0.2, a=1.0)
+_RAY = Color(r=0.2, g=0.45, b=0.8, a=0.9)
+_FAR_RAY = Color(r=0.6, g=0.6, b=0.6, a=0.35)
+_WALL = Color(r=0.55, g=0.55, b=0.55, a=1.0)
+_WALL_HEIGHT_M = 0.15
+_ROBOT_HEIGHT_M = 0.25
+_RAY_HEIGHT_M = 0.1
+
+
+def timestamp(time_ns: int) -> Timestamp:
+    """Nanoseconds since 1970 as Foxglove says it."""
+    return Timestamp(time_ns // 1_000_000_000, time_ns % 1_000_000_000)
+
+
+def pose_in(frame: str, pose: PlanePose, time_ns: int) -> PoseInFrame:
+    """A pose on the floor."""
+    return PoseInFrame(timestamp=timestamp(time_ns), frame_id=frame, pose=_pose(pose))
+
+
+def transform(parent: str, child: str, pose: PlanePose, time_ns: int) -> FrameTransforms:
+    """Where the child frame's origin stands in the parent's."""
+    moved = FrameTransform(
+        timestamp=timestamp(time_ns),
+        parent_frame_id=parent,
+        child_frame_id=child,
+        translation=Vector3(x=pose.x_m, y=pose.y_m, z=0.0),
+        rotation=_turned(pose.heading_rad),
+    )
+    return FrameTransforms(transforms=[moved])
+
+
+class RobotPictures:
+    """Scans and scenes of one robot."""
+
+    def __init__(self, settings: RobotSettings) -> None:
+        self._infrared = settings.infrared
+        self._length_m = settings.geometry.outline_length_m
+        self._width_m = settings.geometry.outline_width_m
+        self._rays = [(sensor.x_m, sensor.y_m, *_direction(sensor)) for sensor in settings.infrared.sensors]
+
+    def scan(self, counts: Iterable[int], time_ns: int) -> LaserScan:
+        """What the sensors see, as seen from the robot's centre: infinite where none sees anything.
+
+        A scan has rays at even angles, so each sensor's hit stands in the ray next to it.
+        """
+        ranges = [math.inf] * _SCAN_RAYS
+        for x_m, y_m, seen in self._hits(counts):
+            if seen:
+                ray = round(math.degrees(math.atan2(y_m, x_m)) / SCAN_STEP_DEG) % _SCAN_RAYS
+                ranges[ray] = min(ranges[ray], math.hypot(x_m, y_m))
+        return LaserScan(
+            timestamp=timestamp(time_ns),
+            frame_id=ROBOT,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            start_angle=0.0,
+            end_angle=math.radians(360 - SCAN_STEP_DEG),
+            ranges=ranges,
+        )
+
+    def scene(self, counts: Iterable[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
+        """The robot's outline, the rays of its sensors, and what drives it as text."""
+        points: list[Point3] = []
+        colors: list[Color] = []
+        for (from_x_m, from_y_m, _, _), (x_m, y_m, seen) in zip(self._rays, self._hits(counts), strict=True):
+            points += (Point3(x=from_x_m, y=from_y_m, z=_RAY_HEIGHT_M), Point3(x=x_m, y=y_m, z=_RAY_HEIGHT_M))
+            colors += [_RAY if seen else _FAR_RAY] * 2
+        color = _DRIVES if decision.driving else _ASKS if decision.asking else _STANDS
+        body = CubePrimitive(
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _ROBOT_HEIGHT_M / 2),
+            size=Vector3(x=self._length_m, y=self._width_m, z=_ROBOT_HEIGHT_M),
+            color=color,
+        )
+        text = TextPrimitive(
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), 2 * _ROBOT_HEIGHT_M),
+            billboard=True,
+            font_size=14.0,
+            scale_invariant=True,
+            color=color,
+            text=words_of(decision, behaviour),
+        )
+        rays = LinePrimitive(
+            type=LinePrimitiveLineType.LineList,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            thickness=0.008,
+            points=points,
+            colors=colors,
+        )
+        entity = SceneEntity(
+            timestamp=timestamp(time_ns),
+            frame_id=ROBOT,
+            id="robot",
+            frame_locked=True,
+            cubes=[body],
+            lines=[rays],
+            texts=[text],
+        )
+        return SceneUpdate(entities=[entity])
+
+    def _hits(self, counts: Iterable[int]) -> list[tuple[float, float, bool]]:
+        """Where each ray ends, x and y in metres, and whether something is there."""
+        far_m = self._infrared.far_m
+        hits = []
+        for (x_m, y_m, dx, dy), count in zip(self._rays, counts, strict=True):
+            away_m = self._infrared.distance_m(count)
+            hits.append((x_m + away_m * dx, y_m + away_m * dy, away_m < far_m))
+        return hits
+
+
+def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
+    """The simulated world: its walls and posts."""
+    lines = [
+        LinePrimitive(
+            type=LinePrimitiveLineType.LineLoop,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            thickness=0.02,
+            points=[Point3(x=x_m, y=y_m, z=_WALL_HEIGHT_M) for x_m, y_m in corners],
+            color=_WALL,
+        )
+        for corners in (world.outline, *(wall.corners for wall in world.walls))
+        if corners
+    ]
+    posts = [
+        CylinderPrimitive(
+            pose=_pose(PlanePose(post.x_m, post.y_m, 0.0), _WALL_HEIGHT_M / 2),
+            size=Vector3(x=2 * post.radius_m, y=2 * post.radius_m, z=_WALL_HEIGHT_M),
+            bottom_scale=1.0,
+            top_scale=1.0,
+            color=_WALL,
+        )
+        for post in world.posts
+    ]
+    entity = SceneEntity(
+        timestamp=timestamp(time_ns),
+        frame_id=WORLD,
+        id="world",
+        lifetime=Duration(0, 0),
+        lines=lines,
+        cylinders=posts,
+    )
+    return SceneUpdate(entities=[entity])
+
+
+def words_of(decision: Decision, behaviour: str) -> str:
+    """What drives the wheels, in a few words."""
+    if decision.action is not None and decision.rla_id is not None:
+        return f"{decision.action} by {rla_title(decision.rla_id, behaviour)}"
+    if decision.action is not None:
+        return f"{decision.action}, as the teacher says"
+    return "asks" if decision.asking else f"stands: {decision.cause.value}"
+
+
+def _direction(sensor: SensorSettings) -> tuple[float, float]:
+    heading_rad = math.radians(sensor.heading_deg)
+    return math.cos(heading_rad), math.sin(heading_rad)
+
+
+def _pose(pose: PlanePose, height_m: float = 0.0) -> Pose:
+    return Pose(position=Vector3(x=pose.x_m, y=pose.y_m, z=height_m), orientation=_turned(pose.heading_rad))
+
+
+def _turned(heading_rad: float) -> Quaternion:
+    return Quaternion(x=0.0, y=0.0, z=math.sin(heading_rad / 2), w=math.cos(heading_rad / 2))

@@ -1,0 +1,252 @@
+"""A run is recorded beside the loop: all that happened is there again, and a bad disk costs no tick."""
+
+import errno
+import json
+import threading
+from pathlib import Path
+
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.recording.attachments import KNOWLEDGE
+from kurt2rt.recording.disk import RealDisk, WritableFile
+from kurt2rt.recording.entries import TickEntry, decode_tick, tick_entry_of
+from kurt2rt.recording.run_files import Budget
+from kurt2rt.recording.run_folder import runs_in, segments_in
+from kurt2rt.recording.run_head import decode_head
+from kurt2rt.recording.run_recorder import HEAD as HEAD_NAME
+from kurt2rt.recording.segment_reader import LoggedMessage, SegmentReader
+from kurt2rt.recording.topics import LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK
+from kurt2rt.rla.fingerprint import knowledge_hash_of
+from kurt2rt.teaching.commands import Teach
+from kurt2rt.tick import TickRecord
+from tests.recording.desk_recording import ATTACHMENTS, BEGAN_AT_NS, HEAD, NAME, RecordedDesk
+from tests.recording.test_segment import FailingDisk
+
+
+def messages_of(run: Path, *topics: str) -> list[LoggedMessage]:
+    return [each for segment in segments_in(run) for each in SegmentReader(segment).messages(topics or None)]
+
+
+def entries_of(run: Path) -> list[TickEntry]:
+    return [decode_tick(each.data) for each in messages_of(run, TICK)]
+
+
+def entry_of(record: TickRecord) -> TickEntry:
+    known = record.knowledge
+    hashed = None if known is None else knowledge_hash_of(sorted(known, key=lambda rla: rla.rla_id))
+    return tick_entry_of(record, saved=False, knowledge=hashed)
+
+
+def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second(counts=200)
+    desk.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    desk.second(counts=203)
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert desk.recorder.written == 200
+    assert entries_of(tmp_path / NAME) == [entry_of(record) for record in desk.records]
+    lessons = [json.loads(each.data) for each in messages_of(tmp_path / NAME, LESSON)]
+    assert [each["event"]["command_id"] for each in lessons] == ["t-1"]
+
+
+def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.recorder.close()
+    (segment,) = segments_in(tmp_path / NAME)
+    head = SegmentReader(segment).head()
+    assert decode_head(head.metadata[HEAD_NAME]) == HEAD
+    assert head.attachments == ATTACHMENTS
+    assert KNOWLEDGE in head.attachments
+
+
+def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second(counts=200)
+    desk.recorder.asked("I know nothing yet, teach me")
+    desk.recorder.acknowledged(Acknowledgement("t-1", 1, None, "2026-11-22T03:10:05.000+00:00"))
+    desk.recorder.close()
+    said = messages_of(tmp_path / NAME)
+    times = {topic: sum(each.topic == topic for each in said) for topic in (SCAN, POSE, TF, SCENE, SITUATION)}
+    assert times == {SCAN: 20, POSE: 20, TF: 20, SCENE: 10, SITUATION: 10}
+    schemas = {each.topic: each.schema for each in said}
+    assert schemas[SCAN] == "foxglove.LaserScan"
+    assert schemas[POSE] == "foxglove.PoseInFrame"
+    assert schemas[TF] == "foxglove.FrameTransforms"
+    assert schemas[SCENE] == "foxglove.SceneUpdate"
+    assert schemas[LOG] == "foxglove.Log"
+    assert b"I know nothing yet, teach me" in b"".join(each.data for each in said if each.topic == LOG)
+    first = desk.records[0]
+    assert said[0].time_ns == BEGAN_AT_NS + round(first.now_s * 1e9)
+
+
+def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, budget=Budget(10_000_000, segment_bytes=20_000))
+    desk.recorder.tend()
+    for second in range(8):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    segments = segments_in(tmp_path / NAME)
+    assert len(segments) > 2
+    for segment in segments:
+        assert decode_head(SegmentReader(segment).head().metadata[HEAD_NAME]) == HEAD
+    assert SegmentReader(segments[1]).head().attachments == {}
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [record.tick for record in desk.records]
+
+
+def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) -> None:
+    older = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
+    older.recorder.tend()
+    older.second()
+    older.recorder.close()
+    desk = RecordedDesk(tmp_path, budget=Budget(150_000, segment_bytes=40_000))
+    desk.recorder.tend()
+    for second in range(30):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    (run,) = runs_in(tmp_path)
+    assert run.name == NAME
+    segments = segments_in(run)
+    assert sum(segment.stat().st_size for segment in segments) <= 200_000
+    assert segments[0].name != "0001.mcap"
+    assert entries_of(run)[-1].tick == desk.records[-1].tick
+
+
+def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> None:
+    other = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
+    other.recorder.tend()
+    other.second()
+    desk = RecordedDesk(tmp_path, budget=Budget(20_000, segment_bytes=10_000))
+    desk.recorder.tend()
+    desk.second()
+    other.second()
+    desk.recorder.close()
+    other.recorder.close()
+    assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 200
+
+
+def test_a_disk_that_fails_once_costs_nothing(tmp_path: Path) -> None:
+    for failing in range(6):
+        failures = iter([*[None] * failing, OSError(errno.EIO, "input/output error")])
+        desk = RecordedDesk(tmp_path / str(failing), disk=FailingDisk(failures))
+        for _ in range(4):
+            desk.second()
+        desk.recorder.close()
+        assert desk.recorder.trouble == ""
+        assert [each.tick for each in entries_of(tmp_path / str(failing) / NAME)] == [
+            each.tick for each in desk.records
+        ]
+
+
+class AbsentDisk(RealDisk):
+    """A disk that is not there yet."""
+
+    def __init__(self) -> None:
+        self.there = False
+
+    def make_folder(self, path: Path) -> None:
+        if not self.there:
+            raise OSError(errno.ENOENT, "no such device")
+        super().make_folder(path)
+
+
+def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None:
+    disk = AbsentDisk()
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    assert "no such device" in desk.recorder.trouble
+    disk.there = True
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert len(entries_of(tmp_path / NAME)) == 300
+
+
+def test_what_finds_no_room_is_counted_and_the_run_shows_the_gap(tmp_path: Path) -> None:
+    disk = AbsentDisk()
+    desk = RecordedDesk(tmp_path, disk=disk, capacity=150)
+    desk.recorder.tend()
+    desk.second()
+    desk.second()
+    assert desk.recorder.dropped == 50
+    disk.there = True
+    desk.recorder.tend()
+    desk.recorder.write_waiting()
+    desk.second()
+    desk.recorder.close()
+    assert "50 of its ticks and notes lost" in desk.recorder.trouble
+    ticks = [each.tick for each in entries_of(tmp_path / NAME)]
+    assert ticks == [each.tick for each in desk.records[:150]] + [each.tick for each in desk.records[200:]]
+
+
+class FullDisk(RealDisk):
+    """A disk with so much room."""
+
+    def __init__(self, free: int) -> None:
+        self.free = free
+
+    def free_bytes(self, path: Path) -> int:  # noqa: ARG002 - it has this one disk
+        return self.free
+
+
+def test_the_last_room_on_the_disk_is_left_for_lessons(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    assert desk.recorder.trouble == ""
+    disk.free = 100_000_000
+    desk.recorder.tend()
+    desk.second()
+    assert "100 MB are free" in desk.recorder.trouble
+    disk.free = 1_000_000_000
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert len(entries_of(tmp_path / NAME)) == len(desk.records)
+
+
+class HangingDisk(RealDisk):
+    """A disk that does not answer, until it is set free."""
+
+    def __init__(self) -> None:
+        self.hangs = threading.Event()
+        self.free = threading.Event()
+
+    def create(self, path: Path) -> WritableFile:
+        self.hangs.set()
+        self.free.wait()
+        return super().create(path)
+
+
+def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
+    disk = HangingDisk()
+    desk = RecordedDesk(tmp_path, disk=disk, capacity=120)
+    desk.recorder.start()
+    assert disk.hangs.wait(10.0)
+    desk.run(130)
+    assert desk.recorder.dropped == 10
+    desk.recorder.close(patience_s=0.01)
+    assert "the disk does not answer" in desk.recorder.trouble
+    disk.free.set()
+
+
+def test_the_thread_writes_all_that_was_noted(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    with desk.recorder:
+        desk.run(250)
+    assert desk.recorder.trouble == ""
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records]
+
+
+def test_two_runs_of_one_second_have_a_folder_each(tmp_path: Path) -> None:
+    for _ in range(2):
+        desk = RecordedDesk(tmp_path)
+        desk.recorder.tend()
+        desk.recorder.close()
+    assert [run.name for run in runs_in(tmp_path)] == [NAME, f"{NAME}-2"]
