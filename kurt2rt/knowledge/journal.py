@@ -17,6 +17,9 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.statistics_tables import Change, changes, read_statistics
 from kurt2rt.rla.rla import TeachingEvent
 
+_NOTE = "note "
+"""Notes stand in table binding under keys such as `note branch of`; an earlier kurt2rt leaves them alone."""
+
 _ROWS = "SELECT sequence, command_id, stamped_at, event, checksum FROM lesson ORDER BY sequence"
 
 
@@ -182,6 +185,17 @@ class Journal:
         except sqlite3.Error as error:
             problems.append(str(explained(error, self.path)))
         return problems
+
+    def note(self, name: str, text: str) -> None:
+        """Write down something about the file as a whole, in the place of what that note said before."""
+        with self._transaction():
+            self._connection.execute("INSERT OR REPLACE INTO binding VALUES (?, ?)", (f"{_NOTE}{name}", text))
+
+    def notes(self) -> dict[str, str]:
+        """What was noted about the file as a whole, by name."""
+        with self._reading():
+            rows = self._connection.execute("SELECT key, value FROM binding ORDER BY key")
+            return {key.removeprefix(_NOTE): value for key, value in rows if key.startswith(_NOTE)}
 
     def close(self) -> None:
         """Give the file back; the last one out merges SQLite's log into it."""

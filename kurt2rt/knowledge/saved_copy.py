@@ -46,6 +46,20 @@ def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str
     return SavedCopy(name, hashlib.sha256(content).hexdigest(), len(content))
 
 
+def save_new(content: bytes, path: Path) -> None:
+    """Save `content` at `path`, where nothing may be yet; durable on return. Raises KnowledgeError."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        born = _is_born(content, path.parent, path.name)
+        sync_folder(path.parent)
+    except OSError as error:
+        raise KnowledgeError(
+            f"{path}: cannot be saved ({error}); give a path in a folder that may be written and has room"
+        ) from error
+    if not born:
+        raise KnowledgeError(f"{path}: is there already; give the path of a new file")
+
+
 def plain_part(text: str) -> str:
     """What of a text may stand in a file name: a-z, 0-9 and single hyphens, at most 32; may be empty."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()

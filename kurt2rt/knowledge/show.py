@@ -22,6 +22,7 @@ from kurt2rt.rla.rla import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
+    LessonRedone,
     LessonUndone,
     Rla,
     RlaDeleted,
@@ -110,7 +111,7 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
             plain(record.text),
             plain(origin.command_id),
             when_and_who(stamps[origin.command_id], origin.teacher),
-            plain(undone_by.get(origin.command_id, "")),
+            plain(undone_by[origin.command_id] if record.undone else ""),
         )
     hidden = len(records) - table.row_count
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
@@ -151,9 +152,10 @@ def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
         count = sum(isinstance(event, kind) for event in events)
         if count:
             parts.append(f"{count} {name}")
-    undos = [event for event in events if isinstance(event, LessonUndone)]
-    if undos:
-        parts.append(f"{len(undos)} undone by {_names(event.origin.teacher for event in undos)}")
+    for change, name in ((LessonUndone, "undone"), (LessonRedone, "redone")):
+        own = [event for event in events if isinstance(event, change)]
+        if own:
+            parts.append(f"{len(own)} {name} by {_names(event.origin.teacher for event in own)}")
     teachers = _names(record.event.origin.teacher for record in system.lessons)
     by = f" by {teachers}" if teachers else ""
     summary = (

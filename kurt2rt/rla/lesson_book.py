@@ -17,6 +17,9 @@ from kurt2rt.rla.rla import (
     rla_title,
 )
 
+Pile = int | tuple[str, str]
+"""What lessons are about, and stand on one another for: an RLA by its id, or a level and a name."""
+
 
 @dataclass(frozen=True, slots=True)
 class LessonRecord:
@@ -55,7 +58,7 @@ def rla_of(lesson: RlaLesson) -> int:
     return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
 
 
-def _pile_of(lesson: Lesson) -> int | tuple[str, str]:
+def pile_of(lesson: Lesson) -> Pile:
     """Lessons of one pile are undone in the order of the pile: all about one RLA, or all that gave one name."""
     return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_of(lesson)
 
@@ -71,7 +74,7 @@ class LessonBook:
         """Number of lessons that stand."""
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
-        self._standing_of: dict[int | tuple[str, str], list[int]] = {}
+        self._standing_of: dict[Pile, list[int]] = {}
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA that ever lived."""
         self._newest: list[int] = []
@@ -105,7 +108,7 @@ class LessonBook:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
-        pile = self._standing_of.setdefault(_pile_of(lesson), [])
+        pile = self._standing_of.setdefault(pile_of(lesson), [])
         self._below.append(pile[-1] if pile else None)
         pile.append(place)
         self._newest.append(place)
@@ -122,7 +125,7 @@ class LessonBook:
             return f"there is no lesson {command_id!r}"
         if record.undone:
             return f"lesson {command_id!r} was undone already"
-        newest = self._records[self._standing_of[_pile_of(record.event)][-1]]
+        newest = self._records[self._standing_of[pile_of(record.event)][-1]]
         if newest is not record:
             later = newest.event.origin.command_id
             return f"lesson {later!r} came after {command_id!r} ({newest.text}); undo that one first"
@@ -133,10 +136,10 @@ class LessonBook:
         place = self._place[command_id]
         record = self._records[place]
         lesson = record.event
-        pile = self._standing_of[_pile_of(lesson)]
+        pile = self._standing_of[pile_of(lesson)]
         pile.pop()
         if not pile:
-            del self._standing_of[_pile_of(lesson)]
+            del self._standing_of[pile_of(lesson)]
         self._records[place] = replace(record, undone=True)
         self._undone.append(place)
         self.standing -= 1
@@ -155,7 +158,7 @@ class LessonBook:
         if not record.undone:
             return f"lesson {command_id!r} stands; there is nothing to redo"
         below = self._below[self._place[command_id]]
-        pile = self._standing_of.get(_pile_of(record.event))
+        pile = self._standing_of.get(pile_of(record.event))
         top = pile[-1] if pile else None
         if top == below:
             return None
@@ -171,7 +174,7 @@ class LessonBook:
         """Mark a lesson as standing, for which `why_not_redo` has no reason against it; returns it."""
         place = self._place[command_id]
         record = self._records[place] = replace(self._records[place], undone=False)
-        self._standing_of.setdefault(_pile_of(record.event), []).append(place)
+        self._standing_of.setdefault(pile_of(record.event), []).append(place)
         self._undone.remove(place)
         self.standing += 1
         spot = bisect_left(self._newest, place)

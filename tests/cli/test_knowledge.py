@@ -1,6 +1,7 @@
 """`kurt2rt knowledge`: looked at, put out as a table, and taken back lesson by lesson."""
 
 import csv
+import json
 import shutil
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.rla import CRITIC, ActionWithdrawn, Credit, Origin, Phase, RlaRewarded
+from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Credit, Origin, Phase, RlaRewarded
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.cli.helpers import CommandLine
 
@@ -97,3 +98,69 @@ def test_a_table_that_cannot_be_written_is_refused(kurt2rt: CommandLine, tmp_pat
     assert "tables: nothing can be saved there" in kurt2rt.refused(
         "knowledge", "table", lessons, "--out", tmp_path / "tables"
     )
+
+
+def test_a_lesson_is_undone_and_stands_again(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    before = folded(mine)
+    kurt2rt("knowledge", "undo", mine)
+    assert kurt2rt("knowledge", "redo", mine).out.startswith(f"{mine}: stands again: RLA ")
+    assert folded(mine).rlas == before.rlas
+    assert "holds no lesson that was undone" in kurt2rt.refused("knowledge", "redo", mine)
+    assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out
+
+
+def test_a_branch_is_listed_taught_on_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    count = len(folded(mine))
+    first = folded(mine).lessons[0].event.origin.command_id
+    said = kurt2rt("knowledge", "branch", mine, "early.knowledge", "--at", first)
+    assert said.out == "branch  early.knowledge: the first 1 rows of mine.knowledge\n"
+    assert kurt2rt("knowledge", "branch", mine, "late.knowledge").exit_code == 0
+    listed = kurt2rt("knowledge", "list", tmp_path).out
+    assert listed.count("mine.knowledge,") == 2
+    assert "wall_following" in listed
+
+    kurt2rt("knowledge", "undo", "late.knowledge", "--lesson", first)
+    told = kurt2rt("knowledge", "diff", mine, "late.knowledge").out
+    assert f"1 lessons stand only in {mine}:" in told
+    assert f"1 RLAs live only in {mine}:\n  RLA 1: " in told
+    as_json = json.loads(kurt2rt("knowledge", "diff", "early.knowledge", mine, "--json").out)
+    assert as_json["common_rows"] == 1
+    assert len(as_json["rlas_only_there"]) == count - 1
+
+    dry = kurt2rt("knowledge", "merge", mine, "late.knowledge", "--dry-run")
+    assert dry.out == f"{mine}: brought in: 1 undone (nothing was changed: --dry-run)\n"
+    assert kurt2rt("knowledge", "merge", mine, "late.knowledge").exit_code == 0
+    assert folded(mine).get(1) is None
+    assert "nothing is there that is not here" in kurt2rt("knowledge", "merge", mine, "late.knowledge").out
+    assert "know the same" in kurt2rt("knowledge", "diff", mine, "late.knowledge").out
+
+
+def test_a_conflict_is_told_and_settled_by_whom_one_prefers(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
+) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    kurt2rt("knowledge", "branch", mine, "other.knowledge")
+    for path, action in ((mine, "left"), (tmp_path / "other.knowledge", "right")):
+        with Journal.read_only(path) as look:
+            binding = look.binding
+        with Journal.open(path, binding) as journal:
+            correction = ActionReplaced(1, action, "forward", Origin(f"by-{action}", "Ann", Phase.CORRECTIONS, 9))
+            journal.append([JournalEntry(correction, utc_now())])
+    said = kurt2rt("knowledge", "merge", mine, "other.knowledge")
+    assert said.exit_code == 1
+    assert said.out.splitlines() == [
+        "conflict  here RLA 1 says left, there RLA 1 says right: changed on both sides",
+        f"{mine}: nothing was changed; say --prefer mine or --prefer theirs",
+    ]
+    assert kurt2rt("knowledge", "merge", mine, "other.knowledge", "--prefer", "theirs").exit_code == 0
+    rla = folded(mine).get(1)
+    assert rla is not None
+    assert rla.action == "right"
+
+
+def test_in_an_empty_folder_nothing_is_listed(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "holds no knowledge file" in kurt2rt("knowledge", "list", tmp_path).out
+    (tmp_path / "broken.knowledge").write_text("nonsense", encoding="utf-8")
+    assert "cannot be read" in " ".join(kurt2rt("knowledge", "list", tmp_path).out.split())

@@ -11,10 +11,10 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
-from kurt2rt.knowledge.undo import undo_lesson, undo_lessons_of
+from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.teaching.commands import Undo
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
 from tests.reinforcement.helpers import SIGNALS_ONLY, Track
@@ -32,6 +32,10 @@ def undo(path: Path, lesson: str | None = None) -> LessonRecord:
     return undo_lesson(path, lesson, teacher="command line", stamp=STAMP)
 
 
+def redo(path: Path, lesson: str | None = None) -> LessonRecord:
+    return redo_lesson(path, lesson, teacher="command line", stamp=STAMP)
+
+
 def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: Path) -> None:
     begun(path, lessons=2)
     with Journal.open(path, BINDING) as journal:
@@ -44,6 +48,53 @@ def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: 
     assert rlas(path) == ()
     with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that stands; there is nothing to undo$"):
         undo(path)
+
+
+def test_what_was_undone_last_is_redone_first_with_what_its_reward_was_worth(path: Path) -> None:
+    with Journal.open(begun(path, lessons=2), BINDING) as journal:
+        blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25),))
+        journal.append([JournalEntry(blame, STAMP), JournalEntry(replaced(2, "left", "forward"), STAMP)])
+        journal.checkpoint(Statistics(values={1: 0.25}, numbers={FIRST_VALUE: 0.5}))
+    undo(path, "blame-1")
+    undo(path)
+    assert redo(path) == LessonRecord(replaced(2, "left", "forward"))
+    assert rlas(path)[1].action == "left"
+    assert redo(path) == LessonRecord(blame)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics().values == {1: 0.25}
+    with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that was undone; there is nothing to redo$"):
+        redo(path)
+
+
+def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
+    begun(path)
+    undo(path, "create-3")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "right", "forward"), STAMP)])
+    for lesson, why in {
+        "replace-1-left": "'replace-1-right' came in the place of 'replace-1-left' .*; undo that one first; kurt2rt",
+        "create-1": "lesson 'create-1' stands; there is nothing to redo; kurt2rt knowledge lessons shows their ids",
+    }.items():
+        with pytest.raises(KnowledgeError, match=why):
+            redo(path, lesson)
+    with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+        redo(path)
+
+
+@pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
+def test_a_robot_that_goes_on_counts_a_redone_praise_again(rule: str) -> None:
+    settings = ReinforcementSettings(rule=rule)  # type: ignore[arg-type]
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
+    robot.go(50.0, 20)
+    robot.go(0.0, 20)
+    praise = robot.signal(1).origin.command_id
+    before = robot.worth(1)
+    for change in (LessonUndone(praise, origin("u")), LessonRedone(praise, origin("r"))):
+        robot.school.learning.apply(change)
+    assert robot.worth(1) == pytest.approx(before)
 
 
 def test_the_journal_tells_who_undid_what(path: Path) -> None:

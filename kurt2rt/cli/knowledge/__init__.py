@@ -2,9 +2,13 @@
 
 import typer
 
+from kurt2rt.cli.knowledge.branch import branch
 from kurt2rt.cli.knowledge.check import check
+from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.graph import graph
 from kurt2rt.cli.knowledge.lessons import lessons
+from kurt2rt.cli.knowledge.listing import list_files
+from kurt2rt.cli.knowledge.merge import merge
 from kurt2rt.cli.knowledge.show import show
 from kurt2rt.cli.knowledge.table import table
 from kurt2rt.cli.knowledge.undo import redo, undo
@@ -14,5 +18,6 @@ knowledge = typer.Typer(
     "while one does.",
     no_args_is_help=True,
 )
-for _command in (show, lessons, check, undo, redo, table, graph):
+knowledge.command("list")(list_files)
+for _command in (show, lessons, check, undo, redo, branch, merge, diff, table, graph):
     knowledge.command()(_command)

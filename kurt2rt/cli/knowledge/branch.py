@@ -1,0 +1,23 @@
+"""`kurt2rt knowledge branch`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.knowledge.branching import branch as make_branch
+from kurt2rt.knowledge.writer import utc_now
+
+
+def branch(
+    file: KnowledgeFile,
+    new: Annotated[Path, typer.Argument(help="The file to make; nothing may be there yet.")],
+    at: Annotated[
+        str | None,
+        typer.Option(help="Last lesson that comes with it, by its id, or a time (ISO 8601, UTC as +00:00); else all."),
+    ] = None,
+) -> None:
+    """Make a new file that begins as this one was; what is taught there can be merged in again."""
+    whence = make_branch(file, new, at, stamp=utc_now())
+    say(f"branch  {new}: the first {whence.rows} rows of {whence.file}")

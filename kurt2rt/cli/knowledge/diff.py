@@ -1,0 +1,69 @@
+"""`kurt2rt knowledge diff`."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.knowledge.binding import require_same
+from kurt2rt.knowledge.difference import Difference, difference
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.kinship import read_taught
+from kurt2rt.rla.lesson_book import LessonRecord
+from kurt2rt.rla.rla import Rla
+
+
+def diff(
+    file: KnowledgeFile,
+    other: Annotated[Path, typer.Argument(help="Another knowledge file of the same features.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
+) -> None:
+    """Tell lessons and RLAs that only one of two files has, and RLAs with another action."""
+    with Journal.read_only(file) as a, Journal.read_only(other) as b:
+        require_same(b.binding, a.binding, other, b.has_lessons_at)
+        found = difference(read_taught(a), read_taught(b))
+    if as_json:
+        typer.echo(json.dumps(_as_json(found), indent=2))
+        return
+    for line in _lines(found, str(file), str(other)):
+        say(line)
+
+
+def _lines(found: Difference, a: str, b: str) -> Iterable[str]:
+    yield f"both begin with the same {found.common_rows} rows"
+    if found.none:
+        yield "and know the same"
+    for path, lessons in ((a, found.lessons_a), (b, found.lessons_b)):
+        if lessons:
+            yield f"{len(lessons)} lessons stand only in {path}:"
+            yield from (f"  {record.text} ({record.event.origin.teacher})" for record in lessons)
+    for path, rlas in ((a, found.rlas_a), (b, found.rlas_b)):
+        if rlas:
+            yield f"{len(rlas)} RLAs live only in {path}:"
+            yield from (f"  {rla.title}: {rla.action}" for rla in rlas)
+    if found.changed:
+        yield f"{len(found.changed)} RLAs have another action in {b} than in {a}:"
+        yield from (f"  {here.title}: {there.action} instead of {here.action}" for here, there in found.changed)
+
+
+def _as_json(found: Difference) -> dict[str, Any]:
+    return {
+        "common_rows": found.common_rows,
+        "lessons_only_here": [_lesson(record) for record in found.lessons_a],
+        "lessons_only_there": [_lesson(record) for record in found.lessons_b],
+        "rlas_only_here": [_rla(rla) for rla in found.rlas_a],
+        "rlas_only_there": [_rla(rla) for rla in found.rlas_b],
+        "rlas_with_another_action": [{"here": _rla(here), "there": _rla(there)} for here, there in found.changed],
+    }
+
+
+def _lesson(record: LessonRecord) -> dict[str, Any]:
+    origin = record.event.origin
+    return {"id": origin.command_id, "teacher": origin.teacher, "lesson": record.text}
+
+
+def _rla(rla: Rla) -> dict[str, Any]:
+    return {"rla": rla.rla_id, "level": rla.level, "behaviour": rla.behaviour, "action": rla.action}

@@ -1,0 +1,43 @@
+"""`kurt2rt knowledge list`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+
+from kurt2rt.cli.knowledge.shared import WIDE, say
+from kurt2rt.cli.printed import console_of
+from kurt2rt.knowledge.branching import whence_of
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.kinship import read_taught
+from kurt2rt.knowledge.shown import plain
+
+
+def list_files(
+    folder: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it.")] = Path("var"),
+) -> None:
+    """List the knowledge files of a folder: task, how much they know, and where branches came from."""
+    table = Table(box=SIMPLE_HEAD)
+    for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "branch of"):
+        table.add_column(heading, justify="right" if heading in ("RLAs", "lessons") else "left", overflow="fold")
+    for path in sorted(folder.rglob("*.knowledge")):
+        try:
+            table.add_row(plain(str(path)), *map(plain, _row(path)))
+        except KnowledgeError as error:
+            table.add_row(plain(str(path)), plain(f"cannot be read: {error}"))
+    if not table.row_count:
+        say(f"{folder}: holds no knowledge file (*.knowledge)")
+        return
+    console_of(WIDE).print(table)
+
+
+def _row(path: Path) -> tuple[str, ...]:
+    with Journal.read_only(path) as journal:
+        taught, whence = read_taught(journal), whence_of(journal)
+    newest = taught.entries[-1].stamped_at[:19].replace("T", " ") if taught.entries else ""
+    came = "" if whence is None else f"{whence.file}, {whence.rows} rows"
+    system = taught.system
+    return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came

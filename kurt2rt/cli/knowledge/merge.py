@@ -1,0 +1,52 @@
+"""`kurt2rt knowledge merge`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
+from kurt2rt.cli.options import RobotName
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.merging import Merge, Side
+from kurt2rt.knowledge.merging import merge as bring_in
+from kurt2rt.knowledge.nearness import borders_of
+from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.tasks.settings import load_task
+
+
+def merge(
+    file: KnowledgeFile,
+    other: Annotated[Path, typer.Argument(help="The file whose lessons are brought in; stays as it is.")],
+    prefer: Annotated[
+        Side | None, typer.Option(help="Who is right where both changed the same, or say different things.")
+    ] = None,
+    task_name: Annotated[
+        str | None, typer.Option("--task", help="Task whose R says what is near; the one it was taught for if absent.")
+    ] = None,
+    robot_name: RobotName = "kurt2",
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would come of it.")] = False,
+) -> None:
+    """Bring in what was taught in another file since both were one; twice is as once.
+
+    Conflicts are listed, and unless --prefer says who is right nothing is
+    changed, with exit code 1.
+    """
+    with Journal.read_only(file) as journal:
+        system = journal.binding.system
+    borders = borders_of(load_task(task_name or system), load_robot(robot_name))
+    merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
+    for conflict in merged.conflicts:
+        say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {conflict.where}")
+    if merged.conflicts and prefer is None:
+        say(f"{file}: nothing was changed; say --prefer mine or --prefer theirs")
+        raise typer.Exit(1)
+    say(f"{file}: {_told(merged)}" + (" (nothing was changed: --dry-run)" if dry_run else ""))
+
+
+def _told(merged: Merge) -> str:
+    parts = [f"{merged.lessons} lessons", f"{len(merged.new_ids)} RLAs of them new"] if merged.lessons else []
+    parts += [f"{merged.undone} undone"] if merged.undone else []
+    parts += [f"{merged.redone} redone"] if merged.redone else []
+    return f"brought in: {', '.join(parts)}" if parts else "nothing is there that is not here"

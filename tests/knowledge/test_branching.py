@@ -1,0 +1,80 @@
+"""A branch begins as another file was, and knows whence it came."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.branching import Whence, branch, whence_of
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import check_knowledge
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, replaced
+
+LATER = "2004-04-26T11:00:00.000+00:00"
+NOW = "2026-11-22T03:10:05.000+00:00"
+COUNTED = Statistics(
+    {1: 5, 2: 7, 3: 1},
+    {(1, 2): 3, (2, 3): 1},
+    {1: 0.25},
+    {(1, 2): 95.0},
+    {FIRST_VALUE: 0.5, VALUES_INCLUDE: 4.0},
+)
+
+
+@pytest.fixture
+def taught(path: Path) -> Path:
+    """Three RLAs, and an hour later the second one corrected."""
+    with Journal.open(begun(path), BINDING) as journal:
+        journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
+        journal.checkpoint(COUNTED)
+    return path
+
+
+def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
+    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW)
+    with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
+        assert new.entries() == old.entries()
+        assert new.statistics() == old.statistics()
+        assert new.binding == old.binding
+        assert check_knowledge(new) == []
+        assert whence_of(new) == told == Whence("knowledge.db", 4, "replace-2-left", NOW)
+        assert whence_of(old) is None
+
+
+@pytest.mark.parametrize("at", ["create-2", "2004-04-26T10:30+00:00"])
+def test_a_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, at: str) -> None:
+    rows = 2 if at == "create-2" else 3
+    branch(taught, tmp_path / "b", at, stamp=NOW)
+    with Journal.read_only(tmp_path / "b") as new:
+        assert new.events() == [created(number) for number in range(1, rows + 1)]
+        counted = new.statistics()
+        assert check_knowledge(new) == []
+    uses = {1: 5} if rows == 2 else {1: 5, 3: 1}  # the second has another action since
+    assert counted == replace(Statistics(), uses=uses, numbers={FIRST_VALUE: 0.5})
+
+
+def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) -> None:
+    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).rows == 0
+
+
+def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:
+    with pytest.raises(KnowledgeError, match="is there already; give the path of a new file"):
+        branch(taught, taught, None, stamp=NOW)
+    with pytest.raises(KnowledgeError, match="holds no lesson 'create-9', and that is no time either"):
+        branch(taught, tmp_path / "b", "create-9", stamp=NOW)
+    (tmp_path / "c-wal").write_bytes(b"lessons")
+    with pytest.raises(KnowledgeError, match="a log c-wal of another file is beside it"):
+        branch(taught, tmp_path / "c", None, stamp=NOW)
+    assert not (tmp_path / "b").exists()
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_branch_is_made_while_a_robot_runs_on_the_file_and_can_be_taught_on(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING):
+        branch(taught, tmp_path / "b", None, stamp=NOW)
+    with Journal.open(tmp_path / "b", BINDING) as journal:
+        journal.append([JournalEntry(created(4), STAMP)])
+        assert len(journal.events()) == 5
