@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
 from kurt2rt.service_settings import ServiceSettings
@@ -55,6 +56,7 @@ class Rounds:
         teacher: Watcher | None,
         channel: Channel | None,
         health: HealthWatch | None = None,
+        recorder: RunRecorder | None = None,
     ) -> None:
         """`stamps`: when each lesson was written, by command id; goes on here."""
         self._runtime = runtime
@@ -64,6 +66,7 @@ class Rounds:
         self._teacher = teacher
         self._channel = channel
         self._health = health
+        self._recorder = recorder
         self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
         self.take(service)
         self._asking = False
@@ -85,8 +88,11 @@ class Rounds:
         self._ask(record)
         for acknowledgement in writer.acknowledged():
             self.settled(acknowledgement)
-        if ticks % self._checkpoint_ticks == 0:
+        saves = ticks % self._checkpoint_ticks == 0
+        if saves:
             self.save_statistics()
+        if self._recorder is not None:
+            self._recorder.note(record, saved=saves)
         if ticks % self._status_ticks == 0:
             channel_trouble = "" if self._channel is None else self._channel.trouble
             self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble)
@@ -106,6 +112,8 @@ class Rounds:
             self._stamps[acknowledgement.command_id] = acknowledgement.stamped_at
         if self._channel is not None:
             self._channel.settled(acknowledgement)
+        if self._recorder is not None:
+            self._recorder.acknowledged(acknowledgement)
         self._screen.settled(acknowledgement)
 
     def save_statistics(self) -> None:
@@ -118,7 +126,10 @@ class Rounds:
         elif not self._asking and record.tick - self._asked_at >= self._ticks_per_second:
             self._asking = True
             self._asked_at = record.tick
-            self._screen.question(self._question_of(record))
+            question = self._question_of(record)
+            if self._recorder is not None:
+                self._recorder.asked(question)
+            self._screen.question(question)
 
     def _question_of(self, record: TickRecord) -> Question | WayQuestion:
         runtime, match = self._runtime, record.decision.match

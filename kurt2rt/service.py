@@ -24,6 +24,8 @@ from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.recording.recording import Circumstances, Recording
+from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rounds import Rounds, Screen, Status, Watcher
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
@@ -38,6 +40,9 @@ from kurt2rt.timing.timerfd import TimerfdClock
 from kurt2rt.upkeep import Upkeep
 
 _ENDS = "the service ends"
+_STARTED = "the robot program was started"
+_RECORDING_S = 2.0
+"""For the disk to keep the end of the recording."""
 _JOURNAL_S = 10.0
 """For the disk to keep the last lessons, where nobody told the program to end."""
 _KEYS_S = 2.0
@@ -71,6 +76,7 @@ async def serve(
     instruments: Instruments | None = None,
     upkeep: Upkeep | None = None,
     knowledge: OpenedKnowledge | None = None,
+    recording: Recording | None = None,
 ) -> Status | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
@@ -78,6 +84,7 @@ async def serve(
     `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
     `instruments`: what the health report reads beside the runtime. `upkeep`: of the program around, with a service
     manager perhaps. `knowledge`: that of the settings, where it is open already; it is closed here.
+    `recording`: what is kept of the run; None: nothing.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
     UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
@@ -91,6 +98,13 @@ async def serve(
         ending = upkeep.ending
         opened = knowledge or go_on_teaching(path, settings, task)
         stamps = opened.stamps
+        boot = secrets.token_bytes(BOOT_BYTES)
+        circumstances = Circumstances(
+            boot.hex(), str(path), openness is not None, _STARTED if stopped else "", behaviour or ""
+        )
+        recorder = None
+        if recording is not None:
+            recorder = around.enter_context(_recording(recording, settings, task, opened, circumstances, ending))
         with _writing(opened.journal, ending) as writer:
             runtime = build_runtime(
                 robot,
@@ -105,18 +119,22 @@ async def serve(
                 saved=opened.saved,
             )
             if stopped:
-                runtime.school.stop("the robot program was started")
-            boot = secrets.token_bytes(BOOT_BYTES)
+                runtime.school.stop(_STARTED)
             watch = HealthWatch(runtime, writer, instruments or Instruments(), boot=boot.hex(), knowledge=path)
             status = StatusSocket(watch, socket_of(path))
             watch.include(says={"status": lambda: status.trouble})
+            if recorder is not None:
+                watch.include(
+                    drops={"the recording": lambda: recorder.dropped}, says={"recording": lambda: recorder.trouble}
+                )
+                watch.listen(recorder.healthy)
             parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.parts}
             heartbeat = Heartbeat(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
             async with (
                 anyio.create_task_group() as tasks,
                 _channel(runtime, writer, stamps, service, openness, boot, watch, ending) as channel,
             ):
-                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch)
+                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch, recorder)
 
                 def after_tick(record: TickRecord) -> None:
                     rounds(record)
@@ -138,7 +156,10 @@ async def serve(
             rounds.save_statistics()
             ending.waits_for = "the newest lessons"
         for acknowledgement in writer.acknowledged():
+            if recorder is not None:
+                recorder.acknowledged(acknowledgement)
             screen.settled(acknowledgement)
+        ending.waits_for = "the end of the recording"
     return rounds.last
 
 
@@ -187,6 +208,23 @@ def _writing(journal: Journal, ending: Ending) -> Iterator[JournalWriter]:
         yield writer
     finally:
         writer.close(ending.patience_s(_JOURNAL_S))
+
+
+@contextmanager
+def _recording(
+    recording: Recording,
+    settings: RobotSettings,
+    task: TaskSettings,
+    knowledge: OpenedKnowledge,
+    circumstances: Circumstances,
+    ending: Ending,
+) -> Iterator[RunRecorder]:
+    recorder = recording.recorder(settings, task, knowledge, circumstances)
+    recorder.start()
+    try:
+        yield recorder
+    finally:
+        recorder.close(ending.patience_s(_RECORDING_S))
 
 
 class _Taking:

@@ -25,6 +25,8 @@ class ServiceSettings(Settings):
     devices: str
     port: Annotated[int, Field(ge=0, le=65535)]
     page_port: Annotated[int, Field(ge=0, le=65535)]
+    recordings: str
+    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000)]
 
 
 class Reloaded(NamedTuple):

@@ -1,5 +1,7 @@
 """The live view: what is being recorded, for Foxglove over a WebSocket."""
 
+from collections.abc import Callable
+
 from foxglove import Context, start_server
 from foxglove.websocket import WebSocketServer
 
@@ -9,8 +11,11 @@ LOOPBACK = "127.0.0.1"
 class LiveView:
     """Shows all that is logged in a context to whoever connects. Others can look on and change nothing."""
 
-    def __init__(self, context: Context, host: str, port: int, name: str) -> None:
-        """Opens nothing yet. `port` 0: any; `name`: what Foxglove calls it."""
+    def __init__(
+        self, context: Context, host: str, port: int, name: str, opened: Callable[["LiveView"], None] = lambda _: None
+    ) -> None:
+        """Opens nothing yet. `port` 0: any; `name`: what Foxglove calls it; `opened` is called when it is open."""
+        self._opened = opened
         self._context = context
         self._host = host
         self._port = port
@@ -29,6 +34,11 @@ class LiveView:
         """The port it listens on; as it was asked for until it is open."""
         return self._port if self._server is None else self._server.port
 
+    @property
+    def address(self) -> str:
+        """What one gives to Foxglove."""
+        return f"ws://{self._host}:{self.port}"
+
     def tend(self) -> None:
         """Open it, where it is not: the port may have become free."""
         if self._server is not None:
@@ -42,6 +52,7 @@ class LiveView:
             self.trouble = f"the live view cannot listen on {self._host}, port {self._port} ({error})"
         else:
             self.trouble = ""
+            self._opened(self)
 
     def close(self) -> None:
         """Everybody is disconnected."""

@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 from foxglove import Context
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import WorldView
+from kurt2rt.channel.ground import Ground, WorldView
 from kurt2rt.channel.state import SimulatedPlace
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.politely import politely
@@ -20,14 +20,14 @@ from kurt2rt.recording.disk import Disk
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.live_view import LiveView
 from kurt2rt.recording.run_files import Budget, RunFiles
-from kurt2rt.recording.run_head import RunHead, encode_head
+from kurt2rt.recording.run_head import RUN_METADATA, RunHead, encode_head
 from kurt2rt.recording.topics import Topics
 from kurt2rt.tick import TickRecord
 
 CAPACITY = 3000
 """Notes that wait for the disk: half a minute of ticks, some 20 MB."""
-HEAD, SEGMENT = "run", "segment"
-"""Names of the metadata in each segment."""
+SEGMENT_METADATA = "segment"
+"""Name of what tells each segment's number, beside the head of the run."""
 _PERIOD_S = 0.1
 _ROUNDS_PER_SECOND = 10
 _PLACE_EVERY_TICKS = 5
@@ -49,13 +49,6 @@ class _Asked(NamedTuple):
 _Noted = _Ticked | _Asked | HealthReport | Acknowledgement
 
 
-class SimulatedGround(NamedTuple):
-    """Where a simulated robot is; asked between two ticks, so neither may wait."""
-
-    place: Callable[[], SimulatedPlace]
-    world: Callable[[], WorldView]
-
-
 class RunRecorder:
     """Takes notes between two ticks, and writes them in a thread of its own, ten times a second.
 
@@ -70,7 +63,7 @@ class RunRecorder:
         files: RunFiles | None,
         live: LiveView | None = None,
         *,
-        ground: SimulatedGround | None = None,
+        ground: Ground | None = None,
         began_at_ns: int | None = None,
         capacity: int = CAPACITY,
     ) -> None:
@@ -261,7 +254,8 @@ def open_run_recorder(
     *,
     name: str,
     live: tuple[str, int] | None = None,
-    ground: SimulatedGround | None = None,
+    opened: Callable[[LiveView], None] = lambda _: None,
+    ground: Ground | None = None,
     began_at_ns: int | None = None,
     disk: Disk | None = None,
     capacity: int = CAPACITY,
@@ -269,7 +263,8 @@ def open_run_recorder(
     """A recorder of one run, not started yet. It touches neither disk nor network before its thread does.
 
     `recordings`: folder of all runs; None: nothing is kept. `name`: of the run's own folder. `attachments` by name: for
-    the first segment. `features`: names of the situation's values. `live`: host and port of a live view.
+    the first segment. `features`: names of the situation's values. `live`: host and port of a live view;
+    `opened` hears, in the recorder's thread, when it is open. `ground`: of a simulated robot.
     `began_at_ns`: where the run has a clock of its own: time since 1970 of its 0.
     """
     context = Context()
@@ -279,11 +274,11 @@ def open_run_recorder(
     if recordings is not None:
 
         def describe(number: int) -> dict[str, dict[str, str]]:
-            return {HEAD: encode_head(head), SEGMENT: {"number": str(number), "run": name}}
+            return {RUN_METADATA: encode_head(head), SEGMENT_METADATA: {"number": str(number), "run": name}}
 
         now_ns = time.time_ns if began_at_ns is None else lambda: began_at_ns
         files = RunFiles(
             context, recordings, name, budget, describe=describe, attachments=attachments, now_ns=now_ns, disk=disk
         )
-    view = None if live is None else LiveView(context, *live, name=name)
+    view = None if live is None else LiveView(context, *live, name=name, opened=opened)
     return RunRecorder(topics, files, view, ground=ground, began_at_ns=began_at_ns, capacity=capacity)

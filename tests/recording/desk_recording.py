@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
+from kurt2rt.channel.ground import Ground
 from kurt2rt.recording.attachments import attachments_of, fingerprints_of
 from kurt2rt.recording.disk import Disk
 from kurt2rt.recording.run_files import Budget, budget_of
 from kurt2rt.recording.run_head import RunHead
-from kurt2rt.recording.run_recorder import RunRecorder, SimulatedGround, open_run_recorder
+from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
 from kurt2rt.tick import TickRecord
 from tests.channel.desk import ROBOT, TASK, Desk
 
@@ -38,7 +39,7 @@ class RecordedDesk:
         *,
         disk: Disk | None = None,
         budget: Budget | None = None,
-        ground: SimulatedGround | None = None,
+        ground: Ground | None = None,
         capacity: int = 3000,
         name: str = NAME,
         live: tuple[str, int] | None = None,

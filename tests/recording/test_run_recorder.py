@@ -11,8 +11,7 @@ from kurt2rt.recording.disk import RealDisk, WritableFile
 from kurt2rt.recording.entries import TickEntry, decode_tick, tick_entry_of
 from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import runs_in, segments_in
-from kurt2rt.recording.run_head import decode_head
-from kurt2rt.recording.run_recorder import HEAD as HEAD_NAME
+from kurt2rt.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.recording.segment_reader import LoggedMessage, SegmentReader
 from kurt2rt.recording.topics import LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK
 from kurt2rt.rla.fingerprint import knowledge_hash_of
@@ -56,7 +55,7 @@ def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) 
     desk.recorder.close()
     (segment,) = segments_in(tmp_path / NAME)
     head = SegmentReader(segment).head()
-    assert decode_head(head.metadata[HEAD_NAME]) == HEAD
+    assert decode_head(head.metadata[RUN_METADATA]) == HEAD
     assert head.attachments == ATTACHMENTS
     assert KNOWLEDGE in head.attachments
 
@@ -91,7 +90,7 @@ def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tm
     segments = segments_in(tmp_path / NAME)
     assert len(segments) > 2
     for segment in segments:
-        assert decode_head(SegmentReader(segment).head().metadata[HEAD_NAME]) == HEAD
+        assert decode_head(SegmentReader(segment).head().metadata[RUN_METADATA]) == HEAD
     assert SegmentReader(segments[1]).head().attachments == {}
     assert [each.tick for each in entries_of(tmp_path / NAME)] == [record.tick for record in desk.records]
 

@@ -1,0 +1,97 @@
+"""What is to be recorded of a run, and the recorder that does it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.channel.ground import Ground
+from kurt2rt.knowledge.opening import OpenedKnowledge
+from kurt2rt.perception.definition import load_situation
+from kurt2rt.recording.attachments import attachments_of, fingerprints_of
+from kurt2rt.recording.live_view import LiveView
+from kurt2rt.recording.run_files import Budget
+from kurt2rt.recording.run_folder import run_name
+from kurt2rt.recording.run_head import RunHead
+from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
+from kurt2rt.tasks.settings import TaskSettings
+
+
+@dataclass(frozen=True, slots=True)
+class Circumstances:
+    """How a run began."""
+
+    boot: str
+    """Names this start of the program, hexadecimal."""
+    knowledge: str
+    """File that is taught into; empty where there is none."""
+    attended: bool
+    stopped: str = ""
+    """Why the robot stands until it is told to resume; empty where it does not."""
+    behaviour: str = ""
+    """The taught behaviour that is wanted at first."""
+    asked: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """Where a run is recorded to, and who may look on."""
+
+    recordings: Path | None
+    """Folder of all runs; None: nothing is kept."""
+    budget: Budget
+    bus: str
+    """sim, or the bus that the robot is on."""
+    ground: Ground | None = None
+    """Of a simulated robot."""
+    live: tuple[str, int] | None = None
+    """Host and port of a live view; None: there is none."""
+    opened: Callable[[LiveView], None] = lambda _: None
+    """Hears, in another thread, when it is open."""
+
+    def recorder(
+        self,
+        settings: RobotSettings,
+        task: TaskSettings,
+        knowledge: OpenedKnowledge | None,
+        circumstances: Circumstances,
+        *,
+        started: datetime | None = None,
+    ) -> RunRecorder:
+        """The recorder of one run, to be made before its first tick; not started yet.
+
+        `knowledge`: as it is at the start; None: nothing is known. `started`: for a run in simulated time, which then
+        begins there; None: now. Raises SettingsError, KnowledgeError.
+        """
+        entries = () if knowledge is None else knowledge.entries
+        attachments = attachments_of(settings, task, entries, None if knowledge is None else knowledge.saved)
+        began = started or datetime.now(UTC)
+        head = RunHead(
+            kurt2rt=version("kurt2rt"),
+            boot=circumstances.boot,
+            started_at=began.isoformat(timespec="milliseconds"),
+            task=task.name,
+            robot=settings.name,
+            bus=self.bus,
+            knowledge=circumstances.knowledge,
+            attended=circumstances.attended,
+            asked=circumstances.asked,
+            stopped=circumstances.stopped,
+            behaviour=circumstances.behaviour,
+            fingerprints=fingerprints_of(attachments),
+        )
+        return open_run_recorder(
+            self.recordings,
+            head,
+            attachments,
+            self.budget,
+            settings,
+            load_situation(task.situation, settings.infrared.names).names,
+            name=run_name(began, task.name),
+            live=self.live,
+            opened=self.opened,
+            ground=self.ground,
+            began_at_ns=None if started is None else round(started.timestamp() * 1_000_000_000),
+        )
