@@ -27,7 +27,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
             f"now {late.newest_ms:.2f} ms; in a minute: median {late.median_ms:.2f}, p99 {late.p99_ms:.2f}, "
             f"worst {late.worst_ms:.2f} ms",
         ),
-        ("ticks", f"{late.ticks} done in {late.took_p99_ms:.2f} ms (p99), {late.missed} missed{_lately(late)}"),
+        ("ticks", f"{late.ticks:,} done, in {late.took_p99_ms:.2f} ms each (p99), {late.missed} missed{_lately(late)}"),
         ("sensors", _ages(report.ages)),
     ]
     if bus is not None:
@@ -39,7 +39,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
             "receive failures": bus.receive_failures,
         }
         wrong = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
-        rows.append(("bus", f"{bus.controller}, {bus.frames} frames, {wrong or 'nothing wrong with them'}"))
+        rows.append(("bus", f"{bus.controller}, {bus.frames:,} frames, {wrong or 'nothing wrong with them'}"))
     written = "all durable" if not report.safety.unwritten else f"{report.safety.unwritten} not durable yet"
     took_ms = report.safety.last_write_ms
     took = "" if took_ms is None else f"; the disk took {took_ms:.0f} ms for the last"
@@ -76,8 +76,10 @@ def headline(report: HealthReport) -> str:
     punctual = f"late {late.p99_ms:.2f} ms (p99), missed {late.missed}"
     if not report.troubles:
         return f"well; {punctual}"
-    more = f" and {len(report.troubles) - 1} more" if len(report.troubles) > 1 else ""
-    return f"{report.troubles[0].what}{more}; {punctual}"
+    urgent = sum(each.urgent for each in report.troubles)
+    count = "1 trouble" if len(report.troubles) == 1 else f"{len(report.troubles)} troubles"
+    which = "" if not urgent else ", urgent" if urgent == len(report.troubles) else f", {urgent} of them urgent"
+    return f"{count}{which}; {punctual}"
 
 
 def lasting(seconds: float) -> str:

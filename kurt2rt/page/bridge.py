@@ -12,19 +12,11 @@ import anyio.abc
 from kurt2rt.channel.state import State
 from kurt2rt.page.attention import Attention
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
-from kurt2rt.page.mirror import Mirror
 from kurt2rt.page.orders import carry_out, lets_drive, oldest_picture_s
+from kurt2rt.page.rarely_told import RarelyTold
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.seat import Seat
-from kurt2rt.page.views import (
-    answer_view,
-    hello_view,
-    lessons_view,
-    refusal_view,
-    situations_view,
-    state_view,
-    world_view,
-)
+from kurt2rt.page.views import answer_view, refusal_view, state_view
 from kurt2rt.page.visitor import Visitor
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import NoAnswerError
@@ -35,7 +27,6 @@ _SILENT_S = 0.5
 """A robot not heard of for so long is said to be silent, and so often."""
 _MOST_ORDERS = 8
 """That one page may have under way."""
-_LESSONS = 10
 
 _NOT_YOURS = "another page has the pad; press Take to have it here"
 _NO_PICTURE = "the page showed no picture of the robot as it runs now; look, and press again"
@@ -68,27 +59,17 @@ class Bridge:
         self._stopped_s = float("-inf")
         self._unseen_stop_due = False
         self._ending = 0
-        self._seeks = False
         self._said_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
-        self._hello = Mirror(self._fetch_hello, partial(self._tell_all, about="hello"))
-        self._world = Mirror(self._fetch_world, partial(self._tell_all, about="world"))
-        self._lessons = Mirror(self._fetch_lessons, partial(self._tell_all, about="lessons"))
-        self._situations = Mirror(self._fetch_situations, partial(self._tell_all, about="situations"))
-        self._mirrors = (
-            (self._hello, "hello"),
-            (self._world, "world"),
-            (self._lessons, "lessons"),
-            (self._situations, "situations"),
-        )
+        self._rarely = RarelyTold(robot, self._tell_all, lambda: self._carried_out)
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
         """Serve until cancelled; the wheels are let go at the end."""
         async with anyio.create_task_group() as tasks:
             self._tasks = tasks
-            for task in (*(mirror.run for mirror, _ in self._mirrors), self._follow_pictures, self._keep_watch):
+            self._rarely.start(tasks)
+            for task in (self._follow_pictures, self._keep_watch):
                 tasks.start_soon(task)
-            self._hello.want(b"")
             task_status.started()
 
     async def end(self) -> None:
@@ -110,9 +91,8 @@ class Bridge:
         self._visitors[visitor.number] = visitor
         self._seat.arrive(visitor.number, self._now())
         self._seat_changed(before)
-        for mirror, about in self._mirrors:
-            if mirror.copy is not None:
-                visitor.tell(mirror.copy, about=about)
+        for about, copy in self._rarely.copies():
+            visitor.tell(copy, about=about)
         return visitor
 
     def leave(self, visitor: Visitor) -> None:
@@ -218,7 +198,8 @@ class Bridge:
         self._carried_out += 1
         # A list of lessons that is fetched from now on, `after` this one, has in it what the order has changed.
         visitor.tell({**view, "done": self._carried_out})
-        self._want_lessons()
+        if self._newest is not None:
+            self._rarely.see_lessons(self._newest)
 
     # The teacher's hand and eyes
 
@@ -314,40 +295,11 @@ class Bridge:
                 self._stopped_s = self._now()
             self._newest = state
             self._look()
-            self._hello.want(state.boot)
-            if state.place is not None:
-                self._world.want((state.boot, state.place.world_version))
-            self._want_lessons()
+            self._rarely.see(state, watched=bool(self._visitors))
             view = state_view(state, self._robot.link, self._robot.state_age_s, self._robot.refused)
             for visitor in self._visitors.values():
                 visitor.show(state.boot, view)
 
-    def _want_lessons(self) -> None:
-        if self._newest is not None:
-            state = self._newest
-            mark = (state.boot, state.lessons, state.unsaved, self._carried_out)
-            self._lessons.want(mark)
-            if self._seeks:
-                self._situations.want(mark)
-
     def _tell_all(self, message: dict[str, Any], about: str) -> None:
         for visitor in self._visitors.values():
             visitor.tell(message, about=about)
-
-    async def _fetch_hello(self) -> dict[str, Any]:
-        hello = await self._robot.hello()
-        self._seeks = hello.seeks
-        return hello_view(hello)
-
-    async def _fetch_world(self) -> dict[str, Any]:
-        world = await self._robot.world()
-        if world is None:
-            raise NoAnswerError("the robot says where it is in a world, and has none")
-        return world_view(world)
-
-    async def _fetch_lessons(self) -> dict[str, Any]:
-        after = self._carried_out
-        return {**lessons_view(await self._robot.lessons(_LESSONS)), "after": after}
-
-    async def _fetch_situations(self) -> dict[str, Any]:
-        return situations_view(await self._robot.situations())

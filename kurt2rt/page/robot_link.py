@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 from typing import Protocol
 
 from kurt2rt.channel.state import State
+from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
@@ -66,6 +67,10 @@ class RobotLink(Protocol):
 
     async def hello(self) -> Hello:
         """What robot this is."""
+        ...
+
+    async def health(self) -> HealthReport | None:
+        """How its program is; None in its first second."""
         ...
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:

@@ -6,6 +6,8 @@ from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from kurt2rt.channel.state import State
+from kurt2rt.health.report import HealthReport
+from kurt2rt.health.words import headline, rows_of, trouble_in
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -108,6 +110,19 @@ def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
 def situations_view(names: tuple[str, ...]) -> dict[str, Any]:
     """The situations that have a name."""
     return {"kind": "situations", "situations": names}
+
+
+def health_view(report: HealthReport | None) -> dict[str, Any]:
+    """How the robot's program is, in words: nothing in its first second."""
+    if report is None:
+        return {"kind": "health", "says": "", "rows": [], "troubles": []}
+    troubles = [{"what": each.what, "text": trouble_in(each), "urgent": each.urgent} for each in report.troubles]
+    return {
+        "kind": "health",
+        "says": headline(report),
+        "rows": [each._asdict() for each in rows_of(report)],
+        "troubles": troubles,
+    }
 
 
 def plain(value: Any) -> Any:

@@ -11,6 +11,7 @@ import anyio.lowlevel
 from hal.robot_settings import load_robot
 from kurt2rt.channel.requests import VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.hello import Hello, SensorPlace
@@ -91,6 +92,7 @@ class FakeRobot:
     state: State | None = None
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
+    report: HealthReport | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
@@ -135,6 +137,12 @@ class FakeRobot:
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         await self._answer("lessons", count)
         return self.newest_lessons
+
+    async def health(self) -> HealthReport | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.report
 
     async def world(self) -> World | None:
         await self._answer("world")

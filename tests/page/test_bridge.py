@@ -99,7 +99,7 @@ async def test_a_page_is_told_what_robot_this_is_and_sees_it() -> None:
         await page.see(place=A_PLACE)
         await anyio.wait_all_tasks_blocked()
         page.read()
-        assert {each["kind"] for each in page.heard} == {"page", "hello", "world", "lessons", "state"}
+        assert {each["kind"] for each in page.heard} == {"page", "hello", "world", "lessons", "health", "state"}
         assert page.last("page") == {"kind": "page", "device": "phone", "robot": "127.0.0.1:5683", "seat": "here"}
         assert page.last("hello")["robot"] == "kurt2-indoor"
         assert page.last("lessons")["lessons"][0]["text"] == "RLA 1: forward"

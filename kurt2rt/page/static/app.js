@@ -3,6 +3,7 @@
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Critic, CRITIC } from "./critic.js";
 import { Goals } from "./goals.js";
+import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
@@ -31,6 +32,7 @@ const lessons = new Lessons((lesson) => tell("undo", { lesson }));
 const ways = new Ways(teachWay);
 const goals = new Goals(tell);
 const critic = new Critic(appraise);
+const health = new Health();
 const organising = new Organising(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
@@ -209,6 +211,7 @@ link.addEventListener("hello", ({ detail }) => {
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
+link.addEventListener("health", ({ detail }) => health.see(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
 link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
 link.addEventListener("let_go", ({ detail }) => {
@@ -257,7 +260,7 @@ function show() {
   goals.show(state);
   critic.show(state, lessons.newestOf(CRITIC));
   warn(state);
-  setText($("health"), `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms, missed ${state.missed_ticks}`);
+  health.show(state);
   if (state.refused && drive.held) say("refused", state.refused);
   organising.show(state, inCharge());
   claim();
@@ -292,6 +295,7 @@ function warn(state) {
   const guard = state.guard.filter((reason) => !USUAL.includes(reason));
   setText($("guard"), guard.length ? `guard: ${guard.join(", ")}` : "");
   const lines = state.trouble ? [state.trouble] : [];
+  lines.push(...health.urgent(state));
   if (state.unsaved) lines.push(`${state.unsaved} not saved yet`);
   const box = $("warnings");
   if (lines.join("\n") === [...box.children].map((each) => each.textContent).join("\n")) return;

@@ -1,0 +1,78 @@
+"""How the robot's program is, on the page: a small line that opens to a table."""
+
+from collections.abc import Iterator
+
+import pytest
+from anyio.from_thread import start_blocking_portal
+
+from tests.health.reports import ILL, SILENT, WELL
+from tests.page.fake_robot import A_PLACE
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.test_browser import assert_handy, show_on
+from tests.page.test_critic_on_the_page import Lesson
+from tests.page.test_served_page import TOKEN, served
+
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+CLASS = "return document.querySelector(arguments[0]).className;"
+
+
+@pytest.fixture
+def lesson(a_phone: Phone) -> Iterator[Lesson]:
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        page.robot.report = WELL
+        lesson = Lesson(a_phone, portal, page.robot)
+        lesson.show(teacher="local", place=A_PLACE)
+        pictures = portal.start_task_soon(show_on, page.robot)
+        try:
+            a_phone.turn(PORTRAIT)
+            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
+            lesson.reads("#sentence", "RLA 1 does forward")
+            yield lesson
+        finally:
+            pictures.cancel()
+
+
+def falls_ill(lesson: Lesson) -> None:
+    """The robot's next report is of a second later."""
+    lesson.robot.report = ILL
+    state = lesson.robot.state
+    assert state is not None
+    lesson.show(tick=state.tick + 100)
+
+
+def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) -> None:
+    phone = lesson.phone
+    assert phone.text("#health") == "late 0.20 ms, missed 0"
+    assert not phone.find("#health-table").is_displayed()
+    phone.touch("#link")
+    lesson.reads("#health-says", "well; late 0.31 ms (p99), missed 0")
+    rows = phone.text("#health-rows")
+    for words in ("forward by RLA 12", "infra-red 4 ms old", "knowledge: 79.9 GB free", "battery 83%, discharging"):
+        assert words in rows
+    phone.touch("#stop")  # which is never covered
+    phone.wait(lambda: lesson.robot.told.count(("stop",)) == 1, "the robot is stopped")
+    phone.touch("#close-health")
+    assert not phone.find("#health-table").is_displayed()
+
+
+def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: Lesson) -> None:
+    phone = lesson.phone
+    falls_ill(lesson)
+    lesson.reads("#health", "2 troubles")
+    assert phone.run(CLASS, "#health") == "warns urgent"
+    lesson.reads("#warnings", SILENT.what)
+    phone.touch("#link")
+    lesson.reads("#health-says", "2 troubles, 1 of them urgent; late 2.90 ms (p99), missed 7")
+    lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
+    lesson.reads("#health-troubles", "3 ticks missed in the last minute, 7 in all (for 3 min 5 s)")
+    for size in SIZES:
+        phone.turn(size, touch=size != LAPTOP)
+        phone.show(f"12-health-{size[0]}x{size[1]}")
+        assert_handy(phone, size, "teach")
+    phone.turn(PORTRAIT)
+    phone.touch("#close-health")
+    assert not phone.find("#health-table").is_displayed()
+    for size in SIZES:
+        phone.turn(size, touch=size != LAPTOP)
+        phone.show(f"12-bar-{size[0]}x{size[1]}")
+        assert_handy(phone, size, "teach")
