@@ -1,6 +1,7 @@
 # make run    a simulated robot that asks to be taught, and the page to teach it from; ARGS=--auto teaches by itself
 # make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
 # make test   lint, types, and the tests that need nothing but Python
+# make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
 VENV := .venv
@@ -10,7 +11,7 @@ INSTALLED := $(VENV)/installed
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test test-deep guard mutants hil bench lint types compiled clean
+.PHONY: run demo test test-deep guard mutants kills hil bench lint types compiled clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --page $(ARGS)
@@ -35,6 +36,12 @@ guard: $(INSTALLED)
 mutants: $(INSTALLED)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[mutants]'
 	$(BIN)/python -m tests.hal.mutants
+
+# The robot program is killed 10 000 times while it is taught: 6 hours of one processor; SHARD=2/8 is the second of eight.
+SHARD ?= 1/1
+KILLS ?= 10000
+kills: $(INSTALLED)
+	$(BIN)/python -m tests.crash.kills --kills $(KILLS) --shard $(SHARD)
 
 # First that both machines can be had (the small kernel is built once, 3 minutes), then real time, then simulated time.
 hil: $(INSTALLED)

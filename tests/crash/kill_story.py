@@ -1,0 +1,252 @@
+"""A robot program is killed at any moment of its life, over and over, while a teacher teaches it over the network.
+
+The robot is a program of its own on a shared bus, and goes on. After each kill it stands by its own watchdog, every
+lesson that was acknowledged is in the knowledge file once, and the next program asks before it drives.
+"""
+
+import random
+import secrets
+import time
+from collections import Counter
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import anyio
+import anyio.abc
+import can
+
+from hal.bus import CanBus, open_bus
+from hal.robot_settings import load_robot
+from kurt2rt.channel.requests import (
+    COMMAND_ID_BYTES,
+    AnswerRequest,
+    CorrectRequest,
+    Request,
+    RewardRequest,
+    UndoRequest,
+)
+from kurt2rt.channel.state import State
+from kurt2rt.knowledge.entry import StoredEntry
+from kurt2rt.knowledge.fold import check_knowledge
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.client import TeacherClient
+from tests.cli.three_programs import BRAKING_CYCLES, STARTED, WATCHDOG_CYCLES, drives, is_control, stands, turns
+from tests.crash.programs import Nursery, Program
+
+ACTIONS = ("forward", "forward", "back", "spin_left", "whirl_right")
+LONGEST_S = 60.0
+"""Fails a story whose event never comes."""
+YOUNGEST_SHARE = 0.3
+"""Of the programs that are killed while they start."""
+START_S = 0.6
+"""About how long that takes."""
+DRIVING_SHARE = 0.6
+"""Of the others that are killed not before the robot drives by what it was taught."""
+LONGEST_LIFE_S = 1.5
+MOST_LESSONS = 5
+MOST_FURTHER_S = 0.4
+CYCLE_S = load_robot().can.cycle_s
+_LOOK_S = 0.005
+
+
+@dataclass
+class Tally:
+    """What was seen over many kills."""
+
+    kills: int = 0
+    young: int = 0
+    """Killed while they started."""
+    driving: int = 0
+    """Killed while the wheels turned."""
+    acknowledged: int = 0
+    stored: int = 0
+    """Lessons in the file in the end."""
+    unacknowledged: int = 0
+    """Of them those of which the teacher was told nothing."""
+    most_cycles_to_rest: int = 0
+    kinds: Counter[str] = field(default_factory=Counter)
+    """Of the acknowledged lessons."""
+
+    def __str__(self) -> str:
+        kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.kinds.items()))
+        return (
+            f"{self.kills} kills ({self.young} while it started, {self.driving} while it drove), "
+            f"{self.acknowledged} lessons acknowledged ({kinds}), "
+            f"{self.stored} stored, {self.unacknowledged} of them unacknowledged; "
+            f"at most {self.most_cycles_to_rest} cycles to rest"
+        )
+
+
+class Life:
+    """What the teacher did and was told in one life of the robot program."""
+
+    def __init__(self, we: TeacherClient, chance: random.Random) -> None:
+        self._we = we
+        self._chance = chance
+        self.told: dict[int, tuple[str, str]] = {}
+        """Command id and kind of the lesson of each row that was acknowledged."""
+
+    @property
+    def drives(self) -> bool:
+        """Whether the robot drove when it was last seen."""
+        state = self._we.state
+        return state is not None and state.rla is not None and abs(state.left_m_s) + abs(state.right_m_s) > 0.1
+
+    async def teach(self) -> None:
+        """Go on for ever: take, resume, answer, correct, praise, undo."""
+        async for state in self._we.states():
+            try:
+                await self._react(state)
+            except NoAnswerError:
+                continue
+
+    async def _react(self, state: State) -> None:
+        if state.teacher != self._we.name:
+            await self._we.take()
+        elif state.stopped_because:
+            await self._we.resume()
+        elif state.cause == "unknown":
+            await self._lesson(state, "answer")
+        elif state.phase == Phase.SUPERVISED and self._chance.random() < 0.05:
+            await self._we.set_phase(Phase.CORRECTIONS)
+        elif state.rla is not None and state.phase == Phase.CORRECTIONS and self._chance.random() < 0.2:
+            await self._lesson(state, self._chance.choice(["correct", "correct", "correct", "undo"]))
+        elif self._chance.random() < 0.02:
+            await self._we.set_phase(self._chance.choice([Phase.SUPERVISED, Phase.REINFORCEMENT]))
+        elif state.rla is not None and state.phase == Phase.REINFORCEMENT and self._chance.random() < 0.2:
+            await self._lesson(state, "reward")
+
+    async def _lesson(self, state: State, kind: str) -> None:
+        command_id, action = secrets.token_bytes(COMMAND_ID_BYTES), self._chance.choice(ACTIONS)
+        boot, tick = state.boot, state.tick
+        request: Request
+        match kind:
+            case "answer":
+                request = AnswerRequest(boot, command_id, tick, action=action, decision_tick=tick)
+            case "correct":
+                request = CorrectRequest(boot, command_id, tick, action=action, decision_tick=tick)
+            case "reward":
+                value = self._chance.choice([-1, 1])
+                request = RewardRequest(boot, command_id, tick, value=value, decision_tick=tick)
+            case _:
+                request = UndoRequest(boot, command_id, tick, lesson=None)
+        answer = await self._we._asking.ask(request)
+        row = answer.extra.get("row")
+        if answer.accepted and row is not None:
+            self.told[row] = (f"{self._we.name}-{command_id.hex()}", kind)
+
+
+class KillStory:
+    """The robot, its bus, and one knowledge file for all the lives of its program."""
+
+    def __init__(self, folder: Path, bus: str, seed: int, *words: str, longest_life_s: float = LONGEST_LIFE_S) -> None:
+        """`words`: further options of `kurt2rt run`. `longest_life_s`: killed then, however few lessons there were."""
+        self.tally = Tally()
+        self._folder = folder
+        self._bus_name = bus
+        self._words = words
+        self._longest_life_s = longest_life_s
+        self._chance = random.Random(seed)
+        self._knowledge = folder / "knowledge"
+        self._rows: list[StoredEntry] = []
+        self._acknowledged: set[int] = set()
+        self._nursery = Nursery()
+
+    async def run(self, kills: int) -> Tally:
+        """Kill so many programs. Raises AssertionError for what must not be."""
+        with ExitStack() as ending:
+            ending.callback(self._nursery.close)
+            sim = self._nursery.start("sim", "--bus", self._bus_name, folder=self._folder, log=self._folder / "sim.log")
+            await sim.says("is on bus")
+            self._bus: CanBus = open_bus(self._bus_name)
+            ending.callback(self._bus.shutdown)
+            for _ in range(kills):
+                with anyio.fail_after(LONGEST_S):
+                    await self._one_life()
+                assert sim.lives, sim.said
+        self.tally.stored = len(self._rows)
+        self.tally.unacknowledged = len(self._rows) - len(self._acknowledged)
+        return self.tally
+
+    async def _one_life(self) -> None:
+        log = self._folder / "run.log"
+        log.unlink(missing_ok=True)
+        words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), *self._words)
+        program = self._nursery.start("run", *words, folder=self._folder, log=log)
+        told: dict[int, tuple[str, str]] = {}
+        if self._chance.random() < YOUNGEST_SHARE:
+            self.tally.young += 1
+            await anyio.sleep(self._chance.uniform(0.0, START_S))
+            before = self._heard()
+            program.kill()
+        else:
+            told, before = await self._taught_and_killed(program)
+        assert "Traceback" not in program.said, program.said
+        self.tally.kills += 1
+        self.tally.driving += any(turns(frame) for frame in before[-4:])
+        await self._comes_to_rest()
+        self._look_at_the_knowledge(told)
+
+    async def _taught_and_killed(self, program: Program) -> tuple[dict[int, tuple[str, str]], list[can.Message]]:
+        line = await program.says("teachers are listened to on UDP port")
+        async with TeacherClient(self._folder / "var/devices/local", port=int(line.split()[-1])) as we:
+            life = Life(we, self._chance)
+            state = await we._pictures.first()
+            assert state is not None
+            assert state.stopped_because == STARTED
+            assert not any(map(drives, self._heard())), "it drove before anybody had told it to"
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(life.teach)
+                lessons, further_s = self._chance.randint(0, MOST_LESSONS), self._chance.uniform(0, MOST_FURTHER_S)
+                while_driving = self._chance.random() < DRIVING_SHARE
+                until_s = time.monotonic() + self._longest_life_s
+                while len(life.told) < lessons or (while_driving and not life.drives):
+                    await anyio.sleep(_LOOK_S)
+                    assert program.lives, program.said
+                    if time.monotonic() > until_s:
+                        break
+                await anyio.sleep(further_s)
+                before = self._heard()
+                program.kill()
+                tasks.cancel_scope.cancel()
+        return life.told, before
+
+    def _heard(self) -> list[can.Message]:
+        return self._bus.drain()
+
+    async def _comes_to_rest(self) -> None:
+        """The controller's own watchdog stops the wheels; nothing is said to them by a program that is gone."""
+        cycles: list[bool] = []
+        while len(cycles) <= WATCHDOG_CYCLES or cycles[-1]:
+            for frame in self._heard():
+                if is_control(frame):
+                    cycles.clear()  # some that the program sent before came late
+                elif turns(frame) or stands(frame):
+                    cycles.append(turns(frame))
+            assert len(cycles) < 10 * (WATCHDOG_CYCLES + BRAKING_CYCLES), "it did not come to rest"
+            await anyio.sleep(CYCLE_S)
+        cycles_to_rest = max((number for number, turning in enumerate(cycles, start=1) if turning), default=0)
+        assert cycles_to_rest <= WATCHDOG_CYCLES + BRAKING_CYCLES
+        self.tally.most_cycles_to_rest = max(self.tally.most_cycles_to_rest, cycles_to_rest)
+
+    def _look_at_the_knowledge(self, told: dict[int, tuple[str, str]]) -> None:
+        if not self._knowledge.exists():  # killed before it was born
+            assert not self._rows
+            assert not told
+            return
+        with Journal.read_only(self._knowledge) as journal:
+            assert check_knowledge(journal) == []
+            rows = journal.entries()
+        assert rows[: len(self._rows)] == self._rows, "what stood there has changed"
+        ids = [row.event.origin.command_id for row in rows]
+        assert len(set(ids)) == len(ids), "a lesson stands there twice"
+        for row, (command_id, kind) in told.items():
+            assert row <= len(rows), f"row {row} was acknowledged, and is lost"
+            assert ids[row - 1] == command_id
+            self.tally.kinds[kind] += 1
+        self.tally.acknowledged += len(told)
+        self._acknowledged |= told.keys()
+        self._rows = rows
