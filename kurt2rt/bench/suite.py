@@ -12,6 +12,7 @@ from kurt2rt.bench.lateness import lateness_result
 from kurt2rt.bench.lesson import measure_lessons
 from kurt2rt.bench.match import SIZES, Size, measure_match
 from kurt2rt.bench.real_time import Turns, run_in_real_time
+from kurt2rt.bench.recording import measure_recording
 from kurt2rt.bench.result import Result
 from kurt2rt.bench.subject import OnProgress, Subject, learn
 from kurt2rt.bench.tick_share import tick_results
@@ -26,6 +27,7 @@ class Bench(StrEnum):
     LOOP = "loop"
     LESSON = "lesson"
     CHANNEL = "channel"
+    RECORDING = "recording"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +43,7 @@ class Lengths:
     """Simulated seconds in a block."""
     lessons: int
     channel: ChannelLengths
+    recording: Shifts
 
 
 FULL = Lengths(
@@ -51,6 +54,7 @@ FULL = Lengths(
     loop_block_s=20,
     lessons=200,
     channel=ChannelLengths(presses=200, shifts=Shifts(rounds=8, ticks=250), lessons=200),
+    recording=Shifts(rounds=10, ticks=600),
 )
 QUICK = Lengths(
     learning_s=90.0,
@@ -60,6 +64,7 @@ QUICK = Lengths(
     loop_block_s=20,
     lessons=50,
     channel=ChannelLengths(presses=15, shifts=Shifts(rounds=2, ticks=100), lessons=15),
+    recording=Shifts(rounds=3, ticks=150),
 )
 
 
@@ -95,4 +100,8 @@ async def run_suite(
         results.append(await measure_lessons(subject, folder, lengths.lessons, progress_of("making lessons durable")))
     if Bench.CHANNEL in benches:
         results.extend(await measure_channel(subject, folder, lengths.channel, progress_of))
+    if Bench.RECORDING in benches:
+        results.extend(
+            await measure_recording(subject, folder, lengths.recording, progress_of("driving, recorded and not"))
+        )
     return tuple(results)

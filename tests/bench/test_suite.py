@@ -19,6 +19,7 @@ TINY = Lengths(
     loop_block_s=1,
     lessons=2,
     channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=10), lessons=1),
+    recording=Shifts(rounds=1, ticks=20),
 )
 
 
@@ -39,7 +40,7 @@ async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(unt
     benches = [bench for bench in Bench if bench is not Bench.CHANNEL]  # its processes take seconds: test_channel.py
     results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
-    assert len(jobs.names) == 5
+    assert len(jobs.names) == 6
     assert all(result.goals for result in results if not result.what.startswith("  "))
 
 
