@@ -1,6 +1,6 @@
 """The composition root: the one place that knows which robot is there, the simulated or the real one."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -19,6 +19,8 @@ class OpenedRobot(NamedTuple):
 
     robot: Kurt2
     ground: Ground | None
+    lives: Callable[[], bool]
+    """Whether the simulator still runs; always so where there is none."""
 
 
 @contextmanager
@@ -35,13 +37,13 @@ def open_robot(
         from kurt2rt.simulated import simulated_robot
 
         with simulated_robot(settings, world, seed, wire, tap) as (simulated, ground):
-            yield OpenedRobot(simulated, ground)
+            yield OpenedRobot(simulated, ground, lambda: ground.lives)
         return
     end = open_bus(bus)
     end.tap = tap
     robot = Kurt2(settings, end)
     try:
         with robot.watchdog:
-            yield OpenedRobot(robot, None)
+            yield OpenedRobot(robot, None, lambda: True)
     finally:
         robot.close()

@@ -24,6 +24,11 @@ class SimulatedGround:
         self._simulation = simulation
         self._version = 0
 
+    @property
+    def lives(self) -> bool:
+        """Whether the simulation goes on."""
+        return self._simulation.error is None
+
     def place(self) -> SimulatedPlace:
         """Where the robot is."""
         pose = self._robot.pose

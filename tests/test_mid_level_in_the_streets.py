@@ -8,7 +8,7 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from hal.health import Health
-from kurt2rt.cli.run import status_line
+from kurt2rt.cli.status_line import status_line
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from kurt2rt.layers.policy_level import PolicyLevel

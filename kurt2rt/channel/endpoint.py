@@ -1,8 +1,6 @@
 """The robot's UDP socket under aiocoap: one port, no matter what arrives there."""
 
 import asyncio
-import errno
-import ipaddress
 import logging
 import socket
 import time
@@ -15,8 +13,8 @@ from aiocoap.message import Direction
 from aiocoap.numbers.constants import TransportTuning
 from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
 
-from kurt2rt.channel.error import ChannelError
 from kurt2rt.channel.gate import Counters, Gate, Limits, SocketAddress
+from kurt2rt.channel.port import bound_socket
 
 
 class Site(Protocol):
@@ -193,7 +191,7 @@ async def open_endpoint(
     answered = _Answered(site)
     context = aiocoap.Context(loop=loop, serversite=answered)
     context.log = log
-    bound = _bound(host, port)
+    bound = bound_socket(host, port)
 
     await context._append_tokenmanaged_messagemanaged_transport(
         lambda messages: _Socket._create_transport_endpoint(bound, messages, log, loop)
@@ -211,37 +209,3 @@ async def open_endpoint(
 
     tokens.dispatch_error = dispatch_error
     return Endpoint(context, opened, bound.getsockname()[1], gate, counters, failures)
-
-
-def _bound(host: str, port: int) -> socket.socket:
-    try:
-        address = ipaddress.ip_address(host)
-    except ValueError as error:
-        raise ChannelError(f"{host!r} is no address; give one of this machine, such as 127.0.0.1 or ::") from error
-    text = f"::ffff:{address}" if address.version == 4 else str(address)
-    try:
-        opened = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
-    except OSError as error:
-        raise ChannelError(
-            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4; switch IPv6 on in its kernel"
-        ) from error
-    try:
-        opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
-        # No SO_REUSEPORT: two robot programs would each get a share of the teacher's messages.
-        opened.bind((text, port))
-    except (OSError, OverflowError) as error:
-        opened.close()
-        raise ChannelError(_why(error, host, port)) from error
-    return opened
-
-
-def _why(error: OSError | OverflowError, host: str, port: int) -> str:
-    match error:
-        case OSError(errno=errno.EADDRINUSE):
-            return f"UDP port {port} is in use, by another kurt2rt run perhaps; end that one, or give another port"
-        case OSError(errno=errno.EADDRNOTAVAIL):
-            return f"{host} is no address of this machine; give one that is, or :: for all"
-        case OSError(errno=errno.EACCES):
-            return f"UDP port {port} is not allowed to this user; give one above 1023"
-        case _:
-            return f"UDP port {port} at {host} cannot be opened ({error}); give another port or address"

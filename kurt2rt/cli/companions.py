@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -21,8 +22,12 @@ class Companions:
     when this process is gone, however that came, and so do they.
     """
 
-    def __init__(self, settings: str) -> None:
-        """`settings`: runtime settings, as given on the command line."""
+    def __init__(self, settings: str, patience_s: Callable[[float], float] = lambda most_s: most_s) -> None:
+        """`settings`: runtime settings, as given on the command line.
+
+        `patience_s`: how long they may be waited for at the end, of what they would like.
+        """
+        self._patience_s = patience_s
         self._settings = settings
         self._processes: list[subprocess.Popen[bytes]] = []
 
@@ -45,7 +50,7 @@ class Companions:
             process.terminate()
         for process in self._processes:
             try:
-                process.wait(_ENDING_S)
+                process.wait(self._patience_s(_ENDING_S))
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()

@@ -7,7 +7,7 @@ import pytest
 from hal.bus_state import ControllerState
 from hal.guard import BUS_LOST, FOREIGN_CONTROL
 from hal.health import Health
-from kurt2rt.cli.run import status_line
+from kurt2rt.cli.status_line import status_line
 from kurt2rt.rounds import Status
 from kurt2rt.teaching.commands import Teach
 from tests.channel.desk import Desk

@@ -1,0 +1,253 @@
+"""The robot's program, put together: robot, screen, log and companions around the service."""
+
+import asyncio
+import gc
+import re
+import signal
+import time
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+from rich.console import Console
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.app import OpenedRobot, open_robot
+from kurt2rt.channel.channel import EVERYWHERE, LOOPBACK, Channel
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing, pairing_names
+from kurt2rt.channel.port import require_port
+from kurt2rt.cli.companions import Companions
+from kurt2rt.cli.printer import Printer
+from kurt2rt.cli.status_line import doing, status_line, troubles
+from kurt2rt.ending import Ending, leave
+from kurt2rt.health.instruments import Instruments
+from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.recording.can_log import CanLog, open_can_log
+from kurt2rt.reloading import Reloading
+from kurt2rt.rounds import Screen, Status
+from kurt2rt.service import Openness, serve
+from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.start import Need, Start, require_folder
+from kurt2rt.systemd.notifier import Notifier
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.question import Question, WayQuestion
+from kurt2rt.timing.priority import take_real_time_priority
+from kurt2rt.upkeep import Upkeep
+
+_WAITS = "the robot program waits for what it needs"
+
+
+@dataclass(frozen=True, slots=True)
+class Orders:
+    """What the command line says beside the settings."""
+
+    bus: str
+    settings: str
+    """Name or path of the runtime settings, for the companions."""
+    as_service: bool
+    """A service manager started it."""
+    attended: bool
+    """Teachers come over the channel."""
+    stopped: bool
+    """It stands until its teacher says Go."""
+    behaviour: str | None
+    page: bool
+    auto: bool
+    page_port: int | None
+    can_log: Path | None
+    seconds: float | None
+    seed: int
+    wire: str
+
+
+class RobotProgram:
+    """One run in real time, from the first look at the bus to the last word on the screen."""
+
+    def __init__(
+        self,
+        orders: Orders,
+        read: Callable[[], ServiceSettings],
+        robot: RobotSettings,
+        task: TaskSettings,
+    ) -> None:
+        """`read`: the runtime settings, as the command line changes them. Raises SettingsError."""
+        self._orders = orders
+        self._read = read
+        self._service = read()
+        self._robot = robot
+        self._task = task
+        self._console = Console()
+        self._around = ExitStack()
+        self._log: CanLog | None = None
+        self._opened: OpenedRobot | None = None
+        self._knowledge: OpenedKnowledge | None = None
+        self._told = ""
+
+    def run(self) -> None:
+        """Run until somebody ends it. Raises what `kurt2rt.service.serve` and `kurt2rt.app.open_robot` do."""
+        service, orders = self._service, self._orders
+        end = "" if orders.as_service else "; Ctrl-C ends"
+        self._tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
+        if service.real_time_priority:
+            self._tell(take_real_time_priority(service.real_time_priority))
+        with self._around as around:
+            notifier = around.enter_context(Notifier())
+            reloading = Reloading(self._read, service, notifier, self._say) if orders.as_service else None
+            others = {} if reloading is None else {signal.SIGHUP: reloading.ask}
+            ending = around.enter_context(Ending(others=others, give_up=leave))
+            self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._say)
+            self._companions = around.enter_context(Companions(orders.settings, ending.patience_s))
+            self._printer = around.enter_context(Printer(ending.patience_s))
+            last = anyio.run(self._serve)
+            ending.waits_for = "the robot's bus and its logs"
+        # Else the interpreter walks all that there is once more, a third of a second, before the process ends.
+        gc.freeze()
+        count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
+        if self._log is not None:
+            self._tell(self._log.trouble or f"{self._log.written} frames are in {self._log.name}")
+        self._tell(f"the robot stands{count}")
+
+    async def _serve(self) -> Status | None:
+        orders, ending = self._orders, self._upkeep.ending
+        self._upkeep.notifier.ready()
+        if orders.as_service:
+            with anyio.CancelScope() as waiting:
+                await self._start(waiting)
+            if waiting.cancelled_caught:
+                return None
+        else:
+            self._take_robot()
+            if orders.attended:
+                self._pair()
+        opened = self._opened
+        assert opened is not None
+        ending.waits_for = "its runtime"
+        openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening)
+        return await serve(
+            opened.robot,
+            self._robot,
+            self._service,
+            self._task,
+            Screen(status=self._show, question=self._question, settled=self._settled),
+            openness=openness if orders.attended else None,
+            duration_s=orders.seconds,
+            stopped=orders.stopped,
+            behaviour=orders.behaviour,
+            instruments=self._instruments(opened),
+            upkeep=self._upkeep,
+            knowledge=self._knowledge,
+        )
+
+    async def _start(self, waiting: anyio.CancelScope) -> None:
+        """Wait until all is there, or until the program is told to end: then the scope is cancelled."""
+        loop = asyncio.get_running_loop()
+        needs = (
+            Need("bus", self._take_robot),
+            Need("knowledge", self._take_knowledge),
+            Need("teachers' keys", self._pair),
+            Need("network", self._look_at_port),
+        )
+        start = Start(needs, self._upkeep.notifier, self._say, self._hold)
+        with self._upkeep.ending.first(self._hold, lambda: loop.call_soon_threadsafe(waiting.cancel)):
+            try:
+                await start.wait()
+            except BaseException:
+                if self._knowledge is not None:
+                    self._knowledge.journal.close()
+                raise
+        if self._opened is not None:
+            self._opened.robot.release()
+
+    def _hold(self) -> None:
+        """Have a robot stand that is there before the rest."""
+        if self._opened is not None:
+            self._opened.robot.sense(time.monotonic())
+            self._opened.robot.emergency_stop(_WAITS)
+
+    def _take_robot(self) -> None:
+        orders = self._orders
+        if self._log is None and orders.can_log is not None:
+            self._log = self._around.enter_context(open_can_log(orders.can_log, orders.bus))
+        opening = open_robot(self._robot, orders.bus, self._service.world, orders.seed, self._log, orders.wire)
+        self._opened = self._around.enter_context(opening)
+
+    def _take_knowledge(self) -> None:
+        path = Path(self._service.knowledge)
+        require_folder(path.parent)
+        self._knowledge = go_on_teaching(path, self._robot, self._task)
+
+    def _pair(self) -> None:
+        """Let programs of this machine in."""
+        service = self._service
+        if self._orders.as_service:
+            for folder in (Path(service.teachers), Path(service.devices)):
+                require_folder(folder.parent)
+        for name in sorted(OF_THIS_MACHINE):
+            local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
+
+    def _look_at_port(self) -> None:
+        nobody_paired = OF_THIS_MACHINE.issuperset(pairing_names(Path(self._service.teachers)))
+        require_port(LOOPBACK if nobody_paired else EVERYWHERE, self._service.port)
+
+    def _listening(self, channel: Channel) -> None:
+        orders, port = self._orders, str(channel.endpoint.port)
+        at = () if orders.page_port is None else ("--page-port", str(orders.page_port))
+        self._say(f"teachers are listened to on UDP port {port}", "cyan")
+        if orders.page:
+            self._companions.start("teach", "--port", port, *at)
+        if orders.auto:
+            self._companions.start("teach", "--auto", "--port", port, "--task", self._service.task)
+
+    def _parts(self) -> dict[str, Callable[[], bool]]:
+        """What has to be alive, beside what the service looks after."""
+        return {
+            "second guard": lambda: self._opened is None or self._opened.robot.watchdog.running,
+            "simulator": lambda: self._opened is None or self._opened.lives(),
+        }
+
+    def _instruments(self, opened: OpenedRobot) -> Instruments:
+        log = self._log
+        drops, says = {"lines for the terminal": lambda: self._printer.dropped}, {}
+        if log is not None:
+            drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
+        return Instruments(lambda: opened.robot.health, drops, says)
+
+    def _question(self, question: Question | WayQuestion) -> None:
+        self._say(str(question), "yellow")
+
+    def _settled(self, acknowledgement: Acknowledgement) -> None:
+        if acknowledgement.error is not None:
+            self._say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
+
+    def _show(self, status: Status) -> None:
+        # The line is made by the printer as well: the percentiles in it cost more than a tick.
+        self._printer.put(lambda: self._show_now(status))
+
+    def _show_now(self, status: Status) -> None:
+        assert self._opened is not None
+        health = self._opened.robot.health
+        trouble = "" if self._log is None else self._log.trouble
+        line = " | ".join(part for part in (status_line(status, health), trouble) if part)
+        if not self._orders.as_service:
+            self._tell(line)
+            return
+        # A log is read by the day: what changes stands there, the rest is the unit's status.
+        self._upkeep.notifier.status(line)
+        stands = [doing(status)] if status.runtime.school.stopped_because else []
+        told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
+        if _without_numbers(told) != _without_numbers(self._told):
+            self._tell(told or "nothing is wrong any more")
+        self._told = told
+
+    def _say(self, text: str, style: str | None = None) -> None:
+        self._printer.put(lambda: self._tell(text, style))
+
+    def _tell(self, text: str, style: str | None = None) -> None:
+        self._console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+
+
+def _without_numbers(text: str) -> str:
+    return re.sub(r"\d+", "", text)
