@@ -49,7 +49,7 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
 
     Raises KnowledgeError for one that does not belong here, or where none can be made.
     """
-    binding = _binding(settings, task)
+    binding = binding_of(settings, task)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -78,13 +78,14 @@ def read_lessons(
     `beside_its_writer`: it may be this very process that writes it.
     """
     with Journal.beside_its_writer(path) if beside_its_writer else Journal.read_only(path) as journal:
-        require_same(journal.binding, _binding(settings, task), path, journal.has_lessons_at)
+        require_same(journal.binding, binding_of(settings, task), path, journal.has_lessons_at)
         entries = journal.entries()
         fold_entries(journal, entries, radius=math.inf)
         return [entry.event for entry in entries]
 
 
-def _binding(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
+def binding_of(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
+    """What knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
     levels = {CRITIC: critic_features(load_critic(task.critic))}

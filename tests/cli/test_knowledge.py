@@ -164,3 +164,17 @@ def test_in_an_empty_folder_nothing_is_listed(kurt2rt: CommandLine, tmp_path: Pa
     assert "holds no knowledge file" in kurt2rt("knowledge", "list", tmp_path).out
     (tmp_path / "broken.knowledge").write_text("nonsense", encoding="utf-8")
     assert "cannot be read" in " ".join(kurt2rt("knowledge", "list", tmp_path).out.split())
+
+
+def test_knowledge_is_given_away_signed_and_taken(kurt2rt: CommandLine, lessons: Path) -> None:
+    made = kurt2rt("knowledge", "key", "ann").out
+    print_of = made.splitlines()[1].rpartition(" ")[2]
+    given = kurt2rt("knowledge", "export", lessons, "out.zip", "--sign", "ann")
+    assert f", signed by {print_of}\n" in given.out
+    taken = kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge", "--trusted", "ann.pub")
+    assert taken.out.splitlines()[0].endswith(f" rows of wall_following, signed by {print_of}")
+    assert folded(Path("theirs.knowledge")).rlas == folded(lessons).rlas
+    unknown = kurt2rt("knowledge", "import", "out.zip", "--into", "again.knowledge").out
+    assert "whom nobody vouched for (--trusted)" in unknown
+    Path("torn.zip").write_bytes(Path("out.zip").read_bytes()[:-500])
+    assert "torn.zip: is torn or changed" in kurt2rt.refused("knowledge", "import", "torn.zip", "--into", "k")

@@ -5,6 +5,7 @@ import typer
 from kurt2rt.cli.knowledge.branch import branch
 from kurt2rt.cli.knowledge.check import check
 from kurt2rt.cli.knowledge.diff import diff
+from kurt2rt.cli.knowledge.export import export, import_, key
 from kurt2rt.cli.knowledge.graph import graph
 from kurt2rt.cli.knowledge.lessons import lessons
 from kurt2rt.cli.knowledge.listing import list_files
@@ -19,5 +20,6 @@ knowledge = typer.Typer(
     no_args_is_help=True,
 )
 knowledge.command("list")(list_files)
-for _command in (show, lessons, check, undo, redo, branch, merge, diff, table, graph):
+knowledge.command("import")(import_)
+for _command in (show, lessons, check, undo, redo, branch, merge, diff, export, table, graph, key):
     knowledge.command()(_command)

@@ -1,0 +1,68 @@
+"""`kurt2rt knowledge export`, `import` and `key`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
+from kurt2rt.cli.options import RobotName
+from kurt2rt.exchange.given import export_knowledge, import_knowledge, read_given
+from kurt2rt.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.tasks.settings import load_task
+
+
+def export(
+    file: KnowledgeFile,
+    out: Annotated[Path, typer.Argument(help="File to write; nothing may be there yet.")],
+    sign: Annotated[
+        Path | None, typer.Option(help="Sign it with this private key, as kurt2rt knowledge key makes one.")
+    ] = None,
+    task_name: Annotated[
+        str | None, typer.Option("--task", help="Task whose settings go with it; the one it was taught for if absent.")
+    ] = None,
+    robot_name: RobotName = "kurt2",
+) -> None:
+    """Write one file to give away: all lessons and counts, and the settings they were taught with."""
+    key = None if sign is None else read_private_key(sign)
+    with Journal.read_only(file) as journal:
+        system = journal.binding.system
+    robot, task = load_robot(robot_name), load_task(task_name or system)
+    size = export_knowledge(file, out, robot, task, key, stamp=utc_now())
+    signed = "" if key is None else f", signed by {fingerprint(key.public_key().public_bytes_raw())}"
+    say(f"export  {out}: {size / 1000:.0f} kB{signed}")
+
+
+def import_(
+    file: Annotated[Path, typer.Argument(help="File that kurt2rt knowledge export wrote.")],
+    into: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
+    task_name: Annotated[
+        str | None, typer.Option("--task", help="Task to use it for; the one whose settings came with it if absent.")
+    ] = None,
+    robot_name: RobotName = "kurt2",
+    trusted: Annotated[
+        Path | None, typer.Option(help="Take it only if the owner of this public key (.pub) has signed it.")
+    ] = None,
+) -> None:
+    """Make a knowledge file of an exported one; refuses what was changed, or taught with other features."""
+    public = None if trusted is None else read_public_key(trusted)
+    robot, task = load_robot(robot_name), load_task(task_name or read_given(file).task)
+    taken = import_knowledge(file, into, robot, task, public, stamp=utc_now())
+    given = taken.given
+    signer = "not signed" if given.signed_by is None else f"signed by {fingerprint(given.signed_by)}"
+    vouched = "" if given.signed_by is None or public is not None else ", whom nobody vouched for (--trusted)"
+    say(f"import  {into}: {len(given.lessons)} rows of {given.binding.system}, {signer}{vouched}")
+    if taken.other_settings:
+        say(f"settings that are otherwise here: {', '.join(taken.other_settings)}")
+
+
+def key(
+    file: Annotated[Path, typer.Argument(help="Where the private key goes; nothing may be there yet.")],
+) -> None:
+    """Make a key to sign exports with; its public half (.pub) is for those who are to trust it."""
+    public = make_key(file)
+    say(f"key  {file}: keep it to yourself")
+    say(f"public key  {public}: {fingerprint(read_public_key(public))}")

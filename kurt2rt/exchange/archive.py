@@ -1,0 +1,121 @@
+"""The one file: a ZIP archive with a manifest that names and fingerprints all that is in it, and maybe a signature."""
+
+import base64
+import hashlib
+import io
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+
+from kurt2rt.exchange.signing import is_signed, signature_of
+from kurt2rt.knowledge.error import KnowledgeError
+
+FORMAT = 1
+"""Raise it when the manifest or the files below change, and keep reading older ones."""
+
+MANIFEST, SIGNATURE = "manifest.json", "signature.json"
+_FILES, _FORMAT = "files", "format"
+_EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The same knowledge is the same file, whenever it is written."""
+_LARGEST_BYTES = 1_000_000_000
+"""Of all that is in it, unpacked: a small archive must not fill the memory."""
+
+
+@dataclass(frozen=True)
+class Archive:
+    """What was read from one, and found to be whole."""
+
+    manifest: Mapping[str, Any]
+    files: Mapping[str, bytes]
+    """By name."""
+    signed_by: bytes | None
+    """Raw public key; None: by nobody."""
+
+
+def pack(about: Mapping[str, Any], files: Mapping[str, bytes], key: Ed25519PrivateKey | None) -> bytes:
+    """An archive of some files; `about`: what the manifest says besides."""
+    prints = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
+    manifest = json.dumps({_FORMAT: FORMAT, **about, _FILES: prints}, indent=1).encode()
+    content = {MANIFEST: manifest, **dict(sorted(files.items()))}
+    if key is not None:
+        public, signature = signature_of(manifest, key)
+        signed = {"public_key": _text(public), "signature": _text(signature)}
+        content[SIGNATURE] = json.dumps(signed, indent=1).encode()
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in content.items():
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, data)
+    return buffer.getvalue()
+
+
+def unpack(path: Path) -> Archive:
+    """Read an archive whole. Raises KnowledgeError that says what is wrong with it: torn, changed, of another kind."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            content = _content(archive, path)
+    except OSError as error:
+        raise KnowledgeError(f"{path}: cannot be read ({error}); give a file of kurt2rt knowledge export") from error
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
+        raise KnowledgeError(
+            f"{path}: is torn or changed, or no file of kurt2rt knowledge export ({error}); get it anew"
+        ) from error
+    if MANIFEST not in content:
+        raise KnowledgeError(f"{path}: has no {MANIFEST}; give a file of kurt2rt knowledge export")
+    manifest = _manifest(content[MANIFEST], path)
+    files = {name: data for name, data in content.items() if name not in (MANIFEST, SIGNATURE)}
+    for name in sorted(manifest[_FILES].keys() | files.keys()):
+        if name not in files:
+            raise KnowledgeError(f"{path}: {name} is missing in it; get it anew")
+        if manifest[_FILES].get(name) != hashlib.sha256(files[name]).hexdigest():
+            raise KnowledgeError(f"{path}: {name} was changed after it was exported (SHA-256); get it anew")
+    return Archive(manifest, files, _signer(content, path))
+
+
+def _content(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
+    entries = archive.infolist()
+    if len({entry.filename for entry in entries}) < len(entries):
+        raise KnowledgeError(f"{path}: holds a file twice; get it anew")
+    if sum(entry.file_size for entry in entries) > _LARGEST_BYTES:
+        raise KnowledgeError(f"{path}: would unpack to more than {_LARGEST_BYTES // 10**6} MB, which no knowledge is")
+    return {entry.filename: archive.read(entry) for entry in entries}
+
+
+def _manifest(data: bytes, path: Path) -> dict[str, Any]:
+    try:
+        manifest = json.loads(data)
+    except ValueError as error:
+        raise KnowledgeError(f"{path}: its {MANIFEST} is damaged ({error}); get it anew") from error
+    if not isinstance(manifest, dict) or not isinstance(manifest.get(_FORMAT), int):
+        raise KnowledgeError(f"{path}: its {MANIFEST} is none of kurt2rt; give a file of kurt2rt knowledge export")
+    if manifest[_FORMAT] > FORMAT:
+        raise KnowledgeError(
+            f"{path}: has format {manifest[_FORMAT]} of a newer kurt2rt, this one knows up to {FORMAT}; update kurt2rt"
+        )
+    if not isinstance(manifest.get(_FILES), dict):
+        raise KnowledgeError(f"{path}: its {MANIFEST} names no files; get it anew")
+    return manifest
+
+
+def _signer(content: Mapping[str, bytes], path: Path) -> bytes | None:
+    if SIGNATURE not in content:
+        return None
+    try:
+        signed = json.loads(content[SIGNATURE])
+        public, signature = (base64.b64decode(signed[each], validate=True) for each in ("public_key", "signature"))
+    except (ValueError, KeyError, TypeError) as error:
+        raise KnowledgeError(f"{path}: its {SIGNATURE} is damaged ({error!r}); get it anew") from error
+    if not is_signed(content[MANIFEST], public, signature):
+        raise KnowledgeError(f"{path}: its signature does not fit: it was changed after it was signed; get it anew")
+    return public
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode()

@@ -1,0 +1,168 @@
+"""Knowledge to be given away, and taken again: all that a file holds, bit for bit, and the settings it needs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.exchange.archive import Archive, pack, unpack
+from kurt2rt.exchange.features import differing_features
+from kurt2rt.exchange.signing import fingerprint
+from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures, require_same
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import fold_entries
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.newborn import bear
+from kurt2rt.knowledge.opening import binding_of
+from kurt2rt.knowledge.saved_copy import save_new
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.recording.attachments import (
+    KNOWLEDGE,
+    STATISTICS,
+    KnownLesson,
+    attachments_of,
+    decode_statistics,
+    read_lessons_of,
+)
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.tasks.settings import TaskSettings
+
+_SETTINGS = "settings/"
+_COME_FROM = "imported from"
+
+
+@dataclass(frozen=True)
+class Given:
+    """What is in an exported file."""
+
+    path: Path
+    binding: KnowledgeBinding
+    lessons: tuple[KnownLesson, ...]
+    statistics: Statistics
+    task: str
+    """Name of the task whose settings are in it."""
+    exported_at: str
+    """UTC, ISO 8601."""
+    signed_by: bytes | None
+    """Raw public key of who signed it; the signature fits."""
+    settings: Mapping[str, bytes]
+    """Settings files in it, by name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """What an import has done."""
+
+    given: Given
+    other_settings: tuple[str, ...]
+    """Settings files that are otherwise here: the same RLAs may have other borders."""
+
+
+def export_knowledge(
+    path: Path,
+    out: Path,
+    robot: RobotSettings,
+    task: TaskSettings,
+    key: Ed25519PrivateKey | None,
+    *,
+    stamp: str,
+) -> int:
+    """Write what the file at `path` holds to a new file `out`; returns its size in bytes. Raises KnowledgeError.
+
+    `task` and `robot`: those it was taught with; their settings go with it.
+    """
+    with Journal.read_only(path) as journal:
+        binding = journal.binding
+        require_same(binding, binding_of(robot, task), path, journal.has_lessons_at)
+        entries, statistics = journal.entries(), journal.statistics()
+        system = fold_entries(journal, entries, radius=0.0)
+    about: dict[str, Any] = {
+        "kurt2rt": version("kurt2rt"),
+        "exported_at": stamp,
+        "task": task.name,
+        "system": binding.system,
+        "robot": binding.robot,
+        "features": _features(LevelFeatures(binding.feature_hash, binding.feature_names)),
+        "levels": {level: _features(features) for level, features in binding.levels.items()},
+        "rlas": len(system),
+        "lessons": system.standing_lessons,
+    }
+    content = pack(about, attachments_of(robot, task, entries, statistics), key)
+    save_new(content, out)
+    return len(content)
+
+
+def read_given(path: Path) -> Given:
+    """Read an exported file whole. Raises KnowledgeError."""
+    archive = unpack(path)
+    try:
+        return _given(path, archive)
+    except (KeyError, TypeError, ValueError, RecordingError) as error:
+        raise KnowledgeError(f"{path}: cannot be understood ({error}); export it anew") from error
+
+
+def import_knowledge(
+    path: Path, into: Path, robot: RobotSettings, task: TaskSettings, trusted: bytes | None, *, stamp: str
+) -> Taken:
+    """Make the knowledge file `into` from an exported one; nothing may be there yet. Raises KnowledgeError.
+
+    `trusted`: raw public key of the only one whose knowledge is taken; None: anybody's, signed or not.
+    """
+    given = read_given(path)
+    if trusted is not None and given.signed_by != trusted:
+        by = "by nobody" if given.signed_by is None else f"by {fingerprint(given.signed_by)}"
+        raise KnowledgeError(f"{path}: is signed {by}, not by {fingerprint(trusted)}; nothing was imported")
+    here = binding_of(robot, task)
+    if given.binding.feature_hash != here.feature_hash:
+        differing = differing_features(given.settings, robot, task) or "in what its settings do not tell"
+        raise KnowledgeError(
+            f"{path}: was taught with other features: {differing}; "
+            "import it with the task and robot settings that it was taught with (--task, --robot-settings)"
+        )
+    levels = {getattr(each.event, "level", "") for each in given.lessons}
+    levels |= {each.event.rla.level for each in given.lessons if hasattr(each.event, "rla")}
+    require_same(given.binding, here, path, lambda level: level in levels)
+    entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
+    note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
+    bear(into, given.binding, entries, given.statistics, {_COME_FROM: note})
+    return Taken(given, _otherwise_here(given, robot, task))
+
+
+def _otherwise_here(given: Given, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
+    here = attachments_of(robot, task)
+    return tuple(name for name, content in given.settings.items() if here.get(name) != content)
+
+
+def _features(features: LevelFeatures) -> dict[str, Any]:
+    return {"hash": features.feature_hash, "names": list(features.feature_names)}
+
+
+def _given(path: Path, archive: Archive) -> Given:
+    manifest = archive.manifest
+    basic = _read_features(manifest["features"])
+    binding = KnowledgeBinding(
+        basic.feature_hash,
+        basic.feature_names,
+        str(manifest["system"]),
+        str(manifest["robot"]),
+        {str(level): _read_features(features) for level, features in manifest["levels"].items()},
+    )
+    return Given(
+        path,
+        binding,
+        tuple(read_lessons_of(archive.files[KNOWLEDGE])),
+        decode_statistics(archive.files[STATISTICS]),
+        str(manifest["task"]),
+        str(manifest["exported_at"]),
+        archive.signed_by,
+        {name: content for name, content in archive.files.items() if name.startswith(_SETTINGS)},
+    )
+
+
+def _read_features(features: Mapping[str, Any]) -> LevelFeatures:
+    return LevelFeatures(str(features["hash"]), tuple(map(str, features["names"])))

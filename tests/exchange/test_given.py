@@ -1,0 +1,197 @@
+"""Knowledge is given away as one file, and taken as it was or not at all."""
+
+import json
+import shutil
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from config import CONFIG_DIR
+from hal.robot_settings import load_robot
+from kurt2rt.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
+from kurt2rt.exchange.given import Taken, export_knowledge, import_knowledge, read_given
+from kurt2rt.exchange.signing import make_key, read_private_key, read_public_key
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import check_knowledge
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import Credit, RlaCreated, RlaRewarded
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from tests.knowledge.lessons import STAMP, created, origin, replaced, undone
+
+ROBOT = load_robot()
+TASK = load_task("wall_following")
+NOW = "2026-11-22T03:10:05.000+00:00"
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("taught") / "mine.knowledge"
+    with open_knowledge(path, ROBOT, TASK) as journal:
+        first, second = (
+            RlaCreated(replace(created(number).rla, condition=tuple(number / 3 + 0.1 * place for place in range(72))))
+            for number in (1, 2)
+        )
+        blame = RlaRewarded(1, -1, 390, origin("blame"), (Credit(1, -0.1 - 0.2),))
+        events = (first, second, replaced(1, "left", "forward"), blame, undone("create-2"))
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.1 + 0.2}, {(1, 2): 1e-17}, {"first value": 0.5}))
+    return path
+
+
+def export(path: Path, out: Path, key: Path | None = None) -> Path:
+    private = None if key is None else read_private_key(key)
+    size = export_knowledge(path, out, ROBOT, TASK, private, stamp=NOW)
+    assert out.stat().st_size == size
+    return out
+
+
+def take(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> Taken:
+    return import_knowledge(path, into, ROBOT, task, None if trusted is None else read_public_key(trusted), stamp=NOW)
+
+
+@pytest.fixture(scope="module")
+def exported(taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("exported")
+    make_key(folder / "ann")
+    return export(taught, folder / "mine.zip", folder / "ann")
+
+
+def test_there_and_back_all_is_the_same_to_the_last_bit(taught: Path, exported: Path, tmp_path: Path) -> None:
+    taken = take(exported, tmp_path / "theirs.knowledge")
+    assert taken.other_settings == ()
+    with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "theirs.knowledge") as new:
+        assert new.entries() == old.entries()
+        assert repr(new.statistics()) == repr(old.statistics())
+        assert new.binding == old.binding
+        assert check_knowledge(new) == []
+        assert new.notes() == {"imported from": f"mine.zip, exported {NOW}, imported {NOW}"}
+    export(tmp_path / "theirs.knowledge", tmp_path / "again.zip", exported.parent / "ann")
+    assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
+
+
+def test_any_zip_program_shows_what_is_in_it(exported: Path) -> None:
+    with zipfile.ZipFile(exported) as archive:
+        manifest = json.loads(archive.read(MANIFEST))
+        assert {"knowledge.jsonl", "statistics.json", "settings/task.json", SIGNATURE} <= set(archive.namelist())
+    assert (manifest["format"], manifest["system"], manifest["rlas"]) == (1, "wall_following", 1)
+    assert manifest["features"]["names"][0] == "s1"
+
+
+def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Path, tmp_path: Path) -> None:
+    whole, unchanged = exported.read_bytes(), read_given(exported)
+    other = tmp_path / "other.zip"
+    for place in range(0, len(whole), 97):
+        other.write_bytes(whole[:place])
+        with pytest.raises(KnowledgeError):
+            read_given(other)
+        other.write_bytes(whole[:place] + bytes([whole[place] ^ 0x41]) + whole[place + 1 :])
+        try:
+            found = read_given(other)
+        except KnowledgeError:
+            continue
+        assert replace(found, path=exported) == unchanged  # a byte that means nothing: a file's date, for instance
+
+
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.binary(max_size=300))
+def test_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
+    (tmp_path / "nonsense.zip").write_bytes(nonsense)
+    with pytest.raises(KnowledgeError, match=r"nonsense\.zip: is torn or changed") as refused:
+        read_given(tmp_path / "nonsense.zip")
+    assert "\n" not in str(refused.value)
+
+
+def rewritten(exported: Path, out: Path, **changes: bytes | None) -> Path:
+    """The archive with other files in it, its sums of ZIP in order."""
+    with zipfile.ZipFile(exported) as archive, zipfile.ZipFile(out, "w") as other:
+        content: dict[str, bytes | None] = {name: archive.read(name) for name in archive.namelist()}
+        for name, data in (content | {each.replace("__", "/"): data for each, data in changes.items()}).items():
+            if data is not None:
+                other.writestr(name, data)
+    return out
+
+
+def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Path) -> None:
+    manifest = unpack(exported).manifest
+    cases: tuple[tuple[dict[str, bytes | None], str], ...] = (
+        ({"knowledge.jsonl": b""}, "knowledge.jsonl was changed after it was exported"),
+        ({"knowledge.jsonl": None}, "knowledge.jsonl is missing in it"),
+        ({"virus.exe": b"!"}, "virus.exe was changed after it was exported"),
+        ({MANIFEST: None}, "has no manifest.json"),
+        ({MANIFEST: b"{}"}, "is none of kurt2rt"),
+        ({MANIFEST: b"{"}, "its manifest.json is damaged"),
+        ({MANIFEST: json.dumps({**manifest, "format": 2}).encode()}, "format 2 of a newer kurt2rt"),
+        ({MANIFEST: json.dumps({**manifest, "task": "eight"}).encode()}, "its signature does not fit"),
+        ({SIGNATURE: b"{}"}, "its signature.json is damaged"),
+    )
+    for number, (changes, why) in enumerate(cases):
+        with pytest.raises(KnowledgeError, match=why):
+            read_given(rewritten(exported, tmp_path / f"{number}.zip", **changes))
+    assert read_given(rewritten(exported, tmp_path / "bare.zip", **{SIGNATURE: None})).signed_by is None
+    (tmp_path / "empty.zip").write_bytes(pack({}, {}, None))
+    with pytest.raises(KnowledgeError, match="cannot be understood"):
+        read_given(tmp_path / "empty.zip")
+
+
+def test_only_whom_one_trusts_is_believed(exported: Path, taught: Path, tmp_path: Path) -> None:
+    make_key(tmp_path / "bob")
+    unsigned = export(taught, tmp_path / "unsigned.zip")
+    with pytest.raises(KnowledgeError, match=r"is signed by [0-9a-f]{16}, not by [0-9a-f]{16}; nothing was imported"):
+        take(exported, tmp_path / "k", trusted=tmp_path / "bob.pub")
+    with pytest.raises(KnowledgeError, match="is signed by nobody"):
+        take(unsigned, tmp_path / "k", trusted=tmp_path / "bob.pub")
+    assert not (tmp_path / "k").exists()
+    take(exported, tmp_path / "k", trusted=exported.parent / "ann.pub")
+
+
+def test_a_key_is_for_its_owner_alone_and_is_never_overwritten(tmp_path: Path) -> None:
+    make_key(tmp_path / "keys" / "ann")
+    assert (tmp_path / "keys" / "ann").stat().st_mode & 0o777 == 0o600
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "ann")
+    with pytest.raises(KnowledgeError, match="is no key that can sign"):
+        read_private_key(tmp_path / "keys" / "ann.pub")
+    with pytest.raises(KnowledgeError, match="is no public key"):
+        read_public_key(tmp_path / "keys" / "ann")
+
+
+def test_other_features_are_refused_by_their_names(exported: Path, tmp_path: Path) -> None:
+    basic = yaml.safe_load((CONFIG_DIR / "situations" / "basic.yaml").read_text(encoding="utf-8"))
+    basic["history_steps"] = 500
+    basic["features"][18]["sensors"] = ["s9", "s10"]
+    other = tmp_path / "basic.yaml"
+    other.write_text(yaml.safe_dump(basic), encoding="utf-8")
+    with pytest.raises(
+        KnowledgeError,
+        match=r"was taught with other features: maximum front \(made of other sensors\), "
+        r"all \(10 s average\): over 1000 steps there, 500 here; import it with the task",
+    ):
+        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+    del basic["features"][0]
+    other.write_text(yaml.safe_dump(basic), encoding="utf-8")
+    with pytest.raises(KnowledgeError, match=r"s1 \(only there\), maximum front"):
+        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+    with pytest.raises(KnowledgeError, match="taught for the task 'wall_following', not for 'eight'"):
+        take(exported, tmp_path / "k", load_task("eight"))
+    assert not (tmp_path / "k").exists()
+
+
+def test_other_settings_round_the_same_features_are_told(exported: Path, tmp_path: Path) -> None:
+    wider = load_task("wall_following", changes={"learning.radius": "800.0"})
+    assert take(exported, tmp_path / "k", wider).other_settings == ("settings/task.json",)
+
+
+def test_nothing_is_overwritten(exported: Path, taught: Path, tmp_path: Path) -> None:
+    there = Path(shutil.copy(taught, tmp_path / "there"))
+    with pytest.raises(KnowledgeError, match="is there already"):
+        take(exported, there)
+    with pytest.raises(KnowledgeError, match="is there already"):
+        export(taught, exported)
