@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 import can
 
+from hal.frame import Frame
+
 _MOST_WAITING = 4096
 
 
@@ -24,9 +26,10 @@ class Cable:
 
     def carry(self, frame: can.Message, sender: "CableEnd") -> None:
         """A copy for everybody, the sender too."""
-        now_s = self.now_s()
+        frame_id, now_s = frame.arbitration_id, self.now_s()
         for end in self._ends:
-            end.hear(frame, now_s, own=end is sender)
+            if end.heard is None or frame_id in end.heard or frame.is_error_frame:
+                end.hear(frame, now_s, own=end is sender)
 
     def leave(self, end: "CableEnd") -> None:
         """One end less; it may have left already."""
@@ -42,7 +45,8 @@ class CableEnd:
     def __init__(self, cable: Cable) -> None:
         self._cable = cable
         self._waiting: deque[can.Message] = deque()
-        self._heard: frozenset[int] | None = None
+        self.heard: frozenset[int] | None = None
+        """Identifiers that it wants; None: all."""
         self._open = True
         self.lost = 0
         """Frames that found no room, for nobody took them."""
@@ -53,7 +57,7 @@ class CableEnd:
 
     def listen_to(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames."""
-        self._heard = frame_ids
+        self.heard = frame_ids
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
         """The frame that waits longest."""
@@ -72,12 +76,11 @@ class CableEnd:
 
     def hear(self, frame: can.Message, now_s: float, *, own: bool) -> None:
         """Take a copy."""
-        if self._heard is not None and frame.arbitration_id not in self._heard and not frame.is_error_frame:
-            return
         if len(self._waiting) >= _MOST_WAITING:
             self.lost += 1
             return
-        mine = copy.copy(frame)
+        # Twice as quick as copy.copy, which asks first how.
+        mine = frame.__copy__() if isinstance(frame, Frame) else copy.copy(frame)
         mine.timestamp = now_s
         mine.is_rx = not own
         self._waiting.append(mine)

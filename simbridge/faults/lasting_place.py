@@ -89,9 +89,11 @@ class LastingPlace:
             self.robot.close()
             self.robot = None
 
-    def begin(self, target: str, kind: Kind, *, end_s: float, period_s: float, delay_s: float) -> Disturbance:
-        """Something fails from now on; one that is no part of robot or bus is left to the caller."""
-        disturbance = Disturbance(kind, self.time.now_s(), end_s, period_s, delay_s)
+    def begin(
+        self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
+    ) -> Disturbance:
+        """Something is going to fail; one that is no part of robot or bus is left to the caller."""
+        disturbance = Disturbance(kind, begin_s, end_s, period_s, delay_s)
         part, time, chance = part_of(target), self.time, self._chance
         self._robots_ways.outward = disturbed_telemetry(part, disturbance, time, chance, self._codec)
         self._notebooks_ways.inward = disturbed_way_in(part, disturbance, time, chance, self._codec)

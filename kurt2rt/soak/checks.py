@@ -1,0 +1,71 @@
+"""What must hold after a soak."""
+
+from collections.abc import Sequence
+from statistics import median
+
+from kurt2rt.soak.faults import FaultSeen
+from kurt2rt.soak.result import Check, Minute, Start
+from kurt2rt.soak.settings import LimitSettings
+from kurt2rt.soak.witness import Complaints
+
+HOUR_S = 3600.0
+_ABOUT_S = 600.0
+
+
+def memory_check(minutes: Sequence[Minute], limits: LimitSettings) -> Check:
+    """No growth after the first hour: the median of any ten minutes against the last ten of that hour."""
+    what = f"memory grows by no more than {limits.memory_mb:g} MB after the first hour"
+    base = [each.resident_mb for each in minutes if HOUR_S - _ABOUT_S < each.at_s <= HOUR_S]
+    later = [each for each in minutes if each.at_s > HOUR_S]
+    if not base or len(later) < _ABOUT_S / 60:
+        return Check(what, passed=True, found="shorter than an hour and ten minutes: not asked")
+    spans: dict[int, list[float]] = {}
+    for each in later:
+        spans.setdefault(int(each.at_s / _ABOUT_S), []).append(each.resident_mb)
+    grown_mb = max(median(each) for each in spans.values()) - median(base)
+    end_mb = later[-1].resident_mb - median(base)
+    return Check(what, grown_mb <= limits.memory_mb, f"{grown_mb:+.1f} MB at most, {end_mb:+.1f} MB at the end")
+
+
+def steady_check(minutes: Sequence[Minute]) -> Check:
+    """As many files and threads at the end as after the first minutes."""
+    what = "open files and threads do not become more"
+    if len(minutes) < 2:
+        return Check(what, passed=True, found="shorter than two minutes: not asked")
+    first, last = minutes[0], minutes[-1]
+    # At the full minute something may be open that is not for long, so the least of the last ten counts.
+    files = min(each.open_files for each in minutes[-10:])
+    alive = min(each.threads for each in minutes[-10:])
+    found = f"{first.open_files} files and {first.threads} threads first, {files} and {alive} at the end"
+    return Check(what, files <= first.open_files and alive <= first.threads and last.at_s > first.at_s, found)
+
+
+def fault_check(faults: Sequence[FaultSeen]) -> Check:
+    """Each fault led to the standstill that it must lead to."""
+    wrong = [each for each in faults if each.complaint]
+    drove = sum(each.drove for each in faults)
+    found = f"{len(faults)} faults, {drove} of them while it drove; {len(wrong)} not as they must"
+    return Check("every fault leads to what it must", not wrong, found)
+
+
+def starts_check(starts: Sequence[Start], unexpected: Sequence[str]) -> Check:
+    """The program ended only where a fault must end it, and left every lesson."""
+    wrong = [each for each in starts if each.complaint]
+    ended = sum(bool(each.ended_by) for each in starts)
+    found = (
+        f"{len(starts)} starts, {ended} ended by a fault; {len(unexpected)} unexpected ends, {len(wrong)} lost lessons"
+    )
+    return Check(
+        "every lesson is kept over every start, and nothing ends the program that must not",
+        not (wrong or unexpected),
+        found,
+    )
+
+
+def envelope_check(complaints: Complaints, frames: int) -> Check:
+    """Nothing that the witness of every tick complained about."""
+    return Check(
+        "the motion envelope holds, the robot stands until it is told to drive, and every tick is accounted for",
+        complaints.count == 0,
+        f"{complaints.count} complaints about {frames} frames",
+    )

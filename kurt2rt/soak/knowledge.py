@@ -1,0 +1,95 @@
+"""The knowledge file of a soak and its writer, on a disk that may fail, in step with simulated time."""
+
+import time
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.faults.disk import DiskOutOfStepError, DisturbedJournal, exchange_file
+from kurt2rt.faults.place import Disturbance, SimulatedTime
+from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching, read_lessons
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
+from kurt2rt.tasks.settings import TaskSettings
+
+_LOOK_S = 0.0002
+_PATIENCE_S = 30.0
+"""Real time that the writer's thread may take to do what it is about."""
+_FAIL = ("off", "intermittent", "garbage", "wrong")
+
+
+class SoakKnowledge:
+    """Opened for one start of the program; closed by `close`."""
+
+    def __init__(self, path: Path, settings: RobotSettings, task: TaskSettings, simulated: SimulatedTime) -> None:
+        """Raises KnowledgeError."""
+        self._path, self._settings, self._task = path, settings, task
+        self._simulated = simulated
+        self._disturbance: Disturbance | None = None
+        self.opened: OpenedKnowledge = go_on_teaching(path, settings, task)
+        binding = self.opened.journal.binding
+        self.opened.journal.close()
+        self._journal = DisturbedJournal.open(path, binding)
+        self._journal.simulated = simulated
+        retry = RetryDelays(first_s=0.001, longest_s=0.001)
+        self.writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
+        self.submitted: list[str] = []
+        """Command ids of the lessons of this start, in order; whoever sees them notes them here."""
+        self.acknowledged: list[str] = []
+        """Of those said to be durable."""
+
+    def disturb(self, disturbance: Disturbance) -> None:
+        """From now on the disk fails. Raises DiskOutOfStepError."""
+        self.keep_in_step(all_of_it=True)
+        self._disturbance = self._journal.disturbance = disturbance
+        if disturbance.kind == "wrong":
+            exchange_file(self._simulated, disturbance, self._path)
+
+    def mend(self) -> None:
+        """It is sound again."""
+        self._disturbance = self._journal.disturbance = None
+
+    def keep_in_step(self, *, all_of_it: bool = False) -> None:
+        """Wait in real time until the thread has done what it can do at this moment. Raises DiskOutOfStepError.
+
+        `all_of_it`: statistics, too, of which nobody says whether they wait.
+        """
+        if self._disturbance is None and not self.writer.unwritten and not all_of_it:
+            return
+        give_up_s = time.monotonic() + _PATIENCE_S
+        while not self._in_step():
+            if time.monotonic() > give_up_s:
+                raise DiskOutOfStepError(f"{self.writer.unwritten} lessons wait; {self.writer.trouble}")
+            time.sleep(_LOOK_S)
+        if all_of_it and self._disturbance is None and not self.writer.flush(_PATIENCE_S):
+            raise DiskOutOfStepError(f"statistics wait; {self.writer.trouble}")
+
+    def settled(self, acknowledgement: Acknowledgement) -> None:
+        """A lesson is durable, or never can be."""
+        if acknowledgement.sequence is not None:
+            self.acknowledged.append(acknowledgement.command_id)
+
+    def close(self) -> None:
+        """Write what is left and close the file. Raises KnowledgeError."""
+        self._journal.given_up = True
+        self.writer.close(_PATIENCE_S)
+        for acknowledgement in self.writer.acknowledged():
+            self.settled(acknowledgement)
+
+    def what_it_lost(self) -> str:
+        """What is wrong with the closed file, in a line; empty when it holds all lessons, once, and in order."""
+        before = [entry.event.origin.command_id for entry in self.opened.entries]
+        kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
+        if kept != before + self.submitted:
+            return f"{len(before)} lessons were there and {len(self.submitted)} came, the file holds {len(kept)}"
+        if self.acknowledged != self.submitted:
+            return f"{len(self.submitted)} lessons were saved, {len(self.acknowledged)} were said to be"
+        return ""
+
+    def _in_step(self) -> bool:
+        now_s, disturbance = self._simulated.now_s(), self._disturbance
+        waits_until_s = self._journal.waits_until_s
+        if waits_until_s is not None:
+            return now_s < waits_until_s
+        if not self.writer.unwritten and self.writer.trouble is None:
+            return True
+        fails = disturbance is not None and disturbance.kind in _FAIL and disturbance.acts(now_s)
+        return fails and self.writer.trouble is not None
