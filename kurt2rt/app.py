@@ -1,8 +1,8 @@
 """The composition root: the one place that knows which robot is there, the simulated or the real one."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import NamedTuple
+from contextlib import AbstractContextManager, contextmanager
+from typing import NamedTuple, Protocol
 
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
@@ -21,6 +21,16 @@ class OpenedRobot(NamedTuple):
     ground: Ground | None
     lives: Callable[[], bool]
     """Whether the simulator still runs; always so where there is none."""
+
+
+class Opening(Protocol):
+    """Gives a robot for as long as it is needed; `open_robot` is one."""
+
+    def __call__(
+        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
+    ) -> AbstractContextManager[OpenedRobot]:
+        """The robot on a bus. Raises BusError, SettingsError."""
+        ...
 
 
 @contextmanager

@@ -123,10 +123,10 @@ class Ending:
             with self._lock:
                 self._deadline_s = time.monotonic() + _GIVES_UP_S
                 acts = tuple(self._acts)
-            self._do(acts)
             if self._give_up is not None:
-                # By the kernel, where the interpreter hangs as a whole.
+                # Of the kernel, for an interpreter that hangs as a whole.
                 signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
+            self._do(acts)
 
     def _do(self, acts: tuple[Act, ...]) -> None:
         for act in acts:
