@@ -1,0 +1,134 @@
+"""A robot program that drives is halted by SIGSTOP for a while: the robot stands until it is told to drive."""
+
+import signal
+import time
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+import can
+
+from hal.bus import CanBus, open_bus
+from hal.robot_settings import load_robot
+from kurt2rt.channel.state import State
+from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.client import TeacherClient
+from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, state_where, turns
+from tests.crash.programs import Nursery, Program
+
+ON_THE_SPOT = "spin_left"
+"""What the robot may do for ever without coming anywhere."""
+ROBOT = load_robot()
+LONGEST_S = 60.0
+LOOKED_ON_S = 0.6
+"""After the program goes on: six times what it takes to drive by mistake."""
+_LOOK_S = 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """What the bus carried round one stop of the program."""
+
+    gap_s: float
+    """Between two CONTROL frames."""
+    drove_on: int
+    """CONTROL frames after it that told the wheels to turn."""
+    cycles_to_rest: int | None
+    """Of the controller, from the last CONTROL frame; None where the stop was over before it rested."""
+    state: State
+    """What the teacher saw afterwards."""
+
+
+class StopStory:
+    """A robot that turns on the spot by what it was taught."""
+
+    def __init__(self, program: Program, we: TeacherClient, bus: CanBus) -> None:
+        self._program = program
+        self._we = we
+        self._bus = bus
+
+    async def stop_for(self, seconds: float, *, until_it_rests: bool = False) -> Stopped:
+        """Let it drive, stop its program for so long, let it go on, and look on.
+
+        `until_it_rests`: for longer, if the wheels still turn then.
+        """
+        with anyio.fail_after(LONGEST_S):
+            await self._drives()
+            before = self._bus.drain()
+            self._program.signal(signal.SIGSTOP)
+            await anyio.sleep(seconds)
+            meanwhile = self._bus.drain()
+            while until_it_rests and _cycles_to_rest([*before, *meanwhile]) is None:
+                await anyio.sleep(_LOOK_S)
+                meanwhile += self._bus.drain()
+            self._program.signal(signal.SIGCONT)
+            after: list[can.Message] = []
+            until_s = time.monotonic() + LOOKED_ON_S
+            while time.monotonic() < until_s or not any(map(is_control, after)):
+                await anyio.sleep(_LOOK_S)
+                after += self._bus.drain()
+            # The pictures from before the stop that waited in the network are not what is asked for.
+            state = await state_where(self._we, lambda state: state.tick > self._tick)
+            await self._seen_after_it(state)
+        assert self._we.state is not None
+        controls = [frame.timestamp for frame in [*before, *meanwhile] if is_control(frame)]
+        first = next(frame for frame in after if is_control(frame))
+        return Stopped(
+            gap_s=first.timestamp - controls[-1],
+            drove_on=sum(map(drives, after)),
+            cycles_to_rest=_cycles_to_rest([*before, *meanwhile]),
+            state=self._we.state,
+        )
+
+    async def _drives(self) -> None:
+        async for state in self._we.states():
+            self._tick = state.tick
+            if state.rla is not None and state.left_m_s < -0.1:
+                return
+            try:
+                if state.teacher != self._we.name:
+                    await self._we.take()
+                elif state.stopped_because:
+                    await self._we.resume()
+                elif state.cause == "unknown":
+                    await self._we.answer(ON_THE_SPOT, of=state.tick)
+            except NoAnswerError:
+                continue
+
+    async def _seen_after_it(self, seen: State) -> None:
+        """Wait for some pictures more."""
+        await state_where(self._we, lambda state: state.tick > seen.tick + 10)
+
+
+def _cycles_to_rest(frames: list[can.Message]) -> int | None:
+    """Of the controller, after the last CONTROL frame."""
+    last = max(index for index, frame in enumerate(frames) if is_control(frame))
+    turning = [turns(frame) for frame in frames[last:] if turns(frame) or stands(frame)]
+    if not turning or turning[-1]:
+        return None
+    return max((number for number, turns_now in enumerate(turning, start=1) if turns_now), default=0)
+
+
+MOST_CYCLES_TO_REST = WATCHDOG_CYCLES + BRAKING_CYCLES
+
+
+@asynccontextmanager
+async def a_robot_that_turns(folder: Path, bus: str) -> AsyncIterator[StopStory]:
+    """A simulated robot, its program and its teacher."""
+    nursery = Nursery()
+    try:
+        sim = nursery.start("sim", "--bus", bus, folder=folder, log=folder / "sim.log")
+        await sim.says("is on bus")
+        end = open_bus(bus)
+        try:
+            words = ("--robot", bus, "--port", "0", "--knowledge", str(folder / "knowledge"))
+            program = nursery.start("run", *words, folder=folder, log=folder / "run.log")
+            line = await program.says("teachers are listened to on UDP port")
+            async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as we:
+                yield StopStory(program, we, end)
+        finally:
+            end.shutdown()
+    finally:
+        nursery.close()
