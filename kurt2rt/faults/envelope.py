@@ -65,6 +65,8 @@ class Envelope:
         self.unintelligible = 0
         """Frames that arrived garbled; the robot does not obey them."""
         self.slew_share = slew_share
+        self.clock_is_wrong = False
+        """While the driver's clock jumps, every frame may gain or lose what is allowed in the longest step."""
         self._limits = limits
         self._puts: dict[int, _Put] = {}
         self._last_put: _Put | None = None
@@ -89,7 +91,8 @@ class Envelope:
         self._require_slow(at_s, told)
         if self._last_put is not None and self._last_put.told is not None:
             longest_s = self._limits.longest_step_s
-            elapsed_s = longest_s if self._last_put.told.brake else at_s - self._last_put.at_s
+            by_frame = self.clock_is_wrong or self._last_put.told.brake
+            elapsed_s = longest_s if by_frame else at_s - self._last_put.at_s
             self._require_smooth(at_s, self._last_put.told, told, min(elapsed_s, longest_s))
         self._last_put = put
 
@@ -109,7 +112,7 @@ class Envelope:
         if self._last_arrived is not None and self._last_arrived.told is not None:
             # By the times at which they were made: what was held up may come in a heap.
             elapsed_s = put.at_s - self._last_arrived.at_s
-            if self._last_arrived.told.brake:
+            if self.clock_is_wrong or self._last_arrived.told.brake:
                 elapsed_s = max(elapsed_s, self._limits.longest_step_s)
             self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s)
         self._last_arrived = put

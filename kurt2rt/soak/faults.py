@@ -15,7 +15,7 @@ _LEAST_GAP_S = 4.0
 _LOOKS_AGAIN_S = 1.0
 _LESSON_EVERY_S = 0.25
 _SETTLES_S = 0.3
-_HAND_FIRST_S = 1.0
+_HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
 
 
 class FaultSeen(NamedTuple):
@@ -71,8 +71,8 @@ class SoakFaults:
             self._chance.shuffle(self._deck)
         case = self.acting = self._deck.pop()
         must, now_s = case.must, time.now_s()
-        # Somebody has to drive by hand already when his link fails.
-        begin_s = now_s + (_HAND_FIRST_S if case.target == "teacher_link" else 0.0)
+        # What repeats itself must have been heard, and somebody has to drive by hand already when his link fails.
+        begin_s = now_s + (_HAND_FIRST_S if case.target == "teacher_link" else _SOUND_FIRST_S)
         end_s = begin_s + (must.lasts_s or self._table.schedule.lasts_s)
         self.acts_until_s = end_s
         self._old_frames, self._resumes = self._witness.envelope.old_frames, self._witness.resumes
@@ -81,6 +81,7 @@ class SoakFaults:
         self._suffered = life
         self.expects_the_end = must.ends_by == "restart"
         self._witness.envelope.slew_share = must.slew_share
+        self._witness.envelope.clock_is_wrong = case.target == "clock" and must.slew_share > 1.0
         disturbance = self._disturbance = self._place.begin(
             case.target, case.kind, begin_s=begin_s, end_s=end_s, period_s=must.period_s, delay_s=must.delay_s
         )
@@ -91,15 +92,15 @@ class SoakFaults:
                 life.level.disturb(disturbance)
             case "disk":
                 life.knowledge.disturb(disturbance)
-                for number in range(int((end_s - now_s) / _LESSON_EVERY_S)):
-                    time.at(now_s + number * _LESSON_EVERY_S, self._on_life(Life.teach_what_is_known))
+                for number in range(int((end_s - begin_s) / _LESSON_EVERY_S)):
+                    time.at(begin_s + number * _LESSON_EVERY_S, self._on_life(Life.teach_what_is_known))
             case "recorder":
                 self._recorder = FailingRecorder(time, disturbance)
                 self._place.look_on(self._recorder)
             case "teacher_link":
                 life.take_by_hand(disturbance)
         if must.stop_said_after_s is not None:
-            time.at(now_s + must.stop_said_after_s, self._on_life(Life.say_stop))
+            time.at(begin_s + must.stop_said_after_s, self._on_life(Life.say_stop))
         time.at(end_s, self._look)
         time.at(end_s + _SETTLES_S, self._end)
 
@@ -152,6 +153,7 @@ class SoakFaults:
         assert case is not None
         self._place.end()
         self._witness.envelope.slew_share = 1.0
+        self._witness.envelope.clock_is_wrong = False
         self._witness.clock_is_wrong = False
         if self._recorder is not None:
             self._place.look_on(None)
