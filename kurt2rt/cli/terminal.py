@@ -27,6 +27,7 @@ from kurt2rt.cli.terminal_words import (
     trust_in,
     way_in,
 )
+from kurt2rt.health.words import lines_of
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -257,6 +258,8 @@ class TerminalTeacher:
                 await self._tell(robot.save(" ".join(label)))
             case ["export"]:
                 await self._tell(robot.export())
+            case ["health"]:
+                self._say_all(lines_of(await robot.health()))
             case ["take"]:
                 await self._tell(robot.take())
             case ["release"]:

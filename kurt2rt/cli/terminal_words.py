@@ -26,6 +26,7 @@ replace N ACTION, delete N     change or end RLA N
 phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
 begin [NAME], end        a session of teaching, with its clock
 save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
+health                   how late its ticks are, its sensors, bus and disk, what is wrong and what to do
 take, release            be the teacher, or let another one be it
 help, quit"""
 _PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"

@@ -80,7 +80,7 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
     with socket.socket(socket.AF_UNIX) as reader:
         reader.settimeout(patience_s)
         try:
-            with _short(path) as short:
+            with short_name(path) as short:
                 reader.connect(short)
         except (FileNotFoundError, ConnectionRefusedError) as error:
             raise StatusError(
@@ -112,7 +112,7 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
 
 @asynccontextmanager
 async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
-    with _short(path) as short:
+    with short_name(path) as short:
         # It takes the place of one that a killed program left: the knowledge file is ours alone.
         listener = await anyio.create_unix_listener(short, mode=0o600)
     try:
@@ -126,7 +126,7 @@ async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
 
 
 @contextmanager
-def _short(path: Path) -> Iterator[str]:
+def short_name(path: Path) -> Iterator[str]:
     """Another name of the same file, as long as the folder is open: the kernel takes no more than 107 bytes."""
     folder = os.open(path.parent, os.O_PATH | os.O_DIRECTORY)
     try:

@@ -34,7 +34,7 @@ class Counted:
     """How counters grew in the last minute."""
 
     def __init__(self) -> None:
-        self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S)  # all begin at nothing
+        self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at nothing
         self._now: Mapping[str, int] = {}
 
     def see(self, counters: Mapping[str, int]) -> None:

@@ -20,6 +20,8 @@ from kurt2rt.health.troubles import Counted, TroubleBook
 from kurt2rt.runtime import Runtime
 from kurt2rt.tick import TickRecord
 
+_ENDS_WITHIN_S = 0.2
+
 
 class HealthWatch:
     """Reads the program between two ticks, once a second; a thread makes a report of it, for percentiles cost more than
@@ -127,7 +129,7 @@ class HealthWatch:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._waiting.put(None)
-        self._thread.join(1.0)
+        self._thread.join(_ENDS_WITHIN_S)
         self._disks.__exit__(kind, error, trace)
 
     def _punctuality(self, snapshot: Snapshot) -> Punctuality:

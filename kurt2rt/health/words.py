@@ -70,6 +70,14 @@ def trouble_in(trouble: Trouble) -> str:
     return f"{trouble.what} (for {lasting(trouble.since_s)}){to_do}"
 
 
+def lines_of(report: HealthReport | None) -> tuple[str, ...]:
+    """Everything as lines of a terminal; None: there is no report in the first second."""
+    if report is None:
+        return ("nothing is known yet, the robot program has just begun",)
+    troubles = (f"{'!!' if each.urgent else '!'} {trouble_in(each)}" for each in report.troubles)
+    return (headline(report), *(f"{row.name:<9} {row.text}" for row in rows_of(report)), *troubles)
+
+
 def headline(report: HealthReport) -> str:
     """All of it in a few words."""
     late = report.punctuality

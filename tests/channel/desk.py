@@ -22,6 +22,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.channel.site import Keys, RobotSite
 from kurt2rt.channel.telling import Safekeeping, Telling
+from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
@@ -96,6 +97,7 @@ class Desk:
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
+        self.health: HealthReport | None = None
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
         self.runtime: Runtime = build_runtime(
@@ -104,9 +106,18 @@ class Desk:
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)
         copies: Copies = self.shelf
-        self.reception = Reception(self.runtime, BOOT, hello, stamp_of, copies, ground, longest_wait_s=longest_wait_s)
+        self.reception = Reception(
+            self.runtime,
+            BOOT,
+            hello,
+            stamp_of,
+            copies,
+            ground,
+            longest_wait_s=longest_wait_s,
+            health=lambda: self.health,
+        )
         safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
-        self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground)
+        self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health)
         # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
         self.site = RobotSite(cast(Keys, keys), self.reception)
         self.channel = Channel(self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None), tuple)

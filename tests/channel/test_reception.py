@@ -41,11 +41,13 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.health.plain import report_of
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.commands import Stop, Watch
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of, turns, why
 from tests.channel.grounds import Yard
+from tests.health.reports import ILL
 
 LAST_START = b"last"
 MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
@@ -474,6 +476,14 @@ async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Desk) 
     assert told["actions"] == list(desk.runtime.level.repertoire)
     assert len(told["sensors"]) == len(ROBOT.infrared.sensors)
     assert told["period_s"] == 0.01
+
+
+async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_may_ask(desk: Desk) -> None:
+    assert (await desk.ask(HealthRequest())).body == {"health": None}
+    desk.health = ILL
+    for device in ("ann", "bob"):
+        told = decode_answer(encode_answer((await desk.ask(HealthRequest(), device)).body))
+        assert report_of(told["health"]) == ILL
 
 
 async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: Desk) -> None:

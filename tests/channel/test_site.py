@@ -345,7 +345,10 @@ async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_afte
     for tick in (10, 15, 20):
         show(school, tick)
     assert await observer.ticks() == [20]
+    skipped = school.site.pictures_skipped
+    assert skipped > 0
     await observer.gone()
+    assert school.site.pictures_skipped == skipped  # also of those who are gone
 
 
 async def test_a_picture_that_comes_just_as_the_one_before_is_taken_is_not_lost(school: School) -> None:

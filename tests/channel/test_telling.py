@@ -21,6 +21,7 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
+from tests.health.reports import WELL
 
 LEAST = load_critic().agreement.least
 APART = round(load_critic().agreement.apart_s / ROBOT.can.cycle_s)
@@ -37,6 +38,14 @@ def picture(desk: Desk) -> State:
     told = desk.telling.picture(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
+
+
+def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(desk: Desk) -> None:
+    assert picture(desk).late_p99_ms == 0.0
+    desk.health = WELL
+    assert [picture(desk).late_p99_ms for _ in range(9)] == [0.0] * 9  # looked up once a second, with 20 pictures
+    later = [picture(desk).late_p99_ms for _ in range(20)]
+    assert later[-1] == WELL.punctuality.p99_ms
 
 
 def test_a_robot_that_knows_nothing(desk: Desk) -> None:

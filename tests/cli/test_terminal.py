@@ -17,6 +17,7 @@ from kurt2rt.channel.requests import (
     AppraiseRequest,
     BeAtRequest,
     CorrectRequest,
+    HealthRequest,
     HelloRequest,
     LessonsRequest,
     NameRequest,
@@ -34,11 +35,13 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, question_in, sentence_of
+from kurt2rt.health.plain import plain_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
 from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.health.reports import ILL
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 from tests.teaching.test_client import HELLO, Clock, seen
 
@@ -85,6 +88,8 @@ class Mind:
             return Reply(Verdict.DONE, HELLO)
         if isinstance(request, LessonsRequest):
             return Reply(Verdict.DONE, {"lessons": []})
+        if isinstance(request, HealthRequest):
+            return Reply(Verdict.DONE, {"health": plain_of(ILL)})
         if isinstance(request, SituationsRequest):
             return Reply(Verdict.DONE, {"situations": ["the door", "the window"]})
         return done(7, f"{request.path} is done")
@@ -128,6 +133,18 @@ async def looked_at(desk: Desk, robot: StandInRobot, **changes: object) -> int:
     picture = robot.show(**changes)
     await seen(desk.client, lambda: desk.client.state == picture)
     return picture.tick
+
+
+async def test_health_shows_how_the_robots_program_is_and_what_to_do_about_it(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        desk.type("health")
+        await desk.reads("2 troubles, 1 of them urgent; late 2.90 ms (p99), missed 7")
+        await desk.reads("disk      knowledge: 412 MB free, recordings: no answer")
+        await desk.reads("!! the infra-red sensors are silent, the newest is 2.5 s old (for 2 s): look whether")
+        await desk.reads("! 3 ticks missed in the last minute")
 
 
 async def test_enter_alone_stops_at_once_and_ends_what_waits_for_its_answer(

@@ -1,0 +1,40 @@
+"""`kurt2rt status` beside a robot program that runs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.health.plain import report_of
+from tests.cli.helpers import CommandLine, running
+
+
+@pytest.mark.deep
+def test_another_process_sees_how_a_robot_is_that_listens_to_nobody(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    with running("run", "--teacher", "none", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
+        robot.wait_for("stands and asks")
+        said = kurt2rt("status", tmp_path / "mine.knowledge")
+        assert said.exit_code in (0, 1)  # urgent on a machine that has much to do at the same time
+        for words in ("late", "does      stands and asks", "bus       error-active", "task wall_following"):
+            assert words in said.out
+
+
+def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the_channel(
+    kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with running("run", "--port", "0", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
+        port = int(robot.wait_for("UDP port").split()[-1])
+        robot.wait_for("stands and asks")
+        beside = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
+        over_the_channel = report_of(json.loads(kurt2rt("status", "--as", "local", "--port", str(port), "--json").out))
+        assert beside.boot == over_the_channel.boot
+        assert [each.of for each in over_the_channel.disks][:1] == ["knowledge"]
+
+
+def test_where_no_robot_runs_that_is_said_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "no robot program runs with the knowledge" in kurt2rt.refused("status", tmp_path / "none.knowledge")
+
+
+def test_an_address_is_for_the_channel_only(kurt2rt: CommandLine) -> None:
+    assert "give --as" in kurt2rt.misused("status", "--robot", "127.0.0.1")

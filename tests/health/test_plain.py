@@ -1,0 +1,47 @@
+"""The report as it goes over the wire and into JSON, and back."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from kurt2rt.channel.schema import WireError
+from kurt2rt.channel.wire import decode_answer, encode_answer
+from kurt2rt.health.plain import MOST_ROWS, plain_of, report_of
+from kurt2rt.health.report import HealthReport
+from tests.health.reports import ILL, LATE, WELL
+
+
+@pytest.mark.parametrize("report", [WELL, ILL, replace(WELL, bus=None)])
+def test_it_comes_back_as_it_went(report: HealthReport) -> None:
+    assert report_of(json.loads(json.dumps(plain_of(report), allow_nan=False))) == report
+    assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
+
+
+def test_what_a_newer_robot_tells_besides_is_left_out() -> None:
+    plain = plain_of(WELL)
+    assert report_of({**plain, "mood": "good", "ages": {**plain["ages"], "lidar_s": 1.0}}) == WELL
+
+
+def test_an_error_message_of_any_shape_costs_nobody_the_report() -> None:
+    odd = replace(LATE, what="first line\nsecond\t" + "x" * 1000)
+    told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))
+    assert len(told.troubles) == MOST_ROWS
+    assert told.troubles[0].what.startswith("first line second x")
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        None,
+        [],
+        {},
+        {**plain_of(WELL), "ages": None},
+        {**plain_of(WELL), "uptime_s": "long"},
+        {**plain_of(WELL), "troubles": [{"what": "no more"}]},
+    ],
+)
+def test_what_is_no_report_is_refused_in_a_sentence(broken: Any) -> None:
+    with pytest.raises(WireError, match="has"):
+        report_of(broken)

@@ -1,0 +1,51 @@
+"""The report in words."""
+
+from dataclasses import replace
+
+import pytest
+
+from kurt2rt.health.words import URGENT, WARNS, headline, lasting, lines_of, rows_of, size, trouble_in
+from tests.health.reports import ILL, LATE, WELL
+
+
+def test_a_robot_that_is_well_in_a_few_words() -> None:
+    assert headline(WELL) == "well; late 0.31 ms (p99), missed 0"
+    assert all(not row.level for row in rows_of(WELL))
+
+
+def test_each_row_is_as_bad_as_the_worst_trouble_about_it() -> None:
+    levels = {row.name: row.level for row in rows_of(ILL) if row.level}
+    assert levels == {"sensors": URGENT, "ticks": WARNS}
+
+
+def test_how_many_troubles_there_are() -> None:
+    assert headline(ILL).startswith("2 troubles, 1 of them urgent; ")
+    assert headline(replace(ILL, troubles=(LATE,))).startswith("1 trouble; ")
+
+
+def test_a_trouble_says_what_since_when_and_what_to_do() -> None:
+    told = "3 ticks missed in the last minute, 7 in all (for 3 min 5 s): end other work on this machine"
+    assert trouble_in(LATE) == told
+    assert trouble_in(replace(LATE, to_do="")) == told.rpartition(": ")[0]
+    assert f"! {told}" in lines_of(ILL)
+
+
+def test_what_is_not_there_is_said_so() -> None:
+    rows = {row.name: row.text for row in rows_of(replace(ILL, bus=None))}
+    assert "bus" not in rows
+    assert rows["sensors"].endswith("bumpers never heard")
+    assert rows["disk"] == "knowledge: 412 MB free, recordings: no answer"
+    assert lines_of(None) == ("nothing is known yet, the robot program has just begun",)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (3725, "1 h 2 min"), (90_000, "1 d 1 h")],
+)
+def test_lengths_of_time(seconds: float, words: str) -> None:
+    assert lasting(seconds) == words
+
+
+@pytest.mark.parametrize(("count", "words"), [(900, "1 kB"), (136_183_808, "136 MB"), (79_893_155_840, "79.9 GB")])
+def test_sizes(count: int, words: str) -> None:
+    assert size(count) == words
