@@ -29,6 +29,8 @@ class Status:
     trouble: str | None
     channel_trouble: str
     """What is wrong with the teacher's channel; empty when nothing is, or there is none."""
+    recording_trouble: str = ""
+    """The same of the recording."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +97,8 @@ class Rounds:
             self._recorder.note(record, saved=saves)
         if ticks % self._status_ticks == 0:
             channel_trouble = "" if self._channel is None else self._channel.trouble
-            self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble)
+            recording_trouble = "" if self._recorder is None else self._recorder.trouble
+            self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble, recording_trouble)
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
             sweep()

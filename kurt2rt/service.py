@@ -225,6 +225,7 @@ def _recording(
         yield recorder
     finally:
         recorder.close(ending.patience_s(_RECORDING_S))
+        recording.ended(recorder)
 
 
 class _Taking:

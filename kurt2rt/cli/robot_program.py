@@ -14,7 +14,7 @@ import anyio
 from rich.console import Console
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.app import OpenedRobot, open_robot
+from kurt2rt.app import OpenedRobot, Opening, open_robot
 from kurt2rt.channel.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing, pairing_names
 from kurt2rt.channel.port import require_port
@@ -26,11 +26,13 @@ from kurt2rt.health.instruments import Instruments
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.can_log import CanLog, open_can_log
+from kurt2rt.recording.recording import Recording
+from kurt2rt.recording.run_files import budget_of
 from kurt2rt.reloading import Reloading
 from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
 from kurt2rt.service_settings import ServiceSettings
-from kurt2rt.start import Need, Start, require_folder
+from kurt2rt.start import AGAIN_S, Need, Start, require_folder
 from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.question import Question, WayQuestion
@@ -58,6 +60,10 @@ class Orders:
     auto: bool
     page_port: int | None
     can_log: Path | None
+    record: bool
+    """To the folder that the settings name."""
+    live_view: tuple[str, int] | None
+    """Host and port."""
     seconds: float | None
     seed: int
     wire: str
@@ -72,14 +78,25 @@ class RobotProgram:
         read: Callable[[], ServiceSettings],
         robot: RobotSettings,
         task: TaskSettings,
+        *,
+        opening: Opening = open_robot,
+        console: Console | None = None,
+        give_up: Callable[[str], None] | None = leave,
+        again_s: float = AGAIN_S,
     ) -> None:
-        """`read`: the runtime settings, as the command line changes them. Raises SettingsError."""
+        """`read`: the runtime settings, as the command line changes them. `opening` gives the robot.
+
+        `give_up`: as kurt2rt.ending.Ending. `again_s`: between two looks at what is not there. Raises SettingsError.
+        """
         self._orders = orders
         self._read = read
         self._service = read()
         self._robot = robot
         self._task = task
-        self._console = Console()
+        self._opening = opening
+        self._console = console or Console()
+        self._give_up = give_up
+        self._again_s = again_s
         self._around = ExitStack()
         self._log: CanLog | None = None
         self._opened: OpenedRobot | None = None
@@ -97,7 +114,7 @@ class RobotProgram:
             notifier = around.enter_context(Notifier())
             reloading = Reloading(self._read, service, notifier, self._say) if orders.as_service else None
             others = {} if reloading is None else {signal.SIGHUP: reloading.ask}
-            ending = around.enter_context(Ending(others=others, give_up=leave))
+            ending = around.enter_context(Ending(others=others, give_up=self._give_up))
             self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._say)
             self._companions = around.enter_context(Companions(orders.settings, ending.patience_s))
             self._printer = around.enter_context(Printer(ending.patience_s))
@@ -139,6 +156,7 @@ class RobotProgram:
             instruments=self._instruments(opened),
             upkeep=self._upkeep,
             knowledge=self._knowledge,
+            recording=self._recording(opened),
         )
 
     async def _start(self, waiting: anyio.CancelScope) -> None:
@@ -150,7 +168,7 @@ class RobotProgram:
             Need("teachers' keys", self._pair),
             Need("network", self._look_at_port),
         )
-        start = Start(needs, self._upkeep.notifier, self._say, self._hold)
+        start = Start(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
         with self._upkeep.ending.first(self._hold, lambda: loop.call_soon_threadsafe(waiting.cancel)):
             try:
                 await start.wait()
@@ -171,7 +189,7 @@ class RobotProgram:
         orders = self._orders
         if self._log is None and orders.can_log is not None:
             self._log = self._around.enter_context(open_can_log(orders.can_log, orders.bus))
-        opening = open_robot(self._robot, orders.bus, self._service.world, orders.seed, self._log, orders.wire)
+        opening = self._opening(self._robot, orders.bus, self._service.world, orders.seed, self._log, orders.wire)
         self._opened = self._around.enter_context(opening)
 
     def _take_knowledge(self) -> None:
@@ -214,6 +232,19 @@ class RobotProgram:
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         return Instruments(lambda: opened.robot.health, drops, says)
+
+    def _recording(self, opened: OpenedRobot) -> Recording | None:
+        orders, service = self._orders, self._service
+        if not orders.record and orders.live_view is None:
+            return None
+        return Recording(
+            Path(service.recordings) if orders.record else None,
+            budget_of(service.recordings_mb),
+            orders.bus,
+            opened.ground,
+            orders.live_view,
+            self._say,
+        )
 
     def _question(self, question: Question | WayQuestion) -> None:
         self._say(str(question), "yellow")

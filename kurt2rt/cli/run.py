@@ -11,6 +11,7 @@ from kurt2rt.app import NO_WIRE, SIMULATED
 from kurt2rt.cli.options import WireName
 from kurt2rt.cli.robot_program import Orders, RobotProgram
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.recording.live_view import parse_address
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.scripted_lesson import several_behaviours
@@ -76,6 +77,22 @@ def run(
             ".csv, .trc or .mf4. 140 MB an hour as .log.",
         ),
     ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder that gets a folder for this run: all that it sees, decides and is taught, for kurt2rt replay "
+            "and for Foxglove; some 70 MB an hour. Default: as the settings say."
+        ),
+    ] = None,
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing.")] = False,
+    live_view: Annotated[
+        str | None,
+        typer.Option(
+            metavar="[HOST:]PORT",
+            help="Show the same live to Foxglove, over a WebSocket on this port, 0: any; to this machine alone unless "
+            "a host is given: there is no password.",
+        ),
+    ] = None,
     service: Annotated[
         bool,
         typer.Option(
@@ -130,11 +147,17 @@ def run(
         raise typer.BadParameter("only the simulated robot in this program has a simulated wire", param_hint="--wire")
     if (page or auto) and teacher == "none":
         raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
+    if no_record and record is not None:
+        raise typer.BadParameter("either a folder to record to, or nothing is recorded", param_hint="--no-record")
+    try:
+        live = None if live_view is None else parse_address(live_view)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--live-view") from error
     if service and (auto or teacher == "none"):
         raise typer.BadParameter("after each start it waits for a person who says Go", param_hint="--service")
 
     def read() -> ServiceSettings:
-        return _changed(load_service(settings), task, knowledge, world, port)
+        return _changed(load_service(settings), task, knowledge, world, port, record)
 
     loaded = read()
     robot_settings, taught = load_robot(loaded.robot), load_task(loaded.task)
@@ -156,6 +179,8 @@ def run(
         auto=auto,
         page_port=page_port,
         can_log=can_log,
+        record=not no_record,
+        live_view=live,
         seconds=seconds,
         seed=seed,
         wire=wire,
@@ -164,11 +189,17 @@ def run(
 
 
 def _changed(
-    service: ServiceSettings, task: str | None, knowledge: Path | None, world: str | None, port: int | None
+    service: ServiceSettings,
+    task: str | None,
+    knowledge: Path | None,
+    world: str | None,
+    port: int | None,
+    record: Path | None,
 ) -> ServiceSettings:
     if task is not None:
         taught = load_task(task)
         beside = str(Path(service.knowledge).with_name(f"{taught.name}.knowledge"))
         service = service.model_copy(update={"task": task, "world": taught.teaching.world, "knowledge": beside})
-    given = {"knowledge": None if knowledge is None else str(knowledge), "world": world, "port": port}
+    files = {"knowledge": knowledge, "recordings": record}
+    given = {key: None if path is None else str(path) for key, path in files.items()} | {"world": world, "port": port}
     return service.model_copy(update={key: value for key, value in given.items() if value is not None})

@@ -57,6 +57,8 @@ def troubles(status: Status, health: Health) -> list[str]:
         parts.append(runtime.school.learning.trouble)
     if status.channel_trouble:
         parts.append(status.channel_trouble)
+    if status.recording_trouble:
+        parts.append(status.recording_trouble)
     if health.trouble:
         parts.append(health.trouble)
     if health.foreign_control:

@@ -48,8 +48,8 @@ class Recording:
     """Of a simulated robot."""
     live: tuple[str, int] | None = None
     """Host and port of a live view; None: there is none."""
-    opened: Callable[[LiveView], None] = lambda _: None
-    """Hears, in another thread, when it is open."""
+    tell: Callable[[str], None] = lambda _: None
+    """Takes lines for the user, also from another thread."""
 
     def recorder(
         self,
@@ -91,7 +91,17 @@ class Recording:
             load_situation(task.situation, settings.infrared.names).names,
             name=run_name(began, task.name),
             live=self.live,
-            opened=self.opened,
+            opened=self._opened,
             ground=self.ground,
             began_at_ns=None if started is None else round(started.timestamp() * 1_000_000_000),
         )
+
+    def ended(self, recorder: RunRecorder) -> None:
+        """Tell what came of it; after its end."""
+        if recorder.trouble:
+            self.tell(recorder.trouble)
+        if recorder.run is not None:
+            self.tell(f"the run is recorded in {recorder.run}")
+
+    def _opened(self, view: LiveView) -> None:
+        self.tell(f"a live view for Foxglove is on {view.address}")

@@ -1,10 +1,12 @@
 """A robot's mind on ticks that the test makes, and a recorder beside it."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from kurt2rt.channel.ground import Ground
 from kurt2rt.recording.attachments import attachments_of, fingerprints_of
 from kurt2rt.recording.disk import Disk
+from kurt2rt.recording.live_view import LiveView
 from kurt2rt.recording.run_files import Budget, budget_of
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
@@ -43,6 +45,7 @@ class RecordedDesk:
         capacity: int = 3000,
         name: str = NAME,
         live: tuple[str, int] | None = None,
+        opened: Callable[[LiveView], None] = lambda _: None,
     ) -> None:
         self.desk = Desk()
         self.recorder: RunRecorder = open_run_recorder(
@@ -54,6 +57,7 @@ class RecordedDesk:
             self.desk.runtime.definition.names,
             name=name,
             live=live,
+            opened=opened,
             ground=ground,
             began_at_ns=BEGAN_AT_NS,
             disk=disk,
