@@ -1,5 +1,6 @@
 """The expectations of all RLAs of one level: learned at each end of an RLA, from the situation that it ended in."""
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -150,9 +151,9 @@ class Expectations:
         if count < self._settings.least:
             return None
         # Of symbols a square is 1 or 0: this is the number of places that differ, and how many usually do.
-        squared = float(self._squared_weights @ (deviation * deviation))
-        usual_squared = float(self._squared_weights @ learned.squares) / (count - 1)
-        distance, usual = (squared, usual_squared) if self._symbols else (squared**0.5, usual_squared**0.5)
+        squared = float(np.add.reduce(self._squared_weights * (deviation * deviation)))
+        usual_squared = float(np.add.reduce(self._squared_weights * learned.squares)) / (count - 1)
+        distance, usual = (squared, usual_squared) if self._symbols else (math.sqrt(squared), math.sqrt(usual_squared))
         usual = max(usual, self._least_usual)
         seen = self._transitions.get((end.rla_id, end.follow_up), 0)
         surprising = distance > self._settings.beyond * usual

@@ -10,6 +10,7 @@ from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.rla.matching import exact_square
 from kurt2rt.rla.rla import (
     BASIC,
     ActionReplaced,
@@ -139,7 +140,7 @@ class BasicLevel:
             self._drivers_condition = np.array(rla.condition)
         off = (situation.vector - self._drivers_condition) * self.system.weights
         radius = self.system.radius if rla.radius is None else rla.radius
-        return float(off @ off) <= radius * radius
+        return exact_square(off) <= radius * radius
 
     def _stand(self, cause: Cause, match: Match | None) -> Decision:
         """Stand; the next action begins anew."""

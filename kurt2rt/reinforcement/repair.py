@@ -1,11 +1,13 @@
 """What becomes of an RLA that has sunk: asked anew where somebody can be asked, else another action is tried."""
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 
 import numpy as np
 
 from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.rla.matching import exact_square
 from kurt2rt.rla.rla import (
     ActionWithdrawn,
     Condition,
@@ -117,7 +119,7 @@ class Repair:
         if near is None:
             return False
         off = (np.array(near.condition) - np.array(rla.condition)) * self._system.weights
-        return float(np.sqrt(off @ off)) <= (self._system.radius if near.radius is None else near.radius)
+        return math.sqrt(exact_square(off)) <= (self._system.radius if near.radius is None else near.radius)
 
     def _action_to_try(self, rla: Rla, tried: list[str]) -> str | None:
         """What most of the nearest neighbours do that was not tried; None where all they do was."""

@@ -16,6 +16,7 @@ from kurt2rt.reinforcement.rule import Booking
 from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.trace import LEAST_SHARE, Trace
 from kurt2rt.rla.rla import Credit
+from kurt2rt.steady import power, steady
 
 
 class TdLambda:
@@ -25,7 +26,7 @@ class TdLambda:
         """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
         self._settings = settings
         self._worths = worths
-        self._decay = math.exp(-period_s / settings.trace_s)
+        self._decay = steady(math.exp(-period_s / settings.trace_s))
         self._step_ticks = max(1, round(settings.step_s / period_s))
         self._accounts = Accounts[float]()
         """V less the first value."""
@@ -41,7 +42,7 @@ class TdLambda:
 
     def drove(self, rla_id: int | None, tick: int) -> None:
         """Take in one tick: the trace fades, grows for the one that answered, and every so often a step is made."""
-        self._scale *= self._decay if tick == self._tick + 1 else self._decay ** (tick - self._tick)
+        self._scale *= self._decay if tick == self._tick + 1 else power(self._decay, tick - self._tick)
         self._tick = tick
         if self._scale < 1e-100:
             self._trace, self._scale = {}, 1.0

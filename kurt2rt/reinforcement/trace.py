@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurt2rt.steady import steady
 from kurt2rt.teaching.recent import RecentDecisions
 
 LEAST_SHARE = 0.001
@@ -34,13 +35,16 @@ def trace_of(
     `trace_ticks`: time constant. `since`: RLA id -> tick in which it got the action it has; what it did before with
     another one is neither its merit nor its fault.
     """
-    decay = math.exp(-1.0 / trace_ticks)
-    reach = math.ceil(-math.log(LEAST_SHARE) * trace_ticks)
+    decay = steady(math.exp(-1.0 / trace_ticks))
+    reach = math.ceil(steady(-math.log(LEAST_SHARE) * trace_ticks))
     ticks, rlas = recent.answering_up_to(tick)
     for rla_id in since.keys() & set(rlas.tolist()):
         rlas[(rlas == rla_id) & (ticks < since[rla_id])] = 0
-    weights = (1.0 - decay) * decay ** (tick - ticks)
-    weights[ticks <= tick - reach] = 0.0
+    fading = np.full(reach + 1, decay)
+    fading[0] = 1.0
+    fading[-1] = 0.0
+    np.multiply.accumulate(fading, out=fading)  # powers by multiplication: the same on every processor
+    weights = (1.0 - decay) * fading[np.minimum(tick - ticks, reach)]
     sums = np.bincount(rlas, weights)
     shares = {int(rla_id): float(sums[rla_id]) for rla_id in np.flatnonzero(sums >= LEAST_SHARE) if rla_id != 0}
     return Trace(shares, _last_transitions(ticks.tolist(), rlas.tolist(), most_transitions))

@@ -8,11 +8,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kurt2rt.rla.matching import ConditionIndex, exact_distances
+from kurt2rt.rla.matching import ConditionIndex, exact_distances, exact_square
 
 Point = tuple[float, ...]
-
-_FLOAT32 = float(np.finfo(np.float32).eps)
 
 
 def index_of(conditions: list[Point]) -> ConditionIndex:
@@ -35,13 +33,11 @@ def assert_right(index: ConditionIndex, conditions: NDArray[np.float64], situati
     if len(conditions) == 1:
         assert (nearest.runner_up, nearest.runner_up_distance) == (-1, math.inf)
         return
-    assert nearest.runner_up != nearest.position
+    distances[nearest.position] = math.inf
     others = np.delete(distances, nearest.position)
-    reach = float(np.linalg.norm(situation)) + float(np.linalg.norm(conditions, axis=1).max()) + 1e-15
-    rounding = 4 * _FLOAT32 * (len(situation) + 4) * reach * reach
-    second = float(others.min()) ** 2
-    assert float(distances[nearest.runner_up]) ** 2 - second <= rounding
-    assert abs(nearest.runner_up_distance**2 - second) <= rounding
+    assert nearest.runner_up_distance == float(others.min())  # bit for bit, too
+    if math.isfinite(nearest.runner_up_distance):
+        assert nearest.runner_up == int(distances.argmin())
 
 
 _STEPS = st.integers(-3, 3).map(float)
@@ -178,3 +174,10 @@ def test_a_condition_that_cannot_be_matched_is_refused_and_changes_nothing(condi
         index.append(condition)
     assert len(index) == 1
     assert_right(index, np.array([[1.0, 2.0]]), np.array([1.0, 2.5]))
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.integers(1, 20))
+def test_a_sum_of_squares_is_the_same_alone_and_among_others(values: list[float], rows: int) -> None:
+    row = np.array(values)
+    distances = exact_distances(np.tile(row, (rows, 1)), np.zeros(len(row)))
+    assert set(distances.tolist()) == {math.sqrt(exact_square(row))}
