@@ -45,7 +45,7 @@ async def advertised(client: ClientConnection, *topics: str) -> dict[str, int]:
 
 async def test_who_connects_sees_the_ticks_that_come_from_then_on() -> None:
     desk, view = opened_desk()
-    async with connect(view.address, subprotocols=[SUBPROTOCOL]) as client:  # type: ignore[list-item]
+    async with connect(view.address, subprotocols=[SUBPROTOCOL], close_timeout=0.1) as client:  # type: ignore[list-item]
         hello = await told(client, "serverInfo")
         assert "clientPublish" not in hello["capabilities"]
         assert "parameters" not in hello["capabilities"]
