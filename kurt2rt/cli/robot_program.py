@@ -231,7 +231,8 @@ class RobotProgram:
         drops, says = {"lines for the terminal": lambda: self._printer.dropped}, {}
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
-        return Instruments(lambda: opened.robot.health, drops, says)
+        folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}
+        return Instruments(lambda: opened.robot.health, drops, says, folders)
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
         orders, service = self._orders, self._service
