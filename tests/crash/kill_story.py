@@ -1,7 +1,8 @@
 """A robot program is killed at any moment of its life, over and over, while a teacher teaches it over the network.
 
 The robot is a program of its own on a shared bus, and goes on. After each kill it stands by its own watchdog, every
-lesson that was acknowledged is in the knowledge file once, and the next program asks before it drives.
+lesson that was acknowledged is in the knowledge file once, its recording can be read and replayed, and the next program
+asks before it drives.
 """
 
 import random
@@ -9,11 +10,12 @@ import secrets
 import time
 from collections import Counter
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import anyio
 import anyio.abc
+import anyio.to_thread
 import can
 
 from hal.bus import CanBus, open_bus
@@ -34,6 +36,7 @@ from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, STARTED, WATCHDOG_CYCLES, drives, is_control, stands, turns
+from tests.crash.killed_recording import KilledRecordings
 from tests.crash.programs import Nursery, Program
 
 ACTIONS = ("forward", "forward", "back", "spin_left", "whirl_right")
@@ -47,6 +50,7 @@ DRIVING_SHARE = 0.6
 """Of the others that are killed not before the robot drives by what it was taught."""
 LONGEST_LIFE_S = 1.5
 MOST_LESSONS = 5
+REPLAYED_EVERY = 3
 MOST_FURTHER_S = 0.4
 CYCLE_S = load_robot().can.cycle_s
 _LOOK_S = 0.005
@@ -67,8 +71,22 @@ class Tally:
     unacknowledged: int = 0
     """Of them those of which the teacher was told nothing."""
     most_cycles_to_rest: int = 0
+    recorded_ticks: int = 0
+    """That can be read of the recordings."""
+    unreadable: int = 0
+    """Recordings that ended before the first second was on the disk."""
+    most_unrecorded_s: float = 0.0
+    """From the last recorded tick to the kill."""
+    replayed: int = 0
+    """Recordings that were replayed, bit for bit."""
     kinds: Counter[str] = field(default_factory=Counter)
     """Of the acknowledged lessons."""
+
+    def add(self, more: "Tally") -> None:
+        """What was seen over further kills."""
+        for each in fields(self):
+            mine, others = getattr(self, each.name), getattr(more, each.name)
+            setattr(self, each.name, max(mine, others) if each.name.startswith("most_") else mine + others)
 
     def __str__(self) -> str:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.kinds.items()))
@@ -76,7 +94,9 @@ class Tally:
             f"{self.kills} kills ({self.young} while it started, {self.driving} while it drove), "
             f"{self.acknowledged} lessons acknowledged ({kinds}), "
             f"{self.stored} stored, {self.unacknowledged} of them unacknowledged; "
-            f"at most {self.most_cycles_to_rest} cycles to rest"
+            f"at most {self.most_cycles_to_rest} cycles to rest; {self.recorded_ticks} ticks recorded, "
+            f"{self.unreadable} recordings ended at their beginning, at most {self.most_unrecorded_s:.2f} s "
+            f"are missing at an end, {self.replayed} were replayed bit for bit"
         )
 
 
@@ -153,6 +173,7 @@ class KillStory:
         self._knowledge = folder / "knowledge"
         self._rows: list[StoredEntry] = []
         self._acknowledged: set[int] = set()
+        self._recordings = KilledRecordings(folder / "runs")
         self._nursery = Nursery()
 
     async def run(self, kills: int) -> Tally:
@@ -174,8 +195,8 @@ class KillStory:
     async def _one_life(self) -> None:
         log = self._folder / "run.log"
         log.unlink(missing_ok=True)
-        words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), *self._words)
-        program = self._nursery.start("run", *words, folder=self._folder, log=log)
+        words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), "--record", "runs")
+        program = self._nursery.start("run", *words, *self._words, folder=self._folder, log=log)
         told: dict[int, tuple[str, str]] = {}
         if self._chance.random() < YOUNGEST_SHARE:
             self.tally.young += 1
@@ -184,11 +205,13 @@ class KillStory:
             program.kill()
         else:
             told, before = await self._taught_and_killed(program)
+        killed_at_s = time.monotonic()
         assert "Traceback" not in program.said, program.said
         self.tally.kills += 1
         self.tally.driving += any(turns(frame) for frame in before[-4:])
         await self._comes_to_rest()
         self._look_at_the_knowledge(told)
+        await anyio.to_thread.run_sync(self._look_at_the_recording, killed_at_s)
 
     async def _taught_and_killed(self, program: Program) -> tuple[dict[int, tuple[str, str]], list[can.Message]]:
         line = await program.says("teachers are listened to on UDP port")
@@ -231,6 +254,18 @@ class KillStory:
         cycles_to_rest = max((number for number, turning in enumerate(cycles, start=1) if turning), default=0)
         assert cycles_to_rest <= WATCHDOG_CYCLES + BRAKING_CYCLES
         self.tally.most_cycles_to_rest = max(self.tally.most_cycles_to_rest, cycles_to_rest)
+
+    def _look_at_the_recording(self, killed_at_s: float) -> None:
+        replayed = self.tally.kills % REPLAYED_EVERY == 0
+        recording = self._recordings.newest(replayed=replayed)
+        if recording is None:
+            return
+        if not recording.ticks:
+            self.tally.unreadable += 1
+            return
+        self.tally.replayed += replayed
+        self.tally.recorded_ticks += recording.ticks
+        self.tally.most_unrecorded_s = max(self.tally.most_unrecorded_s, killed_at_s - recording.until_s)
 
     def _look_at_the_knowledge(self, told: dict[int, tuple[str, str]]) -> None:
         if not self._knowledge.exists():  # killed before it was born

@@ -23,15 +23,17 @@ def main() -> None:
         parser.error(f"there is no shard {arguments.shard}")
     kills = kills_of_shard(arguments.kills, shard, shards)
     began_s = time.monotonic()
-    done = 0
+    done, all_of_them = 0, Tally()
     while done < kills:
         count = min(_AT_ONCE, kills - done)
         seed = shard * 1_000_000 + done
         tally = kill_in_a_fresh_folder(count, seed)
         done += count
+        all_of_them.add(tally)
         print(
             f"shard {shard}/{shards}, {done} of {kills} after {time.monotonic() - began_s:.0f} s: {tally}", flush=True
         )
+    print(all_of_them)
     print(f"{kills} passed, 0 failed")
 
 
