@@ -12,18 +12,24 @@ HOUR_S = 3600.0
 _ABOUT_S = 600.0
 
 
+def memory_base_mb(minutes: Sequence[Minute]) -> float | None:
+    """Memory at the end of the first hour, the median of its last ten minutes; None for a shorter soak."""
+    base = [each.resident_mb for each in minutes if HOUR_S - _ABOUT_S < each.at_s <= HOUR_S]
+    return median(base) if base and minutes[-1].at_s > HOUR_S else None
+
+
 def memory_check(minutes: Sequence[Minute], limits: LimitSettings) -> Check:
     """No growth after the first hour: the median of any ten minutes against the last ten of that hour."""
     what = f"memory grows by no more than {limits.memory_mb:g} MB after the first hour"
-    base = [each.resident_mb for each in minutes if HOUR_S - _ABOUT_S < each.at_s <= HOUR_S]
+    base_mb = memory_base_mb(minutes)
     later = [each for each in minutes if each.at_s > HOUR_S]
-    if not base or len(later) < _ABOUT_S / 60:
+    if base_mb is None or len(later) < _ABOUT_S / 60:
         return Check(what, passed=True, found="shorter than an hour and ten minutes: not asked")
     spans: dict[int, list[float]] = {}
     for each in later:
         spans.setdefault(int(each.at_s / _ABOUT_S), []).append(each.resident_mb)
-    grown_mb = max(median(each) for each in spans.values()) - median(base)
-    end_mb = later[-1].resident_mb - median(base)
+    grown_mb = max(median(each) for each in spans.values()) - base_mb
+    end_mb = later[-1].resident_mb - base_mb
     return Check(what, grown_mb <= limits.memory_mb, f"{grown_mb:+.1f} MB at most, {end_mb:+.1f} MB at the end")
 
 

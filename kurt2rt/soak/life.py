@@ -68,7 +68,8 @@ class Life:
         self._number = number
         self._lessons_said = self._recorded_at = self._tended_at = 0
         self._chance = random.Random(f"life {number}, seed {seed}")
-        self._started_s = self._begun_s = 0.0
+        self._started_s: float | None = None
+        self._begun_s = 0.0
         self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
         self._link: HandLink | None = None
         self.knowledge = SoakKnowledge(Path(service.knowledge), settings, task, place.time)
@@ -112,7 +113,7 @@ class Life:
     @property
     def ready(self) -> bool:
         """Whether something may fail: it runs, and has run for a moment."""
-        return self._started_s > 0.0 and self._time.now_s() - self._started_s > _READY_AFTER_S
+        return self._started_s is not None and self._time.now_s() - self._started_s > _READY_AFTER_S
 
     async def run(self, until_s: float, on_tick: Callable[[TickRecord], None], may_end: Callable[[], bool]) -> None:
         """As kurt2rt.service does: whatever ends the loop, the wheels stand before anything else ends.
@@ -136,7 +137,7 @@ class Life:
                 self.ended_by = _told(error)
             finally:
                 self._witness.emergency_stop(SERVICE_ENDS)
-        self._started_s = 0.0
+        self._started_s = None
 
     def close(self) -> str:
         """Save what was counted, end the driver and close the file; what is wrong then, in a line. KnowledgeError."""

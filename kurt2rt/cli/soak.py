@@ -1,0 +1,98 @@
+"""`kurt2rt soak`."""
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import anyio
+import typer
+from rich.console import Console
+from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
+
+from hal.robot_settings import load_robot
+from kurt2rt.faults.table import load_faults
+from kurt2rt.recording.recording import Recording
+from kurt2rt.recording.run_files import budget_of
+from kurt2rt.service_settings import load_service
+from kurt2rt.soak.settings import load_soak
+from kurt2rt.tasks.settings import load_task
+
+_KNOWLEDGE, _RUNS = "soak.knowledge", "runs"
+
+
+def soak(
+    hours: Annotated[float, typer.Option(min=0.01, max=1000.0, help="Simulated hours.")] = 24.0,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Decides the robot, the noise, the faults, and the teacher's moods.")
+    ] = 1,
+    out: Annotated[
+        Path,
+        typer.Option(
+            file_okay=False,
+            help="Folder for the report (soak.txt, soak.json, soak.png), the knowledge file and the recorded runs; "
+            "those of an earlier soak go.",
+        ),
+    ] = Path("var/soak"),
+    day: Annotated[str, typer.Option(help="What the day is like, by name (config/soak) or a path.")] = "day",
+    by_module: Annotated[
+        bool,
+        typer.Option(
+            "--by-module",
+            help="Trace memory and tell which modules took more after the first hour; four times slower.",
+        ),
+    ] = False,
+) -> None:
+    """Let a day of the robot pass in simulated time in which everything fails.
+
+    The robot's program runs as it does on a robot, with knowledge file,
+    statistics and recorder; only its clock is simulated. It is started anew
+    every half an hour or so, on another bus each time. Every minute or so
+    something fails, as in kurt2rt faults. The teacher is patient, nervous, late,
+    mistaken or away for an hour.
+
+    On every tick an observer looks at the envelope of motion, at whether the
+    robot stands until it is told to drive, and at whether each tick is accounted
+    for. At the end memory must not have grown by more than 5 MB since the end of
+    the first hour.
+
+    24 hours take 30 to 60 minutes. Ends with code 1 when something did not hold.
+    """
+    # Not at the top: simulator and plots are extras, and `kurt2rt run` on the robot does without them.
+    from kurt2rt.soak.day import Day
+    from kurt2rt.soak.picture import draw_soak
+    from kurt2rt.soak.report import as_json, print_report
+    from simbridge.faults.lasting_place import LastingPlace
+
+    settings = load_soak(day)
+    table, task = load_faults(settings.faults), load_task(settings.task)
+    robot = load_robot(table.robot)
+    _make_room(out)
+    service = load_service().model_copy(
+        update={"knowledge": str(out / _KNOWLEDGE), "checkpoint_period_s": settings.checkpoint_period_s}
+    )
+    recording = Recording(out / _RUNS, budget_of(settings.recordings_mb), "sim")
+    place = LastingPlace(robot, settings.world, seed)
+    try:
+        running = Day(place, settings, table, robot, task, service, recording, seed=seed, by_module=by_module)
+        columns = (*Progress.get_default_columns()[:-1], TimeElapsedColumn(), TimeRemainingColumn())
+        with Progress(*columns, console=Console(stderr=True)) as progress:
+            bar = progress.add_task("soak", total=hours * 3600.0)
+            result = anyio.run(running.run, hours, lambda now_s: progress.update(bar, completed=now_s))
+    finally:
+        place.close()
+    print_report(result, Console())
+    with (out / "soak.txt").open("w", encoding="utf-8") as file:
+        print_report(result, Console(file=file, width=120))
+    (out / "soak.json").write_text(as_json(result) + "\n", encoding="utf-8")
+    draw_soak(result, settings.limits, out / "soak.png")
+    if not result.passed:
+        raise typer.Exit(1)
+
+
+def _make_room(out: Path) -> None:
+    """The folder, without what an earlier soak left in it. Raises OSError."""
+    out.mkdir(parents=True, exist_ok=True)
+    for path in out.glob(f"{_KNOWLEDGE}*"):
+        path.unlink()
+    if (out / _RUNS).is_dir():
+        shutil.rmtree(out / _RUNS)
