@@ -90,7 +90,9 @@ class Topics:
         self._tell(record, time_ns)
         if record.tick >= self._next_scan:
             self._next_scan = record.tick + self._scan_ticks
-            self._where(record, truth, time_ns)
+            self._where(record, time_ns)
+        if truth is not None:
+            self._truly(truth, time_ns)
         begins_to_ask = record.decision.asking and not self._asking
         self._asking = record.decision.asking
         if record.tick >= self._next_scene or begins_to_ask:
@@ -152,13 +154,13 @@ class Topics:
             self._trouble = record.trouble
             self.say(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
 
-    def _where(self, record: TickRecord, truth: SimulatedPlace | None, time_ns: int) -> None:
+    def _where(self, record: TickRecord, time_ns: int) -> None:
         self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
         pose = self._odometry.pose
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
         self._tf.log(transform(START, ROBOT, pose, time_ns), log_time=time_ns)
-        if truth is None:
-            return
+
+    def _truly(self, truth: SimulatedPlace, time_ns: int) -> None:
         here = PlanePose(truth.x_m, truth.y_m, truth.heading_rad)
         if self._begins is None:
             self._begins = here

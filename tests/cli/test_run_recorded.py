@@ -1,0 +1,92 @@
+"""What `kurt2rt run` leaves behind of its run."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.recording.entries import TickEntry, decode_tick
+from kurt2rt.recording.run_folder import runs_in, segments_in
+from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.recording.topics import GROUND, HEALTH, SCENE, TICK, TRUTH
+from tests.cli.helpers import CommandLine, running
+
+WORDS = ("run", "--seconds", "1.3", "--teacher", "none", "--knowledge", "mine.knowledge")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def entries_of(run: Path) -> list[TickEntry]:
+    return [decode_tick(each.data) for segment in segments_in(run) for each in SegmentReader(segment).messages({TICK})]
+
+
+def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: Path) -> None:
+    said = kurt2rt(*WORDS)
+    assert said.exit_code == 0
+    (run,) = runs_in(folder / "var" / "runs")
+    assert run.name.endswith("Z-wall_following")
+    assert f"the run is recorded in {run.relative_to(folder)}" in said.out
+    numbers = [entry.number for entry in entries_of(run)]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    assert len(numbers) > 10
+    (segment,) = segments_in(run)
+    topics = {each.topic for each in SegmentReader(segment).messages()}
+    assert {TICK, SCENE, TRUTH, GROUND, HEALTH} <= topics
+
+
+def test_to_another_folder_where_one_is_given(kurt2rt: CommandLine, folder: Path) -> None:
+    kurt2rt(*WORDS, "--record", "elsewhere")
+    assert len(runs_in(folder / "elsewhere")) == 1
+    assert not (folder / "var").exists()
+
+
+def test_nothing_is_recorded_where_nobody_wants_it(kurt2rt: CommandLine, folder: Path) -> None:
+    said = kurt2rt(*WORDS, "--no-record")
+    assert "recorded" not in said.out
+    assert not (folder / "var").exists()
+
+
+def test_a_live_view_needs_no_recording(kurt2rt: CommandLine, folder: Path) -> None:
+    said = kurt2rt(*WORDS, "--no-record", "--live-view", "0")
+    assert "a live view for Foxglove is on ws://127.0.0.1:" in said.out
+    assert "recorded" not in said.out
+    assert not (folder / "var").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("--record", "elsewhere", "--no-record"), "either a folder to record to, or nothing is recorded"),
+        (("--live-view", "robot"), "neither PORT nor HOST:PORT"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+    assert why in kurt2rt.misused(*WORDS, *words)
+
+
+def test_a_folder_that_cannot_be_made_costs_no_tick_and_is_told(kurt2rt: CommandLine, folder: Path) -> None:
+    (folder / "runs").write_text("a file", encoding="utf-8")
+    said = kurt2rt(*WORDS, "--record", "runs")
+    assert said.exit_code == 0
+    assert "recording: nothing is recorded" in said.out
+    assert "the robot stands" in said.out
+
+
+def test_a_killed_program_leaves_a_run_that_can_be_read(folder: Path) -> None:
+    words = ("run", "--seconds", "60", "--teacher", "none", "--knowledge", "mine.knowledge")
+    with running(*words, folder=folder) as robot:
+        for _ in range(5):  # the newest second may be lost
+            robot.wait_for(" s | ")
+        robot.process.kill()
+        robot.process.wait()
+    (run,) = runs_in(folder / "var" / "runs")
+    entries = entries_of(run)
+    assert entries[-1].now_s - entries[0].now_s > 1.0
+    assert [entry.number for entry in entries] == list(range(entries[0].number, entries[0].number + len(entries)))
+    (segment,) = segments_in(run)
+    reader = SegmentReader(segment)
+    assert list(reader.messages({TICK}))
+    assert "ends without its index" in reader.torn
