@@ -7,7 +7,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic
-from kurt2rt.critic.settings import load_critic
+from kurt2rt.critic.settings import CriticSettings, load_critic
 from kurt2rt.expectations.expecting import Expecting
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.basic_level import BasicLevel
@@ -15,7 +15,7 @@ from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.layers.stack import LayerStack
 from kurt2rt.layers.wanted import Wanted
-from kurt2rt.mid.settings import load_mid
+from kurt2rt.mid.settings import MidSettings, load_mid
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.perception.perception import Perception
@@ -81,6 +81,18 @@ class Runtime:
         )
 
 
+def empty_system(
+    task: TaskSettings, definition: SituationDefinition, critic: CriticSettings, mid: MidSettings | None
+) -> RlaSystem:
+    """The RLA system of all levels of a task, in which nothing was taught yet. Raises hal.settings.SettingsError."""
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = weights_of(definition, changed, task.learning.past_weight, task.name)
+    others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
+    if mid is not None:
+        others[MID] = mid.space
+    return RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+
+
 def build_runtime(
     robot: Robot,
     settings: RobotSettings,
@@ -108,15 +120,9 @@ def build_runtime(
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = weights_of(definition, changed, task.learning.past_weight, task.name)
     critic = load_critic(task.critic)
-    appraisals = Space(len(critic.names), critic.learning.radius, critic.weight_vector)
-    others = {CRITIC: appraisals}
     mid_settings = None if task.mid is None else load_mid(task.mid)
-    if mid_settings is not None:
-        others[MID] = mid_settings.space
-    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    system = empty_system(task, definition, critic, mid_settings)
     events = tuple(events)
     period_s = settings.can.cycle_s
     recent = RecentDecisions(definition.dimensions)

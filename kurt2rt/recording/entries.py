@@ -193,7 +193,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             "tick": entry.tick,
             "now_s": _number(entry.now_s),
             "senses": {
-                "time_s": _number(senses.time_s),
+                **({} if senses.time_s == entry.now_s else {"time_s": _number(senses.time_s)}),
                 "infrared_counts": senses.infrared_counts,
                 "infrared_age_s": _number(senses.infrared_age_s),
                 "encoder_left_ticks": senses.encoder_left_ticks,
@@ -270,7 +270,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
         content["tick"],
         float(content["now_s"]),
         Senses(
-            float(senses["time_s"]),
+            float(senses.get("time_s", content["now_s"])),
             tuple(senses["infrared_counts"]),
             float(senses["infrared_age_s"]),
             senses["encoder_left_ticks"],

@@ -1,0 +1,108 @@
+"""Another knowledge that looks on at a replayed run: what it would have decided in the very same situations."""
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.settings import SettingsError
+from kurt2rt.critic.settings import load_critic
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.mid.settings import load_mid
+from kurt2rt.perception.definition import load_situation
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.replay.run import Run
+from kurt2rt.rla.rla import BASIC, MID, Rla, TeachingEvent
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.runtime import Runtime, empty_system
+from kurt2rt.teaching.recent import RecentDecisions
+from kurt2rt.tick import TickRecord
+
+
+class Answer(NamedTuple):
+    """What knowledge says to a situation, before it is held to a minimum time and before any guard."""
+
+    rla: Rla | None
+    """The RLA that answers; None where none is near enough."""
+    nearest: Rla | None
+    """The nearest; None where nothing was taught."""
+    distance: float
+    """To the nearest; infinite where there is none."""
+    radius: float
+    """Of the nearest; 0 where there is none."""
+
+    @property
+    def action(self) -> str | None:
+        """What would be done; None: it asks."""
+        return None if self.rla is None else self.rla.action
+
+    @property
+    def share_of_radius(self) -> float:
+        """How far off the nearest condition is, as a share of R."""
+        return self.distance / self.radius if self.radius else math.inf
+
+
+class Answers(NamedTuple):
+    """What knowledge says in one tick."""
+
+    basic: Answer
+    mid: Answer | None
+    """None where the task has no mid level."""
+
+
+class Shadow:
+    """Knowledge that decides on the situations of a run, and does nothing. Nothing is learnt meanwhile."""
+
+    def __init__(self, run: Run, events: Iterable[TeachingEvent], statistics: Statistics | None = None) -> None:
+        """`events`: what was taught; `statistics`: what the RLAs are worth, where several stand on one condition.
+
+        It matches as the run's own settings say. Raises RecordingError for knowledge that does not fit them.
+        """
+        try:
+            with run.settings():
+                task = run.task
+                definition = load_situation(task.situation, run.robot.infrared.names)
+                mid = None if task.mid is None else load_mid(task.mid)
+                self._system = empty_system(task, definition, load_critic(task.critic), mid)
+            recent = RecentDecisions(definition.dimensions)
+            self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
+            self._worths.recall(tuple(events), statistics)
+        except (SettingsError, UnfitEventError) as error:
+            raise RecordingError(f"{run.name}: this knowledge cannot decide there: {error}") from error
+
+    def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> Answer:
+        """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""
+        return _answer(self._system, self._worths.choice, situation, behaviour, level)
+
+    def look(self, record: TickRecord, runtime: Runtime) -> Answers:
+        """What it says to the situations of a tick that was just replayed in `runtime`.
+
+        The basic level answers for the behaviour that was wanted then.
+        """
+        return _answers(self._system, self._worths.choice, record, runtime)
+
+
+def answers_then(record: TickRecord, runtime: Runtime) -> Answers:
+    """What the run's own knowledge says, as it is after a tick that was just replayed in `runtime`."""
+    return _answers(runtime.level.system, runtime.reinforcement.choice, record, runtime)
+
+
+def _answers(system: RlaSystem, choice: Choice, record: TickRecord, runtime: Runtime) -> Answers:
+    basic = _answer(system, choice, record.situation.vector, record.behaviour, BASIC)
+    mid = None if runtime.mid is None else _answer(system, choice, runtime.mid.vector, "", MID)
+    return Answers(basic, mid)
+
+
+def _answer(system: RlaSystem, choice: Choice, situation: NDArray[np.float64], behaviour: str, level: str) -> Answer:
+    match = system.match(situation, behaviour, level)
+    if match is None:
+        return Answer(None, None, math.inf, 0.0)
+    rla = None
+    if match.known:
+        # Of ways from one place a plan chooses, or the oldest leads; of competitors the one of most worth drives.
+        rla = choice.best(system.competitors(match.rla)) if level == BASIC else match.rla
+    return Answer(rla, match.rla, match.distance, match.radius)

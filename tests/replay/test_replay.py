@@ -1,0 +1,183 @@
+"""A recorded run comes out again as it was: each decision, and all that is known, bit for bit."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.run_folder import segments_in
+from kurt2rt.recording.run_head import RunHead
+from kurt2rt.replay.comparing import compare
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import Replay, replay_until
+from kurt2rt.replay.run import Run
+from kurt2rt.rla.rla import MID, Phase
+from kurt2rt.teaching.commands import Stop
+from tests.replay.stories import STORED, STORIES, record_story
+
+HERE = Path(__file__).parents[2]
+
+
+def stored(name: str) -> Run:
+    return read_run(STORED / f"{name}.mcap")
+
+
+def differences(run: Run) -> tuple[int, list[str]]:
+    """How many ticks were compared, and the first differences."""
+    ticks, found = 0, []
+    for entry, record in Replay(run):
+        ticks += 1
+        found += [str(each) for each in compare(entry, record)]
+    return ticks, found[:5]
+
+
+@pytest.mark.parametrize("name", STORIES)
+def test_a_stored_run_is_decided_again_as_it_was(name: str) -> None:
+    run = stored(name)
+    assert differences(run) == (round(STORIES[name].seconds * 100), [])
+    assert not run.trouble
+
+
+@pytest.mark.parametrize(
+    "processor",
+    [
+        {
+            "OPENBLAS_CORETYPE": "Prescott",
+            "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
+            "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
+        },
+        {"OPENBLAS_CORETYPE": "Haswell"},
+    ],
+    ids=["of 2004", "of 2013"],
+)
+def test_on_other_processors_too(processor: dict[str, str]) -> None:
+    told = subprocess.run(
+        [sys.executable, "-m", "tests.replay.on_this_processor"],
+        cwd=HERE,
+        env={**os.environ, **processor},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (told.returncode, told.stdout.splitlines()) == (0, [f"{name}: the same" for name in STORIES]), told.stderr
+
+
+def test_the_stored_run_holds_what_a_run_may_hold() -> None:
+    """Or it would prove little."""
+    walls = list(stored("walls").entries())
+    kinds = {type(command).__name__ for entry in walls for command in entry.commands}
+    assert {"Watch", "Drive", "Teach", "Correct", "Undo", "Reward", "Appraise", "PressesForgotten"} <= kinds
+    events = {type(event).__name__ for entry in walls for event in entry.events}
+    assert {"RlaCreated", "ActionReplaced", "ActionWithdrawn", "RlaRewarded", "LessonUndone"} <= events
+    causes = {entry.decision.cause.value for entry in walls}
+    assert {"rla", "held", "teacher", "unknown", "stopped", "unsaved"} <= causes
+    assert any(entry.opinion is not None for entry in walls)
+    errand = list(stored("errand").entries())
+    assert any(entry.surprise is not None for entry in errand + walls)
+    assert any(entry.decision.mid is not None and entry.decision.mid.event is not None for entry in errand)
+    assert any(entry.decision.plan is not None for entry in errand)
+    assert any(event.rla.level == MID for entry in errand for event in entry.events if hasattr(event, "rla"))
+
+
+def test_what_was_not_taught_then_is_told_as_the_first_difference() -> None:
+    run = stored("walls")
+    replay = Replay(run)
+    for entry in run.entries():
+        if entry.events:  # the first lesson does not come
+            entry = entry._replace(commands=())
+            break
+        replay.step(entry)
+    first = compare(entry, replay.step(entry))
+    assert any(each.field == "events" for each in first)
+    assert f"tick {entry.tick}" in str(first[0])
+
+
+def test_the_runtime_is_as_it_was_at_a_time() -> None:
+    run = stored("walls")
+    runtime, tick = replay_until(run, 31.5)
+    assert tick.entry.now_s <= 31.5 < tick.entry.now_s + 0.011
+    assert runtime.school.phase is Phase.REINFORCEMENT
+    assert compare(*tick) == []
+    early, first = replay_until(run, -1.0)
+    assert first.entry.number == 1
+    assert early.school.stopped_because == "the robot program was started"
+
+
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was recorded just now, as the robot program does it."""
+    return record_story("walls", tmp_path_factory.mktemp("runs"), seconds=6)
+
+
+def test_a_run_that_was_just_recorded_is_replayed_from_its_folder(fresh: Path) -> None:
+    run = read_run(fresh)
+    assert differences(run) == (600, [])
+    (segment,) = segments_in(fresh)
+    assert read_run(segment).head == run.head
+
+
+def test_a_torn_run_is_replayed_up_to_its_last_whole_chunk(fresh: Path, tmp_path: Path) -> None:
+    (segment,) = segments_in(fresh)
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(segment.read_bytes()[: segment.stat().st_size * 2 // 3])
+    run = read_run(torn)
+    ticks, found = differences(run)
+    assert 100 < ticks < 600
+    assert found == []
+    assert "torn.mcap" in run.trouble
+
+
+def without(entries: Iterator[TickEntry], lost: range) -> Iterator[TickEntry]:
+    return (entry for entry in entries if entry.number not in lost)
+
+
+def part_of(run: Run, lost: range) -> Run:
+    return Run("a run with a gap", run.head, run._attachments, lambda: without(run._read(), lost))
+
+
+def test_what_came_after_a_gap_is_not_replayed_and_that_is_said() -> None:
+    run = part_of(stored("walls"), range(201, 204))
+    assert differences(run) == (200, [])
+    assert not run.whole
+    assert run.trouble.startswith("3 ticks before 2.04 s (tick 204) are not in the recording")
+
+
+def test_a_run_whose_beginning_is_gone_says_so() -> None:
+    run = stored("walls")
+    kept = {name: data for name, data in run._attachments.items() if name != "knowledge.jsonl"}
+    with pytest.raises(RecordingError, match=r"knowledge\.jsonl is missing, with which the run began"):
+        Run("late", run.head, kept, run._read)
+
+
+def test_damaged_settings_are_refused() -> None:
+    run = stored("walls")
+    kept = {**run._attachments, "settings/robot.json": b"{}"}
+    with pytest.raises(RecordingError, match=r"settings/robot\.json is damaged"):
+        Run("worn", run.head, kept, run._read)
+
+
+def test_settings_of_another_version_are_refused_with_its_name() -> None:
+    run = stored("walls")
+    head = RunHead(**{**{name: getattr(run.head, name) for name in RunHead.__slots__}, "fingerprints": {}})
+    with pytest.raises(RecordingError, match="recorded by kurt2rt story, whose settings this one cannot use"):
+        Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._read)
+
+
+def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="no recorded run"):
+        read_run(tmp_path)
+    with pytest.raises(RecordingError, match="cannot be read"):
+        read_run(tmp_path / "nothing")
+    (tmp_path / "empty.mcap").write_bytes(b"")
+    with pytest.raises(RecordingError, match="says of no run"):
+        read_run(tmp_path / "empty.mcap")
+
+
+def test_a_stop_among_the_commands_stays_where_it_was() -> None:
+    entries = [entry for entry in stored("walls").entries() if any(isinstance(each, Stop) for each in entry.commands)]
+    assert [entry.tick for entry in entries] == [571]
