@@ -80,11 +80,13 @@ _COMMANDS = (
     "exam",
     "paper",
     "phases",
+    "why",
     "knowledge",
     "surprise",
     "commission",
     "service",
     "faults",
+    "soak",
     "bench",
     "doctor",
 )

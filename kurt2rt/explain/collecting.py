@@ -19,13 +19,21 @@ StampOf = Callable[[str], str]
 """When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
 
 
-def facts_of(runtime: Runtime, record: TickRecord, stamp_of: StampOf, *, most: int | None = None) -> DecisionFacts:
+def facts_of(
+    runtime: Runtime,
+    record: TickRecord,
+    stamp_of: StampOf,
+    *,
+    most: int | None = None,
+    uses_before: Mapping[int, int] | None = None,
+) -> DecisionFacts:
     """What the decision of `record`, the newest tick of `runtime`, rested on.
 
     `most`: how many RLAs behind the nearest are told of each level; None: all. With 8 it takes less than a millisecond.
+    `uses_before`: of RLAs how often they had been used when they got the action that they have.
     """
     decision, school = record.decision, runtime.school
-    reader = _Reader(runtime, stamp_of, most)
+    reader = _Reader(runtime, stamp_of, most, uses_before or {})
     mid = decision.mid
     return DecisionFacts(
         tick=record.tick,
@@ -55,11 +63,12 @@ def facts_of(runtime: Runtime, record: TickRecord, stamp_of: StampOf, *, most: i
 class _Reader:
     """Looks things up in one runtime."""
 
-    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None) -> None:
+    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None, uses_before: Mapping[int, int]) -> None:
         self._runtime = runtime
         self._system: RlaSystem = runtime.level.system
         self._stamp_of = stamp_of
         self._most = most
+        self._uses_before = uses_before
         self._lessons = _by_rla(self._system.lessons)
 
     def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
@@ -133,6 +142,12 @@ class _Reader:
     def _story(self, rla: Rla, radius: float, distance: float) -> RlaStory:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
+        lessons = self._lessons.get(rla.rla_id, [])
+        acts = tuple(self._act(each) for each in lessons)
+        uses = counted.uses.get(rla.rla_id, 0)
+        before = self._uses_before.get(rla.rla_id)
+        if before is None and all(isinstance(each.event, RlaRewarded) for each in lessons[1:]):
+            before = 0  # it has the action that it was taught with
         return RlaStory(
             rla_id=rla.rla_id,
             title=rla.title,
@@ -140,8 +155,9 @@ class _Reader:
             condition=rla.condition,
             distance=distance,
             radius=radius,
-            acts=tuple(self._act(each) for each in self._lessons.get(rla.rla_id, ())),
-            uses=counted.uses.get(rla.rla_id, 0),
+            acts=acts,
+            uses=uses,
+            uses_since=None if before is None else max(0, uses - before),
             rewards=appraisal.rewards,
             punishments=appraisal.punishments,
             value=float(self._runtime.reinforcement.worth(rla.rla_id)) if rewarded else None,
@@ -157,7 +173,7 @@ class _Reader:
             tick=origin.tick,
             stamp=self._stamp_of(origin.command_id),
             undone=record.undone,
-            reward=isinstance(record.event, RlaRewarded),
+            changes=not record.undone and not isinstance(record.event, RlaRewarded),
         )
 
 

@@ -18,8 +18,8 @@ class Act:
     stamp: str
     """When it was written, UTC, ISO 8601; empty where that is not known."""
     undone: bool = False
-    reward: bool = False
-    """Whether it only praised or blamed, and left the action as it was."""
+    changes: bool = True
+    """Whether the action is what it is by this lesson or those before it: it stands, and is no praise or blame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +38,8 @@ class RlaStory:
     """Oldest first."""
     uses: int
     """How often it became the one that drives, since it was first taught."""
+    uses_since: int | None
+    """Likewise since it got the action that it has; None where that is not known."""
     rewards: int
     punishments: int
     value: float | None

@@ -7,20 +7,22 @@ from textwrap import fill
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 
-from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from kurt2rt.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
 from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.explain.mid_picture import draw_mid
+from kurt2rt.explain.saving import save
 from kurt2rt.explain.sentences import because, far, guarded, headline, mid_lines, number, taught, used, would_change
 from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.surroundings import DIFFERS, LEGEND, Mark, draw_surroundings
 from kurt2rt.explain.tipping import Tip
 from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.definition import AVERAGED
+from kurt2rt.rla.rla import MID
 
-_DPI = 110
-_FEATURES = 7
+_FEATURES, _FEATURES_BELOW_MID = 7, 4
 _POINTED_AT = 4
 _MARKS = 1
 _WORTH_POINTING = 0.03
@@ -32,7 +34,10 @@ def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings,
     level = facts.basic
     story = level.driver if facts.cause == Cause.RLA and level.driver is not None else level.nearest
     known = (*([] if story is None else [story]), *level.others)
-    colours = colours_of([story.action for story in known] + ([facts.action] if facts.action else []))
+    said = [story.action for story in known] + ([facts.action] if facts.action else [])
+    if facts.mid is not None:
+        said += [each.action for each in (facts.mid.nearest, *facts.mid.others) if each is not None]
+    colours = colours_of(said)
     figure = Figure(figsize=(14.5, 9.2), facecolor="white")
     top = _heading(figure, facts, found, title, colours)
     grid = figure.add_gridspec(
@@ -49,12 +54,29 @@ def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings,
     )
     _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, story, colours)
     _nearness(figure.add_subplot(grid[1, 0:2]), level, story, colours)
-    right = grid[:, 2].subgridspec(2, 1, hspace=0.42)
-    _differences(figure.add_subplot(right[0]), level, story)
-    _tug_of_war(figure.add_subplot(right[1]), level, story, colours)
+    _right_column(figure, grid[:, 2], facts, story, colours)
     figure.text(0.02, 0.014, LEGEND, fontsize=8.5, color=PALE_INK)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=_DPI, metadata={"Software": None} if path.suffix == ".png" else None)
+    save(figure, path)
+
+
+def _right_column(
+    figure: Figure, spec: SubplotSpec, facts: DecisionFacts, story: RlaStory | None, colours: Mapping[str, str]
+) -> None:
+    """What mattered: at the level that decided, with the level above where there is one."""
+    level, mid = facts.basic, facts.mid
+    if mid is not None and facts.asks_at == MID:
+        right = spec.subgridspec(2, 1, hspace=0.3, height_ratios=(2.0, 1.0))
+        draw_mid(figure.add_subplot(right[0]), mid, colours)
+        _differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID)
+        return
+    rows = _FEATURES if mid is None else _FEATURES_BELOW_MID
+    if mid is None:
+        right = spec.subgridspec(2, 1, hspace=0.42)
+    else:
+        right = spec.subgridspec(3, 1, hspace=0.42, height_ratios=(1.5, 1.0, 1.0))
+        draw_mid(figure.add_subplot(right[0]), mid, colours)
+    _differences(figure.add_subplot(right[-2]), level, story, rows)
+    _tug_of_war(figure.add_subplot(right[-1]), level, story, colours, rows)
 
 
 def _heading(
@@ -105,7 +127,8 @@ def _situations(
     if story is not None:
         differing = [share.name for share in shares(level, story) if share.share >= _WORTH_POINTING]
         pointed_at = set([name for name in differing if name in sensors][:_POINTED_AT])
-    motion = WheelSpeeds(*facts.granted)
+    decided, granted = facts.decided, facts.granted
+    motion = granted if facts.latched else decided
     counts, averages = _halves(level.names, level.vector, sensors)
     draw_surroundings(
         here,
@@ -126,10 +149,12 @@ def _situations(
     draw_surroundings(there, robot, counts, averages, differing=pointed_at)
     says = "asks again" if story.asks else story.action
     there.set_title(f"As taught: {story.title}, {says}", fontsize=13, fontweight="bold", color=INK)
-    below = f"{fill(taught(story), 62)}\n{fill(used(story), 62)}"
+    below = f"{fill(taught(story), 72)}\n{fill(used(story), 72)}"
     there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=9, color=INK)
-    moving = f"{motion.left_m_s:+.2f} / {motion.right_m_s:+.2f} m/s"
-    here.text(0.5, -0.015, f"wheels: {moving}", transform=here.transAxes, ha="center", va="top", fontsize=9, color=INK)
+    moving = f"wheels: {granted.left_m_s:+.2f} / {granted.right_m_s:+.2f} m/s"
+    if facts.reasons and not facts.latched:
+        moving += f", on the way to {decided.left_m_s:+.2f} / {decided.right_m_s:+.2f}"
+    here.text(0.5, -0.015, moving, transform=here.transAxes, ha="center", va="top", fontsize=9, color=INK)
 
 
 def _mark(tip: Tip, colours: Mapping[str, str]) -> Mark:
@@ -162,7 +187,7 @@ def _nearness(axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Ma
     axes.set_ylim(-1.0, 1.0)
     axes.axvspan(0, radius, ymin=0.28, ymax=0.72, facecolor=_KNOWN, zorder=0)
     axes.plot([radius, radius], [-0.75, 0.75], color="#3f9b5c", linewidth=1.6, linestyle=(0, (4, 2)))
-    axes.text(radius, 0.82, f"R {far(radius)}", color="#2b7a45", fontsize=9.5, ha="center", va="bottom")
+    axes.text(radius + 0.006 * end, 0.5, f"R {far(radius)}", color="#2b7a45", fontsize=9.5, ha="left", va="bottom")
     for each in reversed(stories):
         if each.distance <= end:
             axes.plot(each.distance, 0, "o", markersize=7, color=_dot(each, colours), markeredgecolor="white", zorder=3)
@@ -198,10 +223,10 @@ def _dot(story: RlaStory, colours: Mapping[str, str]) -> str:
     return ASKS if story.asks else colours.get(story.action, STANDS)
 
 
-def _differences(axes: Axes, level: LevelFacts, story: RlaStory | None) -> None:
+def _differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows: int) -> None:
     """The features that made the distance what it is: their shares, and both values."""
     _bare(axes)
-    found = () if story is None else shares(level, story)[:_FEATURES]
+    found = () if story is None else shares(level, story)[:rows]
     if story is None or not found:
         axes.set_axis_off()
         return
@@ -229,16 +254,16 @@ def _differences(axes: Axes, level: LevelFacts, story: RlaStory | None) -> None:
             color=INK,
         )
     axes.set_xlim(-0.95 * highest, 1.2 * highest)
-    axes.set_ylim(_FEATURES - 0.4, -0.6)
+    axes.set_ylim(rows - 0.4, -0.6)
 
 
-def _tug_of_war(axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str]) -> None:
+def _tug_of_war(axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str], rows: int) -> None:
     """Which features speak for the one, which for the other."""
     _bare(axes)
     other = level.otherwise or level.runner_up
     if story is not None and other is not None and other.rla_id == story.rla_id:
         other = level.runner_up
-    found = () if story is None or other is None else pulls(level, story, other)[:_FEATURES]
+    found = () if story is None or other is None else pulls(level, story, other)[:rows]
     if story is None or other is None or not found:
         axes.set_axis_off()
         return
@@ -263,11 +288,12 @@ def _tug_of_war(axes: Axes, level: LevelFacts, story: RlaStory | None, colours: 
             fontsize=8,
             color=PALE_INK,
         )
-    axes.axvline(0, color=INK, linewidth=0.9, ymax=0.97, zorder=3)
-    axes.text(0.05 * widest, -0.62, f"for {story.rla_id}", ha="left", va="bottom", fontsize=9, color=INK)
-    axes.text(-0.05 * widest, -0.62, f"for {other.rla_id}", ha="right", va="bottom", fontsize=9, color=INK)
+    axes.plot([0, 0], [-0.45, len(found) - 0.55], color=INK, linewidth=0.9, zorder=3)
+    below = len(found) - 0.45
+    axes.text(0.05 * widest, below, f"for {story.rla_id}", ha="left", va="top", fontsize=9, color=INK)
+    axes.text(-0.05 * widest, below, f"for {other.rla_id}", ha="right", va="top", fontsize=9, color=INK)
     axes.set_xlim(-2.2 * widest, 1.1 * widest)
-    axes.set_ylim(_FEATURES - 0.4, -0.6)
+    axes.set_ylim(rows - 0.4, -0.6)
 
 
 def _bare(axes: Axes) -> None:

@@ -63,7 +63,7 @@ def beside(level: LevelFacts) -> list[str]:
 
 
 def would_change(found: tuple[Tip, ...], most: int = 3) -> list[str]:
-    """What would have had to be otherwise, the smallest change of one sensor first."""
+    """What would have had to be otherwise for the robot to do something else, the smallest change first."""
     return [
         f"{tip.sensor} ({tip.label}) at {tip.needed_counts} instead of {tip.counts} counts"
         f"{_metres(tip)}: {'the robot would ask' if tip.rla is None else _who(tip.rla)}"
@@ -92,15 +92,20 @@ def taught(story: RlaStory) -> str:
 
 def teaching_acts(story: RlaStory) -> tuple[Act, ...]:
     """The lessons that stand and made its action, oldest first; praise and blame left out."""
-    return tuple(act for act in story.acts if not act.undone and not act.reward)
+    return tuple(act for act in story.acts if act.changes)
 
 
 def used(story: RlaStory) -> str:
     """How often, and what teachers thought of it."""
-    since = "since it was first taught" if len(teaching_acts(story)) > 1 else "since"
-    text = f"Used {story.uses} times {since}" if story.uses != 1 else f"Used once {since}"
+    text = "Used " + times(story.uses if story.uses_since is None else story.uses_since)
+    if story.uses_since is None:
+        text += " since it was first taught"
+    elif story.uses_since == story.uses:
+        text += " since"
+    else:
+        text += f" since, {times(story.uses)} with the actions it had before"
     if story.rewards or story.punishments:
-        text += f"; praised {story.rewards} and blamed {story.punishments} times"
+        text += f"; praised {times(story.rewards)}, blamed {times(story.punishments)}"
         if story.value is not None:
             text += f", worth {story.value:.2f}"
     return f"{text}."
@@ -240,6 +245,11 @@ def _would(level: LevelFacts) -> list[str]:
     return [
         f"By itself it would ask: nearest is {_who(nearest)}, at {far(nearest.distance)} of R {far(nearest.radius)}."
     ]
+
+
+def times(count: int) -> str:
+    """How often."""
+    return ("never", "once", "twice")[count] if count < 3 else f"{count} times"
 
 
 def _who(story: RlaStory) -> str:

@@ -29,7 +29,7 @@ class FeaturePull:
     in_first: float
     in_second: float
     pull: float
-    """For the first one where it is positive: its part of what the squared distances differ by; all make 1 together."""
+    """For the first one where it is positive: its part of all that speaks for one or the other, -1 to 1."""
 
 
 def shares(level: LevelFacts, story: RlaStory) -> tuple[FeatureShare, ...]:
@@ -49,7 +49,7 @@ def shares(level: LevelFacts, story: RlaStory) -> tuple[FeatureShare, ...]:
 def pulls(level: LevelFacts, first: RlaStory, second: RlaStory) -> tuple[FeaturePull, ...]:
     """All features that speak for one of the two, loudest first."""
     difference = _squares(level, second) - _squares(level, first)
-    whole = abs(float(difference.sum()))
+    whole = float(np.abs(difference).sum())
     if not whole > 0 or not np.isfinite(whole):
         return ()
     order = np.argsort(-np.abs(difference), kind="stable").tolist()

@@ -123,12 +123,13 @@ def _wall(axes: Axes, sensor: SensorSettings, distance_m: float) -> None:
 def _label(axes: Axes, sensor: SensorSettings, distance_m: float, text: str, *, sees: bool) -> None:
     """Behind the wall that it sees; where it sees none, on its fan."""
     sideways = abs(math.sin(math.radians(sensor.heading_deg))) > 0.9
-    x, y = _along(sensor, distance_m + (0.03 if sideways else 0.07) if sees else 0.75 * distance_m)
+    x, y = _along(sensor, distance_m + (0.03 if sideways else 0.06) if sees else 0.75 * distance_m)
+    aside = sees and (sideways or sensor.heading_deg % 180 == 0) and x != 0
     axes.text(
         x,
         y,
         text,
-        ha="center" if not (sideways and sees) else "right" if x < 0 else "left",
+        ha="center" if not aside else "right" if x < 0 else "left",
         va="center",
         fontsize=9.5,
         fontweight="bold",
@@ -152,7 +153,7 @@ def _mark(axes: Axes, sensor: SensorSettings, mark: Mark, *, aside: bool) -> Non
         ha="center",
         va="center",
         fontsize=8.5,
-        color=mark.colour,
+        color=INK,
         zorder=8,
         arrowprops={"arrowstyle": "-", "color": mark.colour, "linewidth": 0.8},
         path_effects=[patheffects.withStroke(linewidth=2.5, foreground="white")],

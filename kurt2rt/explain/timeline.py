@@ -8,19 +8,11 @@ from itertools import groupby
 
 from hal.guard import SLEW_LIMIT
 from hal.robot_settings import RobotSettings
+from kurt2rt.explain.lesson_words import LessonWords
+from kurt2rt.explain.sentences import times
 from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.entries import DecisionEntry, TickEntry
-from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import (
-    BASIC,
-    Appraised,
-    KnowledgeMerged,
-    LessonRedone,
-    LessonUndone,
-    SessionBegun,
-    SessionEnded,
-    TeachingEvent,
-)
+from kurt2rt.rla.rla import BASIC, TeachingEvent
 
 
 class Kind(StrEnum):
@@ -52,7 +44,7 @@ class Stretch:
     worst: float = 0.0
     """Largest distance as a share of R; infinite where nothing was near."""
     guarded: dict[str, int] = field(default_factory=dict)
-    """In how many ticks the guard changed what was decided, by its reasons; the slew limit, which is everyday, left out."""
+    """In how many ticks the guard changed what was decided, by its reasons; but for the slew limit."""
 
     @property
     def lasts_s(self) -> float:
@@ -119,9 +111,15 @@ def timeline_of(
     from_s: float = 0.0,
     to_s: float = math.inf,
     every: int = 5,
+    known: Iterable[TeachingEvent] = (),
 ) -> Timeline:
-    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample."""
+    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample.
+
+    `known`: what had been taught before.
+    """
     reader = _Reader(robot, from_s, to_s, every)
+    for event in known:
+        reader.lessons.tell(event)
     for entry in entries:
         if not reader.take(entry):
             break
@@ -144,6 +142,7 @@ class _Reader:
         self._ticks = self._missed = 0
         self._before: int | None = None
         self._latched = False
+        self.lessons = LessonWords()
 
     @property
     def timeline(self) -> Timeline:
@@ -155,6 +154,7 @@ class _Reader:
             self._began_s = entry.now_s
         at_s = entry.now_s - self._began_s
         self._reckon(entry)
+        told = [self.lessons.tell(event) for event in entry.events]
         if at_s > self._to_s:
             return False
         if at_s < self._from_s:
@@ -171,7 +171,7 @@ class _Reader:
             self._stretches.append(last)
         last.to_s = at_s + self._period_s
         self._count(last, entry)
-        self._note(entry, at_s)
+        self._note(entry, told, at_s)
         if self._ticks % self._every == 0:
             self._samples.append(self._sample(entry, at_s))
         self._ticks += 1
@@ -198,9 +198,8 @@ class _Reader:
         for reason in _out_of_the_ordinary(entry):
             stretch.guarded[reason] = stretch.guarded.get(reason, 0) + 1
 
-    def _note(self, entry: TickEntry, at_s: float) -> None:
-        for event in entry.events:
-            self._notes.append(Note(at_s, "lesson", lesson_text(event)))
+    def _note(self, entry: TickEntry, told: Iterable[str], at_s: float) -> None:
+        self._notes += [Note(at_s, "lesson", text) for text in told]
         if entry.grant.latched and not self._latched:
             self._notes.append(Note(at_s, "alarm", ", ".join(entry.grant.reasons)))
         self._latched = entry.grant.latched
@@ -229,35 +228,19 @@ def summary(timeline: Timeline) -> str:
     for kind, word in words.items():
         lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
         if lasts_s > 0:
-            times = sum(each is kind for each, _ in groupby(stretch.kind for stretch in timeline.stretches))
-            often = f" ({times} times)" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            spells = sum(each is kind for each, _ in groupby(stretch.kind for stretch in timeline.stretches))
+            often = f" ({times(spells)})" if kind in (Kind.ASKS, Kind.STANDS) else ""
             parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
     lessons = sum(note.kind == "lesson" for note in timeline.notes)
     alarms = sum(note.kind == "alarm" for note in timeline.notes)
-    parts += [f"{lessons} lessons"] if lessons else []
-    parts += [f"{alarms} alarms"] if alarms else []
+    parts += [_counted(lessons, "lesson")] if lessons else []
+    parts += [_counted(alarms, "alarm")] if alarms else []
     parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
     return f"{whole_s:.1f} s: {', '.join(parts)}"
 
 
-def lesson_text(event: TeachingEvent) -> str:
-    """A teaching event in a few words, with who taught it."""
-    by = event.origin.teacher
-    match event:
-        case LessonUndone():
-            return f"{by} took a lesson back"
-        case LessonRedone():
-            return f"{by} had a lesson stand again"
-        case SessionBegun(name):
-            return f"session {name} begun by {by}"
-        case SessionEnded():
-            return f"session ended by {by}"
-        case Appraised(appraisal):
-            return f"{by} called it {appraisal}"
-        case KnowledgeMerged(source):
-            return f"{by} brought in lessons of {source}"
-        case _:
-            return f"{LessonRecord(event).text} ({by})"
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def _doing(entry: TickEntry) -> tuple[Kind, str]:

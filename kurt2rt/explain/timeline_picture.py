@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from kurt2rt.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
+from kurt2rt.explain.saving import save
 from kurt2rt.explain.timeline import Kind, Note, Sample, Stretch, Timeline, summary
 
-_DPI = 110
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _CURVE = "#3b4754"
 _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
@@ -58,8 +58,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
             lane.set_xticks([])
     lanes[-1].set_xlabel("s into the run", fontsize=9.5, color=PALE_INK)
     _legend(figure, timeline, colours)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=_DPI, metadata={"Software": None} if path.suffix == ".png" else None)
+    save(figure, path)
 
 
 def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:

@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from hal.robot import STANDSTILL
 from hal.robot_settings import InfraredSettings
-from kurt2rt.explain.facts import LevelFacts, RlaStory
+from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.definition import SituationDefinition, WheelSpeed
 from kurt2rt.perception.features import FeatureExtractor
+from kurt2rt.rla.rla import BASIC
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,14 +31,16 @@ class Tip:
     """Who answers then; None: the robot stands and asks."""
 
 
-def tips(
-    level: LevelFacts, counts: tuple[int, ...], definition: SituationDefinition, law: InfraredSettings
-) -> tuple[Tip, ...]:
+def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings) -> tuple[Tip, ...]:
     """For each sensor that can do it alone the smallest change, the smallest of all first.
 
-    `level`: the basic one, with all RLAs that may answer. The features are computed anew from the changed reading, so
-    extremes and orientations follow it; averages stay. A change of who answers without one of the action is none.
+    `facts`: with all RLAs that may answer. The features are computed anew from the changed reading, so extremes and
+    orientations follow it; averages stay. That another RLA says the same is no change. Empty where something else than
+    the situation decided.
     """
+    level, counts = facts.basic, facts.infrared_counts
+    if facts.latched or facts.asks_at != BASIC or facts.cause not in (Cause.RLA, Cause.HELD, Cause.UNKNOWN):
+        return ()
     stories = () if level.nearest is None else (level.nearest, *level.others)
     if not stories or not level.euclidean:
         return ()
@@ -46,10 +50,10 @@ def tips(
     width = len(definition.features)
     kept = [place for place, feature in enumerate(definition.features) if isinstance(feature, WheelSpeed)]
     found = []
+    spread = 1 + 2 * law.gain_spread_share
+    possible = set(range(round(law.floor_counts / spread), round(law.plateau_counts * spread) + 1))
     for place, sensor in enumerate(law.sensors):
-        readings = sorted(
-            set(range(law.plateau_counts + 1)) - {counts[place]}, key=lambda each: _off(each, counts[place])
-        )
+        readings = sorted(possible - {counts[place]}, key=lambda each: _off(each, counts[place]))
         vectors = np.tile(np.array(level.vector), (len(readings), 1))
         for row, reading in enumerate(readings):
             changed = (*counts[:place], reading, *counts[place + 1 :])

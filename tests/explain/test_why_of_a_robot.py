@@ -1,0 +1,137 @@
+"""A simulated robot is taught, and its decisions are looked into."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from kurt2rt.explain.collecting import facts_of
+from kurt2rt.explain.picture import draw_why
+from kurt2rt.explain.sentences import headline, taught
+from kurt2rt.layers.decision import Cause
+from kurt2rt.perception.features import FeatureExtractor
+from kurt2rt.rla.rla import Phase
+from tests.explain.helpers import ROBOT, Lesson
+from tests.teaching.helpers import correct, set_phase, stop, teach
+
+PNG = b"\x89PNG"
+FORWARD = 100
+"""Ticks."""
+
+
+@pytest.fixture
+def lesson() -> Iterator[Lesson]:
+    lesson = Lesson(seed=7)
+    yield lesson
+    lesson.close()
+
+
+@pytest.fixture
+def taught_lesson(lesson: Lesson) -> Lesson:
+    """One that knows forward and, farther on, where a wall comes near, a bow to the right."""
+    lesson.go_on(20)
+    lesson.go_on(FORWARD, teach("forward"))
+    lesson.go_on(1, set_phase(Phase.CORRECTIONS))
+    lesson.go_on(20, correct("bear_right"))
+    return lesson
+
+
+def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson, tmp_path: Path) -> None:
+    lesson.go_on(20)
+    facts = lesson.facts
+    assert (facts.cause, facts.basic.nearest, facts.basic.count) == (Cause.UNKNOWN, None, 0)
+    assert lesson.tips == ()
+    draw_why(facts, (), ROBOT, "nothing yet", tmp_path / "why.png")
+    assert (tmp_path / "why.png").read_bytes().startswith(PNG)
+
+
+def test_the_facts_are_those_of_the_decision(taught_lesson: Lesson) -> None:
+    record, facts = taught_lesson.records[-1], taught_lesson.facts
+    match = record.decision.match
+    assert match is not None
+    nearest = facts.basic.nearest
+    assert nearest is not None
+    assert (nearest.rla_id, nearest.distance, nearest.radius) == (match.rla.rla_id, match.distance, match.radius)
+    runner_up = facts.basic.runner_up
+    assert runner_up is not None
+    assert match.runner_up is not None
+    assert runner_up.rla_id == match.runner_up.rla_id
+    assert runner_up.distance == pytest.approx(match.runner_up_distance, rel=1e-4)
+    assert facts.basic.vector == tuple(record.situation.vector)
+    assert headline(facts) == record.decision.action
+
+
+def test_who_taught_it_when_and_how_often_it_was_used(taught_lesson: Lesson) -> None:
+    story = taught_lesson.facts.basic.driver
+    assert story is not None
+    assert story.action == "bear_right"
+    assert taught(story) == "RLA 2 taught: bear_right; 2026-11-22 03:10:05 UTC (tick 122), by Ann in phase 2."
+    assert (story.uses, story.uses_since) == (1, 1)
+
+
+def test_an_rla_whose_action_was_replaced_tells_instead_of_what(lesson: Lesson) -> None:
+    lesson.go_on(20)
+    lesson.go_on(1, teach("forward"))
+    lesson.go_on(1, set_phase(Phase.CORRECTIONS))
+    lesson.go_on(1, correct("back"))
+    story = lesson.facts.basic.nearest
+    assert story is not None
+    assert [act.text for act in story.acts] == ["RLA 1 taught: forward", "RLA 1 corrected: back instead of forward"]
+    assert story.uses_since is None  # its uses are counted over both actions
+
+
+def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_change_does_not(
+    taught_lesson: Lesson,
+) -> None:
+    facts, runtime = taught_lesson.facts, taught_lesson.runtime
+    extract = FeatureExtractor(runtime.definition, ROBOT.infrared.names)
+
+    def says(sensor: str, counts: int) -> str | None:
+        place = ROBOT.infrared.names.index(sensor)
+        changed = (*facts.infrared_counts[:place], counts, *facts.infrared_counts[place + 1 :])
+        vector = np.array(facts.basic.vector)
+        vector[: len(vector) // 2] = extract(changed, facts.decided)
+        match = runtime.level.system.match(vector)
+        return match.rla.action if match is not None and match.known else None
+
+    assert taught_lesson.tips
+    for tip in taught_lesson.tips:
+        step = 1 if tip.needed_counts > tip.counts else -1
+        assert says(tip.sensor, tip.counts) == facts.action
+        assert says(tip.sensor, tip.needed_counts) == (None if tip.rla is None else tip.rla.action)
+        assert says(tip.sensor, tip.needed_counts - step) == facts.action
+    changes = [abs(tip.needed_counts - tip.counts) for tip in taught_lesson.tips]
+    assert changes == sorted(changes)
+
+
+def test_where_a_stop_decided_no_reading_would_have_changed_it(taught_lesson: Lesson) -> None:
+    taught_lesson.go_on(2, stop())
+    assert taught_lesson.facts.stopped_because
+    assert taught_lesson.tips == ()
+
+
+def test_lessons_that_cannot_be_saved_are_among_the_facts(taught_lesson: Lesson) -> None:
+    taught_lesson.notebook.trouble = "the disk is full"
+    taught_lesson.go_on(1)
+    assert (taught_lesson.facts.cause, taught_lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
+
+
+def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:
+    few = facts_of(taught_lesson.runtime, taught_lesson.records[-1], lambda _: "", most=0)
+    assert few.basic.others == ()
+    assert few.basic.count == 2
+
+
+@pytest.mark.parametrize("ending", ["png", "svg"])
+def test_the_picture_shows_the_decision_and_is_the_same_each_time(
+    taught_lesson: Lesson, tmp_path: Path, ending: str
+) -> None:
+    facts, tips = taught_lesson.facts, taught_lesson.tips
+    for name in ("one", "two"):
+        draw_why(facts, tips, ROBOT, "a title", tmp_path / f"{name}.{ending}")
+    drawn = (tmp_path / f"one.{ending}").read_bytes()
+    assert drawn == (tmp_path / f"two.{ending}").read_bytes()
+    if ending == "svg":
+        for words in ("a title", "Now: tick 141", "As taught: RLA 2, bear_right", "Why not RLA 1, forward"):
+            assert words.encode() in drawn
