@@ -2,6 +2,7 @@
 
 import math
 import os
+import select
 import signal
 import socket
 import threading
@@ -20,6 +21,7 @@ _GIVES_UP_S = 0.9
 _KEPT_BACK_S = 0.2
 """Of that for what comes after the one who is patient."""
 _LAST_WORD_S = 0.05
+_STDERR = 2
 
 Act = Callable[[], object]
 
@@ -139,10 +141,9 @@ class Ending:
 def leave(waited_for: str) -> None:
     """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
     line = f"kurt2rt: ended without {waited_for}, which did not end in time; look at disk and network\n"
-    # A terminal may hang as well.
-    word = threading.Thread(target=os.write, args=(2, line.encode()), daemon=True)
-    word.start()
-    word.join(_LAST_WORD_S)
+    # A terminal may hang as well; one that takes something takes a short line.
+    if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
+        os.write(_STDERR, line.encode())
     os._exit(2)
 
 

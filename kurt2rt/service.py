@@ -45,8 +45,8 @@ _RECORDING_S = 2.0
 """For the disk to keep the end of the recording."""
 _JOURNAL_S = 10.0
 """For the disk to keep the last lessons, where nobody told the program to end."""
-_KEYS_S = 2.0
-"""The same for the counters of the teachers' messages."""
+_KEYS_S = 0.3
+"""For the counters of the teachers' messages, which the next start can do without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +146,7 @@ async def serve(
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 # The wheels first, also where the loop hangs.
                 acts = (lambda: robot.emergency_stop(_ENDS), runtime.scheduler.end, upkeep.notifier.stopping)
+                ending.waits_for = "its loop"
                 with quiet_gc(), short_turns(), watch, ending.first(*acts):
                     try:
                         await runtime.scheduler.run(ticks, after_tick)

@@ -120,6 +120,7 @@ class RobotProgram:
             self._printer = around.enter_context(Printer(ending.patience_s))
             last = anyio.run(self._serve)
             ending.waits_for = "the robot's bus and its logs"
+        ending.waits_for = "a thread that waits for the disk"
         # Else the interpreter walks all that there is once more, a third of a second, before the process ends.
         gc.freeze()
         count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"

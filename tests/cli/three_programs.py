@@ -48,7 +48,11 @@ class Onlooker:
                     if enough(seen[-1]):
                         return seen
                 await anyio.sleep(_LOOK_S)  # a bus tells nobody that a frame is there
-                self.frames += self._bus.drain()
+                self.look()
+
+    def look(self) -> None:
+        """Keep what passed until now."""
+        self.frames += self._bus.drain()
 
     def forget(self) -> None:
         """What passed until now is not looked at."""

@@ -1,0 +1,38 @@
+"""`kurt2rt run ...` in which one thing hangs for ever: python -m tests.service.hanging_program THING run ..."""
+
+import sys
+import threading
+from typing import Any, Never
+
+from kurt2rt.channel.endpoint import Endpoint
+from kurt2rt.channel.teachers import Teachers
+from kurt2rt.cli.main import main
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.recording.run_files import RunFiles
+from kurt2rt.rounds import Rounds
+
+
+def _hang(*_: Any, **__: Any) -> Never:
+    while True:
+        threading.Event().wait()
+
+
+async def _hang_in_the_loop(*_: Any) -> None:
+    _hang()
+
+
+def _let_hang(thing: str) -> None:
+    hangs: dict[str, tuple[type, str, object]] = {
+        "disk": (Journal, "checkpoint", _hang),
+        "recorder": (RunFiles, "tend", _hang),
+        "keys": (Teachers, "close", _hang),
+        "network": (Endpoint, "close", _hang_in_the_loop),
+        "loop": (Rounds, "save_statistics", _hang),
+    }
+    owner, name, replacement = hangs[thing]
+    setattr(owner, name, replacement)
+
+
+if __name__ == "__main__":
+    _let_hang(sys.argv.pop(1))
+    main()
