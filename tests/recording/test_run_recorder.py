@@ -5,6 +5,8 @@ import json
 import threading
 from pathlib import Path
 
+from mcap.reader import make_reader
+
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.attachments import KNOWLEDGE
 from kurt2rt.recording.disk import RealDisk, WritableFile
@@ -90,6 +92,11 @@ def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tm
     segments = segments_in(tmp_path / NAME)
     assert len(segments) > 2
     for segment in segments:
+        with segment.open("rb") as file:
+            summary = make_reader(file, validate_crcs=True).get_summary()
+        assert summary is not None
+        assert summary.chunk_indexes
+        assert {channel.topic for channel in summary.channels.values()} >= {TICK, SCAN, SCENE}
         assert decode_head(SegmentReader(segment).head().metadata[RUN_METADATA]) == HEAD
     assert SegmentReader(segments[1]).head().attachments == {}
     assert [each.tick for each in entries_of(tmp_path / NAME)] == [record.tick for record in desk.records]
