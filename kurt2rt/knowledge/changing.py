@@ -34,11 +34,11 @@ def write(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics |
     `saved`: the statistics to go on from; those of the file unless given.
     """
     before, saved = journal.events(), saved or journal.statistics()
-    after = _worths_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
+    after = worths_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
     journal.append_and_checkpoint(entries, after)
 
 
-def _worths_after(
+def worths_after(
     before: Sequence[TeachingEvent], new: Sequence[TeachingEvent], saved: Statistics, dimensions: int
 ) -> Statistics:
     """What the statistics become, by the same account as a robot keeps."""

@@ -6,6 +6,7 @@ from kurt2rt.rla.rla import (
     CRITIC,
     ActionReplaced,
     Appraised,
+    LessonRedone,
     LessonUndone,
     Origin,
     Phase,
@@ -103,6 +104,9 @@ def test_what_was_taken_back_was_never_said() -> None:
     one.hear(LessonUndone("mistaken", origin()))
     one.hear(LessonUndone("nobody heard of", origin()))
     assert (one.share, one.heard_of(-1)) == (1.0, 2)
+    one.hear(LessonRedone("mistaken", origin()))
+    one.hear(LessonRedone("nobody heard of", origin()))
+    assert one.share_of(-1) == 2 / 3
 
 
 def test_sessions_say_nothing_and_an_appraisal_of_other_settings_neither() -> None:

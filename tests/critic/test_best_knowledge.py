@@ -8,6 +8,7 @@ from kurt2rt.critic.settings import BestSettings
 from kurt2rt.rla.rla import (
     CRITIC,
     ActionReplaced,
+    LessonRedone,
     LessonUndone,
     Phase,
     Rla,
@@ -98,6 +99,7 @@ def test_what_was_undone_by_hand_is_not_undone_again() -> None:
     kept.changed(created(1, "first"))
     kept.changed(created(2, "second"))
     kept.changed(LessonUndone("second", origin()))
+    kept.changed(LessonRedone("second", origin()))  # by hand, too: a person wants it
     kept.changed(SessionBegun("monday", origin()))
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 

@@ -4,6 +4,7 @@ import typer
 
 from kurt2rt.cli.knowledge.branch import branch
 from kurt2rt.cli.knowledge.check import check
+from kurt2rt.cli.knowledge.compact import compact
 from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.export import export, import_, key
 from kurt2rt.cli.knowledge.graph import graph
@@ -21,5 +22,5 @@ knowledge = typer.Typer(
 )
 knowledge.command("list")(list_files)
 knowledge.command("import")(import_)
-for _command in (show, lessons, check, undo, redo, branch, merge, diff, export, table, graph, key):
+for _command in (show, lessons, check, undo, redo, branch, merge, diff, export, key, compact, table, graph):
     knowledge.command()(_command)

@@ -1,10 +1,12 @@
 """`kurt2rt knowledge undo` and `redo`."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
+from kurt2rt.care.preview import preview_undo
+from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, Recordings, replaying, say
 from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.rla.lesson_book import LessonRecord
@@ -20,14 +22,21 @@ def undo(
         str | None,
         typer.Option(help="All lessons of this teacher that stand, newest first; the critic's are of: critic."),
     ] = None,
+    preview: Annotated[
+        bool, typer.Option("--preview", help="Change nothing: tell what it would have changed in recorded runs.")
+    ] = False,
+    recordings: Recordings = Path("var/runs"),
 ) -> None:
     """Take a lesson back, or all of one teacher: what it made, changed, ended or rewarded is as it was before."""
+    if of is not None and lesson is not None:
+        raise typer.BadParameter("give --lesson or --of, not both")
+    if preview:
+        _preview(file, lesson, of, recordings)
+        return
     if of is None:
         undone: tuple[LessonRecord, ...] = (undo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()),)
-    elif lesson is None:
-        undone = undo_lessons_of(file, of, teacher=TEACHER, stamp=utc_now())
     else:
-        raise typer.BadParameter("give --lesson or --of, not both")
+        undone = undo_lessons_of(file, of, teacher=TEACHER, stamp=utc_now())
     for record in undone:
         say(f"{file}: undone: {_told(record)}")
     if of is not None:
@@ -43,6 +52,20 @@ def redo(
 ) -> None:
     """Let a lesson stand again that was undone, where its RLA is still as the lesson found it."""
     say(f"{file}: stands again: {_told(redo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()))}")
+
+
+def _preview(file: Path, lesson: str | None, of: str | None, recordings: Path) -> None:
+    with replaying() as report:
+        shown = preview_undo(file, lesson, of, recordings, report)
+        stretches = list(shown.stretches)
+    for record in shown.lessons:
+        say(f"{file}: would be undone: {_told(record)}")
+    for each in stretches:
+        say(f"{each.run}: {each.from_s:.2f} to {each.to_s:.2f} s: {each.after}, instead of {each.before}")
+    ticks = sum(each.ticks for each in stretches)
+    for note in shown.runs.notes:
+        say(f"not tried: {note}")
+    say(f"{ticks} decisions of {len(shown.runs.runs)} recorded runs would have been others; nothing was changed")
 
 
 def _told(record: LessonRecord) -> str:

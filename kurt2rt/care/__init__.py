@@ -1,0 +1,1 @@
+"""What a change of knowledge would do, tried on recorded runs before it is made."""

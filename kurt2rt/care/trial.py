@@ -1,0 +1,137 @@
+"""A change of knowledge tried on recorded runs: what the robot would have done with it, and without."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.opening import binding_of
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.layers.decision import Cause
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.run_folder import runs_in, segments_in
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import Replay
+from kurt2rt.replay.run import Run
+from kurt2rt.replay.shadow import Answer, Answers, Shadow
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.tick import TickRecord
+
+Report = Callable[[str, int], None]
+"""Called now and then with a run's name and how many of its ticks were tried."""
+
+_REPORT_EVERY = 500
+_BY_KNOWLEDGE = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
+"""Else a teacher drives, or the robot stands whatever it knows."""
+
+
+class Known(NamedTuple):
+    """All that a robot begins with."""
+
+    events: tuple[TeachingEvent, ...]
+    statistics: Statistics
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Ticks on end in which the same would have been decided otherwise."""
+
+    run: str
+    from_s: float
+    to_s: float
+    """When the last of them began."""
+    ticks: int
+    before: str
+    """What the knowledge says there without the change, in words."""
+    after: str
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Recorded runs that a change is tried on."""
+
+    runs: tuple[Run, ...]
+    left_out: tuple[str, ...]
+    """Why others cannot be, a sentence each."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was not tried, and why; of a run with a gap that is known once it was replayed."""
+        gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.whole)
+        return (*self.left_out, *gaps)
+
+
+def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
+    """The runs in a folder of recordings, or the one that `folder` is, that this knowledge could have been used in.
+
+    Raises KnowledgeError where there is none.
+    """
+    paths = [each for each in runs_in(folder) if segments_in(each)] or [folder]
+    if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
+        raise KnowledgeError(f"{folder}: holds no recorded run; kurt2rt run makes them, --runs says where they are")
+    runs, left_out = list[Run](), list[str]()
+    for path in paths:
+        try:
+            run = read_run(path)
+            why_not = _why_not(run, binding)
+        except RecordingError as error:
+            why_not = str(error)
+        if why_not is None:
+            runs.append(run)
+        else:
+            left_out.append(why_not)
+    if not runs:
+        raise KnowledgeError(f"{folder}: none of its runs can be tried: {left_out[0]}")
+    return Runs(tuple(runs), tuple(left_out))
+
+
+def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tuple[TickRecord, list[Answers]]]:
+    """What each of these says to the situations of each tick of a run, as they were, and that tick."""
+    replay = Replay(run)
+    shadows = [Shadow(run, each.events, each.statistics) for each in knowledge]
+    for number, (_, record) in enumerate(replay, start=1):
+        if number % _REPORT_EVERY == 1:
+            report(run.name, number)
+        yield record, [shadow.look(record, replay.runtime) for shadow in shadows]
+
+
+def differing(runs: Iterable[Run], before: Known, after: Known, report: Report) -> Iterator[Stretch]:
+    """Where the robot would drive, or ask, otherwise, in ticks in which it was its knowledge that decided."""
+    for run in runs:
+        stretch: Stretch | None = None
+        for record, (old, new) in answers(run, (before, after), report):
+            now: Stretch | None = None
+            if record.decision.cause in _BY_KNOWLEDGE and _actions(old) != _actions(new):
+                now = Stretch(run.name, record.now_s, record.now_s, 1, told(old), told(new))
+            if stretch is not None and now is not None and (now.before, now.after) == (stretch.before, stretch.after):
+                stretch = replace(stretch, to_s=now.to_s, ticks=stretch.ticks + 1)
+                continue
+            if stretch is not None:
+                yield stretch
+            stretch = now
+        if stretch is not None:
+            yield stretch
+
+
+def told(answers: Answers) -> str:
+    """What they say in a few words: the mid level first, where there is one."""
+    return ", ".join(_told(each) for each in (answers.mid, answers.basic) if each is not None)
+
+
+def _told(answer: Answer) -> str:
+    return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
+
+
+def _actions(answers: Answers) -> tuple[str | None, str | None]:
+    return answers.basic.action, None if answers.mid is None else answers.mid.action
+
+
+def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
+    try:
+        with run.settings():
+            require_same(binding, binding_of(run.robot, run.task), Path(run.name), lambda _: False)
+    except KnowledgeError as error:
+        return str(error)
+    return None

@@ -1,0 +1,35 @@
+"""`kurt2rt knowledge compact`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kurt2rt.care.compacting import TEACHER
+from kurt2rt.care.compacting import compact as delete_unneeded
+from kurt2rt.cli.knowledge.shared import KnowledgeFile, Recordings, replaying, say
+from kurt2rt.knowledge.writer import utc_now
+
+
+def compact(
+    file: KnowledgeFile,
+    recordings: Recordings = Path("var/runs"),
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would be deleted.")] = False,
+) -> None:
+    """Delete the RLAs that no recorded decision needs, when a replay has proved it.
+
+    All decisions of all runs must come out the same without them. Deletions are
+    lessons that can be undone.
+    """
+    with replaying() as report:
+        done = delete_unneeded(file, recordings, stamp=utc_now(), dry_run=dry_run, report=report)
+    for rla in done.deleted:
+        say(f"{'would delete' if dry_run else 'deleted'}: {rla.title}: {rla.action}")
+    for behaviour in done.other_behaviours:
+        say(f"{behaviour or 'what is taught'} was wanted in no run: its RLAs stay")
+    for note in done.notes:
+        say(f"not tried: {note}")
+    tried = f"tried on {done.ticks} ticks of {done.runs} runs"
+    say(f"{file}: {len(done.deleted)} RLAs not needed, {done.kept} kept; {tried}")
+    if done.deleted and not dry_run:
+        say(f"to take all of that back: kurt2rt knowledge undo {file} --of {TEACHER}")
