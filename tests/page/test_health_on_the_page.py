@@ -40,6 +40,18 @@ def falls_ill(lesson: Lesson) -> None:
     lesson.show(tick=state.tick + 100)
 
 
+@pytest.mark.parametrize("size", [PORTRAIT, SMALL])
+def test_on_a_phone_the_line_shows_all_of_it(lesson: Lesson, size: tuple[int, int]) -> None:
+    phone = lesson.phone
+    phone.turn(size)
+    lesson.show(late_p99_ms=12.3, missed_ticks=123, lessons=123, clock_s=3671.0)
+    lesson.reads("#health", "late 12.3 ms" if size == SMALL else "late 12.3 ms, missed 123")
+    phone.show(f"12-line-{size[0]}x{size[1]}")
+    cut = phone.run("const e = document.querySelector('#health'); return e.scrollWidth - e.clientWidth;")
+    assert cut <= 0
+    phone.turn(PORTRAIT)
+
+
 def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) -> None:
     phone = lesson.phone
     assert phone.text("#health") == "late 0.20 ms, missed 0"

@@ -23,11 +23,12 @@ export class Health {
   // The line in the bar: how late the loop is, or how much is wrong.
   show(state) {
     const troubles = this.#report?.troubles ?? [];
-    const line = $("health");
+    const [line, missed] = [$("health"), $("missed")];
     line.classList.toggle("warns", troubles.length > 0);
     line.classList.toggle("urgent", troubles.some(({ urgent }) => urgent));
-    const late = `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms, missed ${state.missed_ticks}`;
-    setText(line, troubles.length === 0 ? late : troubles.length === 1 ? "1 trouble" : `${troubles.length} troubles`);
+    const late = `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms`;
+    setText($("late"), troubles.length === 0 ? late : troubles.length === 1 ? "1 trouble" : `${troubles.length} troubles`);
+    setText(missed, troubles.length ? "" : `, missed ${state.missed_ticks}`);
   }
 
   // What is wrong for which the robot stands, or that puts lessons at risk, but for what the picture says itself.
