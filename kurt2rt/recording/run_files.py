@@ -8,7 +8,7 @@ from pathlib import Path
 from foxglove import Context
 
 from kurt2rt.recording.disk import Disk, RealDisk
-from kurt2rt.recording.run_folder import make_room, segment_name, used_bytes
+from kurt2rt.recording.run_folder import later_name, make_room, segment_name, used_bytes
 from kurt2rt.recording.segment import Segment
 
 _MEGA = 1_000_000
@@ -67,7 +67,7 @@ class RunFiles:
         self.trouble = ""
         """Why nothing is kept at the moment, in a line; empty while all is."""
         self.given_up = 0
-        """Segments whose last messages were lost, because the disk failed for too long."""
+        """Segments whose last messages were lost, because the disk failed for too long, or somebody deleted them."""
 
     @property
     def takes(self) -> bool:
@@ -77,6 +77,9 @@ class RunFiles:
     def tend(self) -> bool:
         """Once a second: have the disk keep what came, begin files and end them; whether all is kept now."""
         try:
+            if self._segment is not None and not self._segment.path.exists():
+                self._give_up()  # somebody has deleted it
+                self._attached = False
             if self._segment is None:
                 return self._begin()
             self._segment.save()
@@ -100,7 +103,7 @@ class RunFiles:
                 self.trouble = f"the end of the recording is missing ({error}); look at the disk of {self._recordings}"
 
     def _begin(self) -> bool:
-        if self.run is None:
+        if self.run is None or not self.run.is_dir():
             self.run = self._make_folder()
         if not self._has_room():
             return False
@@ -161,11 +164,12 @@ class RunFiles:
         return False
 
     def _make_folder(self) -> Path:
+        name = later_name(self._name, self._recordings)
         for number in range(1, _MOST_OF_A_NAME):
-            path = self._recordings / (self._name if number == 1 else f"{self._name}-{number}")
+            path = self._recordings / (name if number == 1 else f"{name}-{number}")
             try:
                 self._disk.make_folder(path)
             except FileExistsError:  # started twice in a second
                 continue
             return path
-        raise FileExistsError(f"{self._recordings / self._name}: so many runs of this name are there already")
+        raise FileExistsError(f"{self._recordings / name}: so many runs of this name are there already")

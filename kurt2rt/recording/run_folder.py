@@ -1,7 +1,7 @@
 """Folders of recorded runs: what they are called, which is the newest, and which go when there is no more room."""
 
 import re
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from kurt2rt.recording.disk import is_being_written
@@ -9,12 +9,30 @@ from kurt2rt.recording.error import RecordingError
 
 SEGMENT_ENDING = ".mcap"
 _RUN_NAME = re.compile(r"\d{8}T\d{6}Z-.+")
+_STAMP = "%Y%m%dT%H%M%SZ"
+_STAMP_LETTERS = 16
 _SEGMENT_NAME = re.compile(r"\d{4,}\.mcap")
 
 
 def run_name(started: datetime, task: str) -> str:
     """Name of a run's folder: runs of one folder are in the order of their names. `started`: with its time zone."""
-    return f"{started.astimezone(UTC):%Y%m%dT%H%M%SZ}-{task}"
+    return f"{started.astimezone(UTC):{_STAMP}}-{task}"
+
+
+def later_name(name: str, recordings: Path) -> str:
+    """The same name of a run's folder, or one a second after the newest run's, where the wall clock was set back.
+
+    Runs stay in the order of recording: the newest is the one to replay, and the last to go. Raises OSError.
+    """
+    runs = runs_in(recordings)
+    newest = runs[-1].name[:_STAMP_LETTERS] if runs else ""
+    if newest <= name[:_STAMP_LETTERS]:
+        return name
+    try:
+        later = datetime.strptime(newest, _STAMP).replace(tzinfo=UTC) + timedelta(seconds=1)
+    except (ValueError, OverflowError):  # a folder that somebody else named
+        return name
+    return f"{later:{_STAMP}}{name[_STAMP_LETTERS:]}"
 
 
 def segment_name(number: int) -> str:

@@ -1,0 +1,43 @@
+"""`kurt2rt ...` by a wall clock that is set while it runs: the first argument is a file that says by how many seconds.
+
+Everything else keeps its time, as it does when somebody sets the clock of a machine.
+"""
+
+import datetime
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Self
+
+
+class _WallClock:
+    def __init__(self, file: Path) -> None:
+        self._file = file
+
+    @property
+    def off_by_s(self) -> int:
+        return int(self._file.read_text(encoding="ascii"))
+
+
+def set_clocks_by(file: Path) -> None:
+    """From now on whatever looks at the wall clock is told the wrong time. Before anything else is imported."""
+    wall_clock = _WallClock(file)
+    right_s: Callable[[], float] = time.time
+    right_ns: Callable[[], int] = time.time_ns
+
+    class WrongDatetime(datetime.datetime):
+        @classmethod
+        def now(cls, tz: datetime.tzinfo | None = None) -> Self:
+            return super().now(tz) + datetime.timedelta(seconds=wall_clock.off_by_s)
+
+    datetime.datetime = WrongDatetime  # type: ignore[misc]
+    time.time = lambda: right_s() + wall_clock.off_by_s
+    time.time_ns = lambda: right_ns() + wall_clock.off_by_s * 1_000_000_000
+
+
+if __name__ == "__main__":
+    set_clocks_by(Path(sys.argv.pop(1)))
+    from kurt2rt.cli.main import main
+
+    main()

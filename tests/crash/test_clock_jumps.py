@@ -1,0 +1,106 @@
+"""The wall clock is set forward and back by an hour while the robot works: nothing but the stamps goes by it."""
+
+import signal
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+
+import anyio
+import anyio.to_thread
+
+from kurt2rt.knowledge.fold import check_knowledge
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.recording.run_folder import find_run, segments_in
+from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.replay.comparing import compare
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import Replay
+from kurt2rt.teaching.client import TeacherClient
+from tests.cli.helpers import Running, running
+from tests.cli.three_programs import LONG_ENOUGH_S, state_where, teacher_of, until_it_drives
+from tests.crash.wall_clock import HOUR_S, WallClock
+
+BUS = "shared:clock-jumps"
+ON_THE_SPOT, THE_OTHER_WAY = "spin_left", "spin_right"
+LATE_S = 600.0
+"""A stamp is right that is so near to the wall clock."""
+
+
+@asynccontextmanager
+async def a_robot(folder: Path) -> AsyncIterator[None]:
+    with running("sim", "--bus", BUS, folder=folder) as sim:
+        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {BUS}")
+        yield
+
+
+async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None:
+    """A correction counts, and is stamped by the wall clock as it is now; the robot drives by it."""
+    await until_it_drives(we, ON_THE_SPOT)
+    with anyio.fail_after(LONG_ENOUGH_S):
+        async for state in we.states():
+            if state.rla is not None:
+                action = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT
+                if (await we.correct(action, of=state.tick)).accepted:
+                    break
+            elif state.stopped_because:
+                await we.resume()
+    seen = await state_where(we, lambda state: state.nearest_action == action and state.taught_at != "")
+    off_by_s = (datetime.fromisoformat(seen.taught_at) - datetime.now(UTC)).total_seconds()
+    assert abs(off_by_s - wall_clock.off_by_s) < LATE_S
+
+
+def require_kept(folder: Path, lessons: int) -> None:
+    with Journal.read_only(folder / "mine.knowledge") as journal:
+        assert check_knowledge(journal) == []
+        entries = journal.entries()
+    assert len(entries) >= lessons
+    assert [entry.sequence for entry in entries] == list(range(1, len(entries) + 1))
+
+
+def require_even(run_folder: Path) -> None:
+    """Its times only grow, it is whole, and comes out the same again."""
+    times_ns = [
+        message.time_ns for each in segments_in(run_folder) for message in SegmentReader(each).messages(("/tick",))
+    ]
+    assert times_ns == sorted(times_ns)
+    assert times_ns[-1] - times_ns[0] < LATE_S * 1e9
+    run = read_run(run_folder)
+    for entry, record in Replay(run):
+        assert compare(entry, record) == []
+    assert run.whole
+    assert not run.trouble
+
+
+async def end(robot: Running) -> None:
+    said = await anyio.to_thread.run_sync(robot.end, signal.SIGTERM)
+    assert said.exit_code == 0, said
+    assert "Traceback" not in said.err
+
+
+async def test_lessons_and_recordings_outlive_a_wall_clock_that_is_set(tmp_path: Path) -> None:
+    wall_clock = WallClock(tmp_path)
+    words = ("run", "--robot", BUS, "--port", "0", "--knowledge", "mine.knowledge", "--record", "runs")
+    async with a_robot(tmp_path):
+        with wall_clock.running(*words, folder=tmp_path) as robot:
+            async with teacher_of(robot, tmp_path) as we:
+                assert (await we.take()).accepted
+                await taught_the_other_way(we, wall_clock)
+                wall_clock.jump(HOUR_S)
+                await taught_the_other_way(we, wall_clock)
+                wall_clock.jump(-2 * HOUR_S)
+                await taught_the_other_way(we, wall_clock)
+            await end(robot)
+        first = find_run(None, tmp_path / "runs")
+        require_kept(tmp_path, lessons=4)
+        require_even(first)
+
+        with wall_clock.running(*words, folder=tmp_path) as robot:
+            async with teacher_of(robot, tmp_path) as we:
+                assert (await we.take()).accepted
+                await taught_the_other_way(we, wall_clock)
+            await end(robot)
+        newest = find_run(None, tmp_path / "runs")
+        assert newest != first, "it was recorded at an earlier time by the wall clock, and is the newest all the same"
+        require_kept(tmp_path, lessons=5)
+        require_even(newest)

@@ -1,0 +1,46 @@
+"""The wall clock of a program that is set forward and back while it runs."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tests.cli.helpers import Running
+
+HOUR_S = 3600
+_ROOT = Path(__file__).parents[2]
+
+
+class WallClock:
+    """How far it is off."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = folder / "wall-clock"
+        self.off_by_s = 0
+        self.jump(0)
+
+    def jump(self, by_s: int) -> None:
+        """Set it forward, or back."""
+        self.off_by_s += by_s
+        fresh = self._file.with_suffix(".new")
+        fresh.write_text(str(self.off_by_s), encoding="ascii")
+        fresh.replace(self._file)
+
+    @contextmanager
+    def running(self, *words: str, folder: Path) -> Iterator[Running]:
+        """Start `kurt2rt ...` in a folder, by this clock; what is left of it at the end is killed."""
+        with subprocess.Popen(
+            [sys.executable, "-m", "tests.crash.by_another_clock", str(self._file), *words],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=folder,
+            env={**os.environ, "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(_ROOT)},
+        ) as process:
+            try:
+                yield Running(process)
+            finally:
+                process.kill()
