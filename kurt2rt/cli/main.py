@@ -80,6 +80,7 @@ _COMMANDS = (
     "exam",
     "paper",
     "phases",
+    "replay",
     "why",
     "knowledge",
     "surprise",

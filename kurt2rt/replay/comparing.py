@@ -18,11 +18,13 @@ class Difference(NamedTuple):
     recorded: object
     replayed: object
 
+    @property
+    def in_words(self) -> str:
+        """What was, and what is."""
+        return f"{self.field} was {_said(self.recorded)}, and is {_said(self.replayed)} now"
+
     def __str__(self) -> str:
-        return (
-            f"at {self.now_s:.2f} s (tick {self.tick}) {self.field} was {_said(self.recorded)}, "
-            f"and is {_said(self.replayed)} now"
-        )
+        return f"at {self.now_s:.2f} s (tick {self.tick}) {self.in_words}"
 
 
 def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:

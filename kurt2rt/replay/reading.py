@@ -1,5 +1,6 @@
 """Reads a recorded run from its files."""
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -25,7 +26,9 @@ def read_run(path: Path) -> Run:
     head = files.readers[0].head()
     if RUN_METADATA not in head.metadata:
         raise RecordingError(f"{segments[0]}: says of no run of kurt2rt, or is torn at its very beginning")
-    return Run(str(path), decode_head(head.metadata[RUN_METADATA]), head.attachments, files.ticks, files.torn)
+    return Run(
+        str(path), decode_head(head.metadata[RUN_METADATA]), head.attachments, files.ticks, files.torn, files.ends_s
+    )
 
 
 class _Files:
@@ -38,6 +41,14 @@ class _Files:
         for reader in self.readers:
             for message in reader.messages({_TICK}):
                 yield decode_tick(message.data)
+
+    def ends_s(self) -> float:
+        """Time of the last tick that can be read; 0 where there is none."""
+        for reader in reversed(self.readers):
+            newest = deque(reader.messages({_TICK}), maxlen=1)
+            if newest:
+                return decode_tick(newest[0].data).now_s
+        return 0.0
 
     def torn(self) -> str:
         """What the last that was torn says; a tick that went missing between two is told as a gap."""

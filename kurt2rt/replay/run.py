@@ -37,8 +37,11 @@ class Run:
         attachments: Mapping[str, bytes],
         read: Callable[[], Iterator[TickEntry]],
         torn: Callable[[], str] = str,
+        ends_s: Callable[[], float] = float,
     ) -> None:
         """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
+
+        `ends_s`: time of the last tick, for those who tell how far they are.
 
         Raises RecordingError where what a replay needs is missing or damaged.
         """
@@ -47,6 +50,7 @@ class Run:
         self._attachments = attachments
         self._read = read
         self._torn = torn
+        self._ends_s = ends_s
         self._gap = ""
         self._check()
 
@@ -54,6 +58,11 @@ class Run:
     def trouble(self) -> str:
         """Why `entries` ended before the run did, in a sentence; empty where it did not, as far as it has come."""
         return self._gap or self._torn()
+
+    @property
+    def lasts_s(self) -> float:
+        """Time of the runtime's clock at the last tick; 0 where nobody knows. Reads the last segment."""
+        return self._ends_s()
 
     @property
     def whole(self) -> bool:

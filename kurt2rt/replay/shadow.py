@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,8 @@ from numpy.typing import NDArray
 
 from hal.settings import SettingsError
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.definition import load_situation
@@ -84,6 +87,15 @@ class Shadow:
         The basic level answers for the behaviour that was wanted then.
         """
         return _answers(self._system, self._worths.choice, record, runtime)
+
+
+def shadow_of(run: Run, knowledge: Path) -> Shadow:
+    """The knowledge in a file, which may be that of a robot that runs. Raises RecordingError, KnowledgeError."""
+    with run.settings():
+        events = read_lessons(knowledge, run.robot, run.task)
+    with Journal.read_only(knowledge) as journal:
+        statistics = journal.statistics()
+    return Shadow(run, events, statistics)
 
 
 def answers_then(record: TickRecord, runtime: Runtime) -> Answers:

@@ -43,6 +43,7 @@ def test_every_command_is_found() -> None:
             "exam",
             "paper",
             "phases",
+            "replay",
             "knowledge",
             "show",
             "lessons",

@@ -1,0 +1,237 @@
+"""`kurt2rt replay`."""
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.progress import job_bars
+from kurt2rt.recording.run_folder import find_run
+from kurt2rt.replay.counterfactual import Counterfactual, Stretch, counterfactual
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import ReplayedTick
+from kurt2rt.replay.run import Run
+from kurt2rt.replay.shadow import Answer, shadow_of
+from kurt2rt.replay.verdict import Verdict, verify
+from kurt2rt.rla.rla import BASIC
+from kurt2rt.service_settings import load_service
+
+_WIDE = 120
+_TELL_EVERY_TICKS = 100
+_DIFFERENCES = 10
+
+OnTick = Callable[[ReplayedTick], None]
+
+
+def replay(
+    run: Annotated[
+        Path | None,
+        typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
+    ] = None,
+    knowledge: Annotated[
+        Path | None,
+        typer.Option(
+            "--with",
+            metavar="KNOWLEDGE",
+            help="Have this knowledge file look on: list where it would have decided otherwise.",
+        ),
+    ] = None,
+    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
+    limit: Annotated[int, typer.Option(min=1, help="With --with: list so many stretches, the longest.")] = 30,
+    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON; all stretches.")] = False,
+    settings: Annotated[
+        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+    ] = "default",
+) -> None:
+    """Replay a recorded run, and compare every decision and all that is known, bit for bit.
+
+    Senses, commands and the settings of the run go through the same tick again;
+    nothing moves, and no knowledge file is touched. Ends with 1, and says what
+    came out otherwise first, where something did.
+
+    With --with other knowledge decides on the very same situations, without
+    acting: what would an undo, or another afternoon of teaching, have changed?
+
+        kurt2rt replay
+        kurt2rt replay 20261122T031005Z-wall_following --with other.knowledge
+    """
+    found = read_run(find_run(run, runs or Path(load_service(settings).recordings)))
+    if knowledge is None:
+        _verify(found, as_json=as_json)
+    else:
+        _compare(found, knowledge, limit, as_json=as_json)
+
+
+def _verify(run: Run, *, as_json: bool) -> None:
+    with _bar(run) as on_tick:
+        verdict = verify(run, on_tick)
+    if as_json:
+        typer.echo(json.dumps(_verdict_as_json(run, verdict), indent=2))
+    else:
+        for line in _verdict_in_words(run, verdict):
+            typer.echo(line)
+    if not verdict.same or not verdict.whole:
+        raise typer.Exit(1)
+
+
+def _verdict_in_words(run: Run, verdict: Verdict) -> Iterator[str]:
+    yield _title(run)
+    if verdict.same:
+        yield (
+            f"the same: {verdict.ticks} ticks ({verdict.lasted_s:.1f} s) were decided again as they were, and what is "
+            f"known had the same hash {verdict.knowledge} times"
+        )
+    else:
+        first = verdict.differences[0]
+        yield f"not the same: after {verdict.ticks} ticks, at {first.now_s:.2f} s (tick {first.tick}):"
+        for each in verdict.differences[:_DIFFERENCES]:
+            yield f"  {each.in_words}"
+        if len(verdict.differences) > _DIFFERENCES:
+            yield f"  and {len(verdict.differences) - _DIFFERENCES} more"
+    if verdict.trouble:
+        yield verdict.trouble
+
+
+def _verdict_as_json(run: Run, verdict: Verdict) -> dict[str, Any]:
+    return {
+        "run": run.name,
+        "task": run.head.task,
+        "recorded_by": run.head.kurt2rt,
+        "same": verdict.same,
+        "ticks": verdict.ticks,
+        "lasted_s": verdict.lasted_s,
+        "knowledge_compared": verdict.knowledge,
+        "differences": [
+            {
+                "tick": each.tick,
+                "now_s": each.now_s,
+                "field": each.field,
+                "recorded": repr(each.recorded),
+                "replayed": repr(each.replayed),
+            }
+            for each in verdict.differences
+        ],
+        "whole": verdict.whole,
+        "trouble": verdict.trouble,
+    }
+
+
+def _compare(run: Run, knowledge: Path, limit: int, *, as_json: bool) -> None:
+    shadow = shadow_of(run, knowledge)
+    with _bar(run) as on_tick:
+        found = counterfactual(run, shadow, on_tick=on_tick)
+    if as_json:
+        typer.echo(json.dumps(_counterfactual_as_json(run, knowledge, found), indent=2))
+        return
+    typer.echo(_title(run))
+    for line in _shares(found, knowledge):
+        typer.echo(line)
+    if found.stretches:
+        _print_stretches(console_of(_WIDE), found, limit)
+    if found.trouble:
+        typer.echo(found.trouble)
+
+
+def _shares(found: Counterfactual, knowledge: Path) -> Iterator[str]:
+    decided = max(found.decided, 1)
+    yield f"{found.ticks} ticks, in {found.decided} of them knowledge had a say; with {knowledge}:"
+    for count, what in (
+        (found.other_action, "another action"),
+        (found.would_drive, "would drive where it asked"),
+        (found.would_ask, "would ask where it drove"),
+        (found.mid_otherwise, "another way at the mid level"),
+    ):
+        if count:
+            yield f"  {100 * count / decided:5.1f} %  {what} ({count} ticks)"
+    if found.same:
+        yield "  not one decision would have differed"
+
+
+def _print_stretches(console: Console, found: Counterfactual, limit: int) -> None:
+    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:limit]
+    title = "where it would have decided otherwise"
+    if len(found.stretches) > limit:
+        title += f": the longest {limit} of {len(found.stretches)} stretches"
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    for name in ("from s", "to s", "ticks"):
+        table.add_column(name, justify="right")
+    for name in ("was", "would be", "nearest of R"):
+        table.add_column(name)
+    for each in sorted(longest, key=lambda each: each.from_s):
+        table.add_row(*_row(each))
+    console.print(table)
+
+
+def _row(stretch: Stretch) -> tuple[str, ...]:
+    at = "" if stretch.level == BASIC else f" ({stretch.level} level)"
+    return (
+        f"{stretch.from_s:.2f}",
+        f"{stretch.to_s:.2f}",
+        str(stretch.ticks),
+        f"{_said(stretch.was)}{at}",
+        f"{_said(stretch.would_be)}{at}",
+        f"{stretch.was.share_of_radius:.2f}, would be {stretch.would_be.share_of_radius:.2f}",
+    )
+
+
+def _said(answer: Answer) -> str:
+    return "asks" if answer.rla is None else f"{answer.action} by {answer.rla.title}"
+
+
+def _counterfactual_as_json(run: Run, knowledge: Path, found: Counterfactual) -> dict[str, Any]:
+    return {
+        "run": run.name,
+        "knowledge": str(knowledge),
+        "same": found.same,
+        "ticks": found.ticks,
+        "decided": found.decided,
+        "other_action": found.other_action,
+        "would_drive": found.would_drive,
+        "would_ask": found.would_ask,
+        "mid_otherwise": found.mid_otherwise,
+        "stretches": [
+            {
+                "level": each.level,
+                "from_s": each.from_s,
+                "to_s": each.to_s,
+                "ticks": each.ticks,
+                "was": _answer_as_json(each.was),
+                "would_be": _answer_as_json(each.would_be),
+            }
+            for each in found.stretches
+        ],
+        "trouble": found.trouble,
+    }
+
+
+def _answer_as_json(answer: Answer) -> dict[str, Any]:
+    nearest = answer.nearest
+    return {
+        "action": answer.action,
+        "rla": None if answer.rla is None else answer.rla.rla_id,
+        "nearest": None if nearest is None else nearest.rla_id,
+        "share_of_radius": None if nearest is None else answer.share_of_radius,
+    }
+
+
+def _title(run: Run) -> str:
+    head = run.head
+    return f"{run.name}: task {head.task}, robot {head.robot} on {head.bus}, recorded by kurt2rt {head.kurt2rt}"
+
+
+@contextmanager
+def _bar(run: Run) -> Iterator[OnTick]:
+    whole_s = run.lasts_s
+    with job_bars() as report:
+
+        def on_tick(tick: ReplayedTick) -> None:
+            if tick.entry.number % _TELL_EVERY_TICKS == 0:
+                report("replay", tick.entry.now_s, max(whole_s, tick.entry.now_s))
+
+        yield on_tick
