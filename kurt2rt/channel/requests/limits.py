@@ -1,0 +1,17 @@
+"""The version of the wire contract, and how much of anything it takes."""
+
+VERSION = 4
+"""Of the wire contract: what /hello and /state hold. A device refuses another one and says what to do."""
+BOOT_BYTES = 4
+COMMAND_ID_BYTES = 8
+HIGHEST_SPEED_M_S = 2.0
+LONGEST_WAY_M = 100.0
+LONGEST_TEXT = 64
+MOST_LESSONS = 20
+MOST_GOAL_FEATURES = 16
+MOST_SITUATIONS = 250
+"""Of names that are told: so many of the longest ones fit into one answer."""
+LARGEST_NUMBER = 2**53
+"""Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
+LONGEST_BEHAVIOUR_TICKS = 60_000
+"""Ten minutes at 100 Hz."""

@@ -1,0 +1,37 @@
+"""What only asks."""
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from kurt2rt.channel.requests.limits import MOST_LESSONS
+from kurt2rt.channel.requests.request import Request
+from kurt2rt.channel.schema import Whole
+
+
+@dataclass(frozen=True, slots=True)
+class HelloRequest(Request):
+    """What robot is this?"""
+
+    path: ClassVar[str] = "/hello"
+
+
+@dataclass(frozen=True, slots=True)
+class LessonsRequest(Request):
+    """The newest lessons."""
+
+    path: ClassVar[str] = "/lessons"
+    count: Annotated[int, Whole(0, MOST_LESSONS)]
+
+
+@dataclass(frozen=True, slots=True)
+class SituationsRequest(Request):
+    """The situations that have a name."""
+
+    path: ClassVar[str] = "/situations"
+
+
+@dataclass(frozen=True, slots=True)
+class HealthRequest(Request):
+    """How the robot's program, its bus, its disk and its machine are."""
+
+    path: ClassVar[str] = "/health"
