@@ -168,6 +168,7 @@ class RobotProgram:
             Need("knowledge", self._take_knowledge),
             Need("teachers' keys", self._pair),
             Need("network", self._look_at_port),
+            *((Need("recordings", self._look_at_recordings),) if self._orders.record else ()),
         )
         start = Start(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
         with self._upkeep.ending.first(self._hold, lambda: loop.call_soon_threadsafe(waiting.cancel)):
@@ -203,9 +204,12 @@ class RobotProgram:
         service = self._service
         if self._orders.as_service:
             for folder in (Path(service.teachers), Path(service.devices)):
-                require_folder(folder.parent)
+                require_folder(folder)
         for name in sorted(OF_THIS_MACHINE):
             local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
+
+    def _look_at_recordings(self) -> None:
+        require_folder(Path(self._service.recordings))
 
     def _look_at_port(self) -> None:
         nobody_paired = OF_THIS_MACHINE.issuperset(pairing_names(Path(self._service.teachers)))

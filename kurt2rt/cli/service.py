@@ -91,5 +91,5 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> Unit:
     loaded = load_service(settings)
     named = settings if found.stem == settings else str(found.absolute())
     command = (*program(), "run", "--service", "--robot", robot, "--settings", named, *(("--page",) if page else ()))
-    kept = (loaded.knowledge, loaded.teachers, loaded.devices)
-    return unit_of(name, robot, command, [Path(each).parent for each in kept if Path(each).is_absolute()])
+    folders = (Path(loaded.knowledge).parent, *map(Path, (loaded.teachers, loaded.devices, loaded.recordings)))
+    return unit_of(name, robot, command, [each for each in folders if each.is_absolute()])

@@ -29,11 +29,11 @@ class Manager:
             except BlockingIOError:
                 return lines
 
-    def wait_for(self, line: str, longest_s: float = 60.0) -> list[str]:
-        """All lines up to one that begins so; the time is for a line that never comes."""
+    def wait_for(self, text: str, longest_s: float = 60.0) -> list[str]:
+        """All lines up to one with the text in it; the time is for a line that never comes."""
         self._socket.settimeout(longest_s)
         lines: list[str] = []
-        while not any(each.startswith(line) for each in lines):
+        while not any(text in each for each in lines):
             lines += self._socket.recv(4096).decode().splitlines()
         return lines
 

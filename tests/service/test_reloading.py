@@ -1,0 +1,99 @@
+"""Settings are read anew while the robot runs: what may change is taken, the rest goes on as it was and is told."""
+
+import threading
+from collections.abc import Callable
+from contextlib import ExitStack
+from pathlib import Path
+
+import anyio
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from kurt2rt.reloading import Reloading
+from kurt2rt.service_settings import ServiceSettings, load_service, while_running
+from kurt2rt.systemd.notifier import Notifier
+from tests.systemd.manager import manager
+
+SHIPPED = CONFIG_DIR / "runtime" / "default.yaml"
+
+
+class Program:
+    """A program whose settings stand in a file."""
+
+    def __init__(self, path: Path, notifier: Notifier) -> None:
+        self._path = path
+        self.change()
+        self.told: list[str] = []
+        self.taken: list[ServiceSettings] = []
+        self.reloading = Reloading(lambda: load_service(str(path)), load_service(str(path)), notifier, self.told.append)
+
+    def change(self, **changes: object) -> None:
+        settings = yaml.safe_load(SHIPPED.read_text(encoding="utf-8"))
+        self._path.write_text(yaml.safe_dump({**settings, **changes}), encoding="utf-8")
+
+    async def reload(self, lines: Callable[[], None]) -> None:
+        """Ask from another thread, as the one that hears signals does, and wait for a line."""
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(self.reloading.serve, self.taken.append)
+            before = len(self.told)
+            await anyio.to_thread.run_sync(lines)
+            with anyio.fail_after(60):
+                while len(self.told) == before:  # noqa: ASYNC110 - a list tells nobody
+                    await anyio.sleep(0.001)
+            tasks.cancel_scope.cancel()
+
+
+async def test_what_may_change_is_taken_and_what_may_not_is_told(tmp_path: Path) -> None:
+    with ExitStack() as around:
+        systemd = around.enter_context(manager(tmp_path))
+        program = Program(tmp_path / "mine.yaml", around.enter_context(Notifier(systemd.environment())))
+        program.change(status_period_s=5.0, port=9, task="circle")
+        await program.reload(program.reloading.ask)
+        assert program.told == [
+            "settings taken: status_period_s",
+            "settings for the next start, not for a robot that runs: task, port",
+        ]
+        (now,) = program.taken
+        assert (now.status_period_s, now.port, now.task) == (5.0, 5683, "wall_following")
+        (reloading, stamp, ready) = systemd.heard()
+        assert (reloading, ready) == ("RELOADING=1", "READY=1")
+        assert int(stamp.removeprefix("MONOTONIC_USEC=")) > 0
+
+
+async def test_a_file_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
+    with Notifier({}) as notifier:
+        program = Program(tmp_path / "mine.yaml", notifier)
+        program.change(status_period_s=0.0)
+        await program.reload(program.reloading.ask)
+        assert program.taken == []
+        assert "settings stay as they were: " in program.told[0]
+        assert "status_period_s" in program.told[0]
+        (tmp_path / "mine.yaml").unlink()
+        await program.reload(program.reloading.ask)
+        assert program.taken == []
+        assert len(program.told) == 2
+
+
+async def test_who_asked_before_it_ran_is_not_forgotten(tmp_path: Path) -> None:
+    with Notifier({}) as notifier:
+        program = Program(tmp_path / "mine.yaml", notifier)
+        asking = threading.Thread(target=program.reloading.ask)
+        asking.start()
+        asking.join()
+        await program.reload(lambda: None)
+        assert program.told == ["settings are as they were"]
+
+
+@pytest.mark.parametrize("key", ["robot", "task", "knowledge", "port", "teachers"])
+def test_what_the_robot_is_stays_as_it_is(key: str) -> None:
+    now = load_service()
+    read = now.model_copy(update={key: 9 if key == "port" else "other"})
+    reloaded = while_running(now, read)
+    assert reloaded == (now, (), (key,))
+
+
+def test_the_periods_of_the_rounds_may_change() -> None:
+    now = load_service()
+    read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5})
+    assert while_running(now, read) == (read, ("checkpoint_period_s", "real_time_priority"), ())
