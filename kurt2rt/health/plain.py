@@ -1,10 +1,9 @@
 """The report as plain values, for JSON and CBOR, and back. Names are those of the fields."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
 from typing import Any
 
-from kurt2rt.channel.schema import Check, Flag, ManyOf, OrNone, Real, Text, Whole, WireError
+from kurt2rt.channel.maps import MapOf, plainly
+from kurt2rt.channel.schema import Flag, ManyOf, OrNone, Real, Text, Whole
 from kurt2rt.health.report import (
     BusHealth,
     DiskSpace,
@@ -25,25 +24,8 @@ _TIME = Real(1e12)
 _NAME = Text(128)
 _LINE = Text(512)
 
-
-class _Map:
-    """A map with a check for each of its keys; unknown keys are left out, for a newer robot may tell more."""
-
-    def __init__(self, kind: Callable[..., Any], **checks: Check) -> None:
-        self.kind = kind
-        self.checks = checks
-
-    def __call__(self, what: str, value: object) -> Any:
-        if not isinstance(value, Mapping):
-            raise WireError(f"{what} has to be a map")
-        missing = [name for name in self.checks if name not in value]
-        if missing:
-            raise WireError(f"{what} has no {', '.join(missing)}")
-        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items()})
-
-
 _MILLISECONDS = dict.fromkeys(("newest_ms", "median_ms", "p99_ms", "worst_ms", "took_p99_ms"), _TIME)
-_REPORT = _Map(
+_REPORT = MapOf(
     HealthReport,
     version=_NAME,
     boot=_NAME,
@@ -56,10 +38,10 @@ _REPORT = _Map(
     doing=_LINE,
     rlas=_COUNT,
     lessons=_COUNT,
-    punctuality=_Map(Punctuality, **_MILLISECONDS, ticks=_COUNT, missed=_COUNT, missed_lately=_COUNT),
-    ages=_Map(SensorAges, infrared_s=OrNone(_TIME), encoders_s=OrNone(_TIME), bumpers_s=OrNone(_TIME)),
+    punctuality=MapOf(Punctuality, **_MILLISECONDS, ticks=_COUNT, missed=_COUNT, missed_lately=_COUNT),
+    ages=MapOf(SensorAges, infrared_s=OrNone(_TIME), encoders_s=OrNone(_TIME), bumpers_s=OrNone(_TIME)),
     bus=OrNone(
-        _Map(
+        MapOf(
             BusHealth,
             controller=_NAME,
             frames=_COUNT,
@@ -70,9 +52,9 @@ _REPORT = _Map(
             receive_failures=_COUNT,
         )
     ),
-    disks=ManyOf(_Map(DiskSpace, of=_NAME, free_bytes=OrNone(_COUNT)), most=MOST_ROWS),
-    safety=_Map(Safety, unwritten=_COUNT, last_write_ms=OrNone(_TIME)),
-    machine=_Map(
+    disks=ManyOf(MapOf(DiskSpace, of=_NAME, free_bytes=OrNone(_COUNT)), most=MOST_ROWS),
+    safety=MapOf(Safety, unwritten=_COUNT, last_write_ms=OrNone(_TIME)),
+    machine=MapOf(
         Machine,
         memory_bytes=_COUNT,
         available_bytes=OrNone(_COUNT),
@@ -81,14 +63,14 @@ _REPORT = _Map(
         battery=OrNone(Real(1.0)),
         discharging=Flag(),
     ),
-    drops=ManyOf(_Map(Drops, of=_NAME, count=_COUNT), most=MOST_ROWS),
-    troubles=ManyOf(_Map(Trouble, about=_NAME, what=_LINE, since_s=_TIME, to_do=_LINE, urgent=Flag()), most=MOST_ROWS),
+    drops=ManyOf(MapOf(Drops, of=_NAME, count=_COUNT), most=MOST_ROWS),
+    troubles=ManyOf(MapOf(Trouble, about=_NAME, what=_LINE, since_s=_TIME, to_do=_LINE, urgent=Flag()), most=MOST_ROWS),
 )
 
 
 def plain_of(report: HealthReport) -> dict[str, Any]:
     """Maps, lists, texts and numbers; texts are cut and tidied as `report_of` wants them, none of it is infinite."""
-    plain: dict[str, Any] = _tidied(asdict(report), _REPORT)
+    plain: dict[str, Any] = plainly(report, _REPORT)
     return plain
 
 
@@ -96,17 +78,3 @@ def report_of(plain: object) -> HealthReport:
     """The report that was told. Raises WireError."""
     report: HealthReport = _REPORT("the health report", plain)
     return report
-
-
-def _tidied(value: Any, check: Check) -> Any:
-    match check:
-        case _Map(checks=checks):
-            return {name: _tidied(value[name], inner) for name, inner in checks.items()}
-        case ManyOf(check=inner, most=most):
-            return [_tidied(each, inner) for each in value[:most]]
-        case OrNone(check=inner) if value is not None:
-            return _tidied(value, inner)
-        case Text():
-            return check.cut(value)
-        case _:
-            return value

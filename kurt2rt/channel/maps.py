@@ -1,0 +1,58 @@
+"""Maps with words for keys, for what is told seldom: each key with its check, and from a dataclass and back."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from kurt2rt.channel.schema import Check, ManyOf, OrNone, Text, WireError
+
+
+class MapOf:
+    """A map with a check for each of its keys; unknown keys are left out, for a newer robot may tell more."""
+
+    def __init__(self, kind: Callable[..., Any], **checks: Check) -> None:
+        """`kind` is made of the values, by the keys."""
+        self.kind = kind
+        self.checks = checks
+
+    def __call__(self, what: str, value: object) -> Any:
+        """What `kind` makes of it. Raises WireError."""
+        if not isinstance(value, Mapping):
+            raise WireError(f"{what} has to be a map")
+        missing = [name for name in self.checks if name not in value]
+        if missing:
+            raise WireError(f"{what} has no {', '.join(missing)}")
+        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items()})
+
+
+@dataclass(frozen=True, slots=True)
+class OrNotFinite:
+    """Null for a number that is not finite, which has no place on the wire."""
+
+    check: Check
+    stands_for: float
+    """What null is."""
+
+    def __call__(self, what: str, value: object) -> Any:
+        """The number. Raises WireError."""
+        return self.stands_for if value is None else self.check(what, value)
+
+
+def plainly(value: Any, check: Check) -> Any:
+    """A dataclass, tuple, text or number as the check wants to see it on the other side.
+
+    Texts are cut and tidied, lists are no longer than they may be.
+    """
+    match check:
+        case MapOf(checks=checks):
+            return {name: plainly(getattr(value, name), inner) for name, inner in checks.items()}
+        case ManyOf(check=inner, most=most):
+            return [plainly(each, inner) for each in value[:most]]
+        case OrNone(check=inner) if value is not None:
+            return plainly(value, inner)
+        case OrNotFinite():
+            return value if abs(value) < float("inf") else None
+        case Text():
+            return check.cut(value)
+        case _:
+            return value

@@ -1,0 +1,84 @@
+"""`kurt2rt why`, of the stored runs."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.helpers import CommandLine
+from tests.replay.stories import STORED
+
+WALLS = STORED / "walls.mcap"
+ERRAND = STORED / "errand.mcap"
+
+
+def test_a_moment_is_explained_and_drawn(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    picture = tmp_path / "pictures" / "why.svg"
+    said = kurt2rt("why", WALLS, "--at", "12", "--picture", picture)
+    assert said.exit_code == 0, said.err
+    for words in (
+        "walls.mcap: wall_following on kurt2-indoor, begun 2026-03-20 09:46:40 UTC, 12.00 s (tick 1201)",
+        "This is like RLA 3, which says spin_right",
+        "The runner-up of 3 is RLA 1 (forward)",
+        "RLA 3 taught: spin_right; 2026-03-20 09:46:51 UTC (tick 1199), by scripted teacher in phase 2.",
+        "Used once since.",
+        "What would have changed it, one reading alone:",
+        f"picture  {picture}",
+    ):
+        assert words in said.out
+    assert "decides otherwise" not in said.out
+    drawn = picture.read_text(encoding="utf-8")
+    assert "As taught: RLA 3, spin_right" in drawn
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ("3", "The robot was stopped: the robot program was started. It waits for Go."),
+        ("6.5", "Nothing was taught yet, so the robot asks."),
+        ("14.2", "Lessons cannot be saved at the moment (the disk is full): the robot stands until they can."),
+        ("28.3", "scripted teacher drives: curve_left. No RLA was asked."),
+        ("36", "whose action was withdrawn: there the robot asks."),
+    ],
+)
+def test_a_robot_that_stood_or_was_led_says_why(kurt2rt: CommandLine, at: str, said: str) -> None:
+    assert said in kurt2rt("why", WALLS, "--at", at).out
+
+
+def test_the_level_above_is_told_too(kurt2rt: CommandLine) -> None:
+    out = kurt2rt("why", ERRAND, "--at", "20").out
+    assert "Mid level: mid-level RLA 12 commands turn_right" in out
+    assert "mid-level RLA 12 taught: turn_right" in out
+
+
+def test_a_whole_run_is_told_as_stretches(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    picture = tmp_path / "run.svg"
+    said = kurt2rt("why", WALLS, "--picture", picture)
+    assert said.exit_code == 0, said.err
+    for words in ("stands: stopped", "stands: unsaved", "led: by hand", "session walls begun by scripted teacher"):
+        assert words in said.out
+    assert "taken back: RLA 7 taught: curve_left (scripted teacher)" in said.out
+    assert "stands and asks" in picture.read_text(encoding="utf-8")
+
+
+def test_a_part_of_a_run_is_told_whole(kurt2rt: CommandLine) -> None:
+    out = kurt2rt("why", WALLS, "--from", "30", "--to", "33").out
+    assert out.startswith("walls.mcap: wall_following on kurt2-indoor")
+    assert "3.0 s: drove by its RLAs 100 %" in out
+    assert "RLA 1 withdrawn: it asks again (scripted teacher)" in out
+
+
+def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine) -> None:
+    assert "the run ends at" in kurt2rt.misused("why", WALLS, "--at", "500")
+
+
+def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    for words, said in (
+        (("--at", "3", "--from", "2"), "give a moment, or a part of the run"),
+        (("--from", "3", "--to", "2"), "2 is not behind --from 3"),
+        (("--picture", "why.txt"), "give a file that ends with .png"),
+    ):
+        assert said in kurt2rt.misused("why", tmp_path / "none.mcap", *words)
+
+
+def test_where_nothing_was_recorded_the_answer_says_what_to_do(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "no recorded run" in kurt2rt.refused("why", "--runs", tmp_path)
