@@ -112,6 +112,9 @@ class RunRecorder:
 
     def note(self, record: TickRecord, *, saved: bool = False) -> None:
         """A tick has been. `saved`: statistics were saved after it."""
+        if self._began_at_ns is None:
+            # The wall clock may be set meanwhile; the stamps go on evenly.
+            self._began_at_ns = time.time_ns() - round(record.now_s * _NS_PER_S)
         truth = world = None
         if self._ground is not None and record.tick % _PLACE_EVERY_TICKS == 0:
             truth = self._ground.place()
@@ -155,13 +158,14 @@ class RunRecorder:
         if self._files is None:
             return
         took, given_up = self._files.takes, self._files.given_up
-        if self._files.tend():
-            self.written += self._unsaved
-            self._unsaved = 0
+        kept = self._files.tend()
         if self._files.given_up > given_up:
             self._not_written += self._unsaved
             self._unsaved = 0
-        if self._files.takes and not took:
+        elif kept:
+            self.written += self._unsaved
+            self._unsaved = 0
+        if self._files.takes and (not took or self._files.given_up > given_up):
             self._topics.begin_anew()
 
     def close(self, patience_s: float = 2.0) -> None:
@@ -198,10 +202,7 @@ class RunRecorder:
         topics = self._topics
         match noted:
             case _Ticked(record, saved, truth, world):
-                if self._began_at_ns is None:
-                    # The wall clock may be set meanwhile; the stamps go on evenly.
-                    self._began_at_ns = time.time_ns() - round(record.now_s * _NS_PER_S)
-                self._time_ns = self._began_at_ns + round(record.now_s * _NS_PER_S)
+                self._time_ns = (self._began_at_ns or 0) + round(record.now_s * _NS_PER_S)
                 topics.tick(record, saved=saved, truth=truth, time_ns=self._time_ns)
                 self._world = world or self._world
                 if self._world is not None:

@@ -2,6 +2,7 @@
 
 import errno
 import json
+import shutil
 import threading
 from pathlib import Path
 
@@ -256,3 +257,17 @@ def test_two_runs_of_one_second_have_a_folder_each(tmp_path: Path) -> None:
         desk.recorder.tend()
         desk.recorder.close()
     assert [run.name for run in runs_in(tmp_path)] == [NAME, f"{NAME}-2"]
+
+
+def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path / "runs")
+    desk.recorder.tend()
+    desk.second()
+    shutil.rmtree(tmp_path / "runs")
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert [each.tick for each in entries_of(tmp_path / "runs" / NAME)] == [each.tick for each in desk.records[200:]]
+    (segment,) = segments_in(tmp_path / "runs" / NAME)
+    assert SegmentReader(segment).head().attachments == ATTACHMENTS
+    assert "100 of its ticks and notes lost" in desk.recorder.trouble
