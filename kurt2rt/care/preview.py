@@ -1,16 +1,29 @@
 """What an undo would have changed in recorded runs."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.care.trial import Known, Report, Runs, Stretch, differing, runs_to_try
+from kurt2rt.care.trial import REPORT_EVERY, Known, Report, runs_to_try
 from kurt2rt.knowledge.changing import worths_after
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import read_taught
 from kurt2rt.knowledge.undo import lesson_to_undo, lessons_to_undo, undos_of
+from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
+from kurt2rt.replay.replay import ReplayedTick
+from kurt2rt.replay.run import Run
+from kurt2rt.replay.shadow import Shadow
 from kurt2rt.rla.lesson_book import LessonRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """What an undo would have changed in one run."""
+
+    run: str
+    began_s: float
+    """Time of the runtime's clock at the first tick."""
+    found: Counterfactual
 
 
 @dataclass(frozen=True)
@@ -19,9 +32,9 @@ class Preview:
 
     lessons: tuple[LessonRecord, ...]
     """What would be taken back, in this order."""
-    runs: Runs
-    stretches: Iterator[Stretch]
-    """Read them once: they come while the runs are replayed."""
+    runs: tuple[Tried, ...]
+    notes: tuple[str, ...]
+    """Which runs, or parts of one, could not be tried, and why."""
 
 
 def preview_undo(path: Path, lesson: str | None, of: str | None, recordings: Path, report: Report) -> Preview:
@@ -40,4 +53,19 @@ def preview_undo(path: Path, lesson: str | None, of: str | None, recordings: Pat
     before = Known(events, statistics)
     after = Known((*events, *undos), worths_after(events, undos, statistics, dimensions))
     records = taught.records
-    return Preview(tuple(records[name] for name in lessons), runs, differing(runs.runs, before, after, report))
+    tried = tuple(_tried(run, before, after, report) for run in runs.runs)
+    return Preview(tuple(records[name] for name in lessons), tried, runs.notes)
+
+
+def _tried(run: Run, before: Known, after: Known, report: Report) -> Tried:
+    began_s = list[float]()
+
+    def on_tick(tick: ReplayedTick) -> None:
+        if not began_s:
+            began_s.append(tick.entry.now_s)
+        if tick.entry.number % REPORT_EVERY == 1:
+            report(run.name, tick.entry.number)
+
+    old, new = (Shadow(run, each.events, each.statistics) for each in (before, after))
+    found = counterfactual(run, new, old, on_tick)
+    return Tried(run.name, began_s[0] if began_s else 0.0, found)

@@ -1,7 +1,7 @@
 """A change of knowledge tried on recorded runs: what the robot would have done with it, and without."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +9,6 @@ from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import binding_of
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.replay.reading import read_run
@@ -22,9 +21,7 @@ from kurt2rt.tick import TickRecord
 Report = Callable[[str, int], None]
 """Called now and then with a run's name and how many of its ticks were tried."""
 
-_REPORT_EVERY = 500
-_BY_KNOWLEDGE = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
-"""Else a teacher drives, or the robot stands whatever it knows."""
+REPORT_EVERY = 500
 
 
 class Known(NamedTuple):
@@ -32,20 +29,6 @@ class Known(NamedTuple):
 
     events: tuple[TeachingEvent, ...]
     statistics: Statistics
-
-
-@dataclass(frozen=True, slots=True)
-class Stretch:
-    """Ticks on end in which the same would have been decided otherwise."""
-
-    run: str
-    from_s: float
-    to_s: float
-    """When the last of them began."""
-    ticks: int
-    before: str
-    """What the knowledge says there without the change, in words."""
-    after: str
 
 
 @dataclass(frozen=True)
@@ -92,40 +75,19 @@ def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tu
     replay = Replay(run)
     shadows = [Shadow(run, each.events, each.statistics) for each in knowledge]
     for number, (_, record) in enumerate(replay, start=1):
-        if number % _REPORT_EVERY == 1:
+        if number % REPORT_EVERY == 1:
             report(run.name, number)
         yield record, [shadow.look(record, replay.runtime) for shadow in shadows]
 
 
-def differing(runs: Iterable[Run], before: Known, after: Known, report: Report) -> Iterator[Stretch]:
-    """Where the robot would drive, or ask, otherwise, in ticks in which it was its knowledge that decided."""
-    for run in runs:
-        stretch: Stretch | None = None
-        for record, (old, new) in answers(run, (before, after), report):
-            now: Stretch | None = None
-            if record.decision.cause in _BY_KNOWLEDGE and _actions(old) != _actions(new):
-                now = Stretch(run.name, record.now_s, record.now_s, 1, told(old), told(new))
-            if stretch is not None and now is not None and (now.before, now.after) == (stretch.before, stretch.after):
-                stretch = replace(stretch, to_s=now.to_s, ticks=stretch.ticks + 1)
-                continue
-            if stretch is not None:
-                yield stretch
-            stretch = now
-        if stretch is not None:
-            yield stretch
-
-
-def told(answers: Answers) -> str:
+def told(both: Answers) -> str:
     """What they say in a few words: the mid level first, where there is one."""
-    return ", ".join(_told(each) for each in (answers.mid, answers.basic) if each is not None)
+    return ", ".join(said(each) for each in (both.mid, both.basic) if each is not None)
 
 
-def _told(answer: Answer) -> str:
+def said(answer: Answer) -> str:
+    """What one level answers."""
     return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
-
-
-def _actions(answers: Answers) -> tuple[str | None, str | None]:
-    return answers.basic.action, None if answers.mid is None else answers.mid.action
 
 
 def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:

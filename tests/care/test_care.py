@@ -127,16 +127,18 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
     before = folded(knowledge)
     nothing = preview_undo(knowledge, "far-2", None, recordings, quietly)
     assert [record.text for record in nothing.lessons] == [f"RLA {before.rlas[-1].rla_id} taught: forward"]
-    assert (len(nothing.runs.runs), list(nothing.stretches)) == (1, [])
+    (tried,) = nothing.runs
+    assert tried.found.same
+    assert nothing.notes == ()
 
     first = next(event for event in lessons if isinstance(event, RlaCreated))
     all_of_one = preview_undo(knowledge, None, first.origin.teacher, recordings, quietly)
-    stretches = list(all_of_one.stretches)
+    (tried,) = all_of_one.runs
     assert len(all_of_one.lessons) == len(lessons)
-    assert {each.after for each in stretches} == {"asks"}  # nothing would be left but what is far off
-    assert any(each.before == f"{first.rla.action} by RLA {first.rla.rla_id}" for each in stretches)
-    assert sum(each.ticks for each in stretches) <= 1000
-    assert all(each.from_s <= each.to_s for each in stretches)
+    # nothing would be left but what is far off
+    assert (tried.found.other_action, tried.found.would_drive) == (0, 0)
+    assert 0 < tried.found.would_ask <= tried.found.decided
+    assert any(each.was.rla == folded(knowledge).get(first.rla.rla_id) for each in tried.found.stretches)
     assert folded(knowledge).rlas == before.rlas
     with pytest.raises(KnowledgeError, match="there is no lesson 'far-9'"):
         preview_undo(knowledge, "far-9", None, recordings, quietly)
@@ -159,8 +161,10 @@ def test_on_the_command_line(
 ) -> None:
     kurt2rt = CommandLine(monkeypatch, capfd)
     said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--preview", "--runs", recordings).out
-    assert ": asks, instead of " in said
-    assert said.splitlines()[-1].endswith(" decisions of 1 recorded runs would have been others; nothing was changed")
+    assert " s  asks, instead of " in said
+    assert said.endswith("nothing was changed\n")
+    said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--preview", "--runs", recordings).out
+    assert "20260320T094640Z-wall_following: not one of " in said
     dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
     assert "would delete: RLA " in dry
     done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out

@@ -1,15 +1,20 @@
 """`kurt2rt knowledge undo` and `redo`."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from kurt2rt.care.preview import preview_undo
+from kurt2rt.care.preview import Tried, preview_undo
+from kurt2rt.care.trial import said
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, Recordings, replaying, say
 from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.rla.lesson_book import LessonRecord
+
+_STRETCHES = 8
+"""Of each run so many are told, the longest."""
 
 
 def undo(
@@ -57,15 +62,33 @@ def redo(
 def _preview(file: Path, lesson: str | None, of: str | None, recordings: Path) -> None:
     with replaying() as report:
         shown = preview_undo(file, lesson, of, recordings, report)
-        stretches = list(shown.stretches)
     for record in shown.lessons:
         say(f"{file}: would be undone: {_told(record)}")
-    for each in stretches:
-        say(f"{each.run}: {each.from_s:.2f} to {each.to_s:.2f} s: {each.after}, instead of {each.before}")
-    ticks = sum(each.ticks for each in stretches)
-    for note in shown.runs.notes:
+    for tried in shown.runs:
+        for line in _changes(tried):
+            say(line)
+    for note in shown.notes:
         say(f"not tried: {note}")
-    say(f"{ticks} decisions of {len(shown.runs.runs)} recorded runs would have been others; nothing was changed")
+    say("nothing was changed")
+
+
+def _changes(tried: Tried) -> Iterator[str]:
+    found = tried.found
+    if found.same:
+        yield f"{tried.run}: not one of {found.decided} decisions would have been another"
+        return
+    counts = (
+        (found.other_action, "another action"),
+        (found.would_ask, "ask where it drove"),
+        (found.would_drive, "drive where it asked"),
+        (found.mid_otherwise, "another way"),
+    )
+    kinds = ", ".join(f"{count} times {what}" for count, what in counts if count)
+    yield f"{tried.run}: of {found.decided} decisions: {kinds}; the longest:"
+    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_STRETCHES]
+    for each in sorted(longest, key=lambda each: each.from_s):
+        from_s, to_s = each.from_s - tried.began_s, each.to_s - tried.began_s
+        yield f"  {from_s:7.2f} to {to_s:7.2f} s  {said(each.would_be)}, instead of {said(each.was)}"
 
 
 def _told(record: LessonRecord) -> str:
