@@ -48,6 +48,9 @@ class CanBus:
         self._control_taken = False
         # Two counters, for each has one writer: the watchdog's thread may send while the loop drains.
         self._sent_controls = self._carried_controls = 0
+        # While frames that nobody waits for any more may still be carried: the first one that was sent after them.
+        self._forgotten = False
+        self._first_since: bytes | None = None
         self._lost = 0
 
     @property
@@ -81,11 +84,13 @@ class CanBus:
                     messages.append(message)
                     if message.is_error_frame and message.arbitration_id & _CONTROLLER_RESET:
                         self._carried_controls = self._sent_controls
+                        self._forgotten = False
                 elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
-                    self._carried_controls = min(self._carried_controls + 1, self._sent_controls)
+                    self._note_carried(message)
             if end.lost != self._lost:
                 self._lost = end.lost
                 self._carried_controls = self._sent_controls  # their confirmations may be among the lost
+                self._forgotten = False
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
         if self.tap is not None and messages:
@@ -121,6 +126,7 @@ class CanBus:
         """Give the bus back; may be called twice."""
         end, self._bus_end = self._bus_end, None
         self._carried_controls = self._sent_controls
+        self._forgotten = False
         self._lost = 0
         if end is not None:
             _close(end)
@@ -136,9 +142,24 @@ class CanBus:
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: takes no receive filter ({error})") from error
 
+    def _forget_unconfirmed(self) -> None:
+        self._forgotten = self._carried_controls < self._sent_controls
+        self._first_since = None
+        self._carried_controls = self._sent_controls
+
+    def _note_carried(self, confirmed: can.Message) -> None:
+        """One own CONTROL has been carried; one that was forgotten confirms none of those that were sent since."""
+        if self._forgotten:
+            if bytes(confirmed.data) != self._first_since:
+                return
+            self._forgotten = False  # frames keep their order: what was forgotten and has not come by now is lost
+        self._carried_controls = min(self._carried_controls + 1, self._sent_controls)
+
     def _send(self, frame: can.Message, *, is_control: bool) -> None:
         end = self._usable()
         awaited = is_control and end.confirms
+        if awaited and self._forgotten and self._first_since is None:
+            self._first_since = bytes(frame.data)
         if awaited:
             self._sent_controls += 1  # before it is out, for it may be back at once
         try:
@@ -167,8 +188,11 @@ class FramePort:
         return self._bus._sent_controls - self._bus._carried_controls
 
     def forget_unconfirmed(self) -> None:
-        """Count from none again: what was sent may have been lost without a word, and is then never confirmed."""
-        self._bus._carried_controls = self._bus._sent_controls
+        """Count from none again: what was sent may have been lost without a word, and is then never confirmed.
+
+        It may as well be late. Then it must not pass for what is sent from now on, as far as their payloads differ.
+        """
+        self._bus._forget_unconfirmed()
 
     def send(self, frame: can.Message) -> None:
         """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""

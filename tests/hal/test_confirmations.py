@@ -7,8 +7,11 @@ import pytest
 
 from hal.bus import CONTROL_ID, BusError, CanBus, FramePort
 from hal.control import encode_brake
+from hal.frame import Frame
 from tests.hal.bus_conformance import BUS_OFF, RESTARTED
 from tests.hal.helpers import cycle
+
+SLOW = Frame(CONTROL_ID, bytes((0, 2, 0, 1, 0, 1, 0, 1)))
 
 
 class HeldEnd:
@@ -38,7 +41,9 @@ class HeldEnd:
         assert timeout == 0
         if self.is_full:
             raise can.CanOperationError("the transmit queue is full")
-        self.held.append(can.Message(arbitration_id=msg.arbitration_id, is_extended_id=False, is_rx=False))
+        self.held.append(
+            can.Message(arbitration_id=msg.arbitration_id, data=msg.data, is_extended_id=False, is_rx=False)
+        )
         if self.at_once is not None:
             self.carry()
             self.at_once.drain()
@@ -148,6 +153,63 @@ def test_what_was_forgotten_and_comes_after_all_confirms_nothing_newer_for_good(
     assert port.unconfirmed == 0
     port.send(encode_brake())
     assert port.unconfirmed == 1
+
+
+def test_brakes_that_come_late_are_not_taken_for_the_set_points_that_were_sent_after_them(
+    end: HeldEnd, bus: CanBus, port: FramePort
+) -> None:
+    for _ in range(6):
+        port.send(encode_brake())
+    port.forget_unconfirmed()
+    for sent in range(1, 4):
+        port.send(SLOW)
+        end.carry()
+        bus.drain()
+        assert port.unconfirmed == sent
+    end.carry(3)
+    assert port.unconfirmed == 3
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 2
+
+
+def test_once_a_newer_one_has_come_nothing_that_was_forgotten_is_waited_for(
+    end: HeldEnd, bus: CanBus, port: FramePort
+) -> None:
+    for _ in range(6):
+        port.send(encode_brake())
+    end.held.clear()
+    port.forget_unconfirmed()
+    for frame in (SLOW, SLOW, encode_brake(), encode_brake()):
+        port.send(frame)
+        end.carry()
+        bus.drain()
+        assert port.unconfirmed == 0
+
+
+@pytest.mark.parametrize("happens", ["restarted", "lost", "reopened"])
+def test_after_a_controller_began_anew_nothing_forgotten_is_waited_for(
+    end: HeldEnd, bus: CanBus, port: FramePort, happens: str
+) -> None:
+    port.send(encode_brake())
+    port.forget_unconfirmed()
+    port.send(SLOW)
+    match happens:
+        case "restarted":
+            end.arrived.append(RESTARTED)
+        case "lost":
+            end.lost = 1
+        case "reopened":
+            bus.reopen()
+    end.held.clear()
+    if happens != "reopened":
+        bus.drain()
+    end.lost = 0 if happens != "lost" else 1
+    assert port.unconfirmed == 0
+    port.send(encode_brake())
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 0
 
 
 def test_a_bus_that_was_opened_anew_begins_at_none(bus: CanBus, port: FramePort) -> None:
