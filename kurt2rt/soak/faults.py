@@ -4,6 +4,7 @@ import random
 from collections.abc import Callable
 from typing import NamedTuple
 
+from hal.guard import WHEELS_DISOBEY
 from kurt2rt.faults.place import Disturbance
 from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
@@ -13,6 +14,7 @@ from kurt2rt.soak.witness import SoakWitness
 
 _LEAST_GAP_S = 4.0
 _LOOKS_AGAIN_S = 1.0
+_SHOWS_M_S = 0.2
 _LESSON_EVERY_S = 0.25
 _SETTLES_S = 0.3
 _HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
@@ -125,7 +127,9 @@ class SoakFaults:
         complaints = []
         # A robot that stood already shows nothing. One that is told to drive on by a teacher who has not seen what is
         # wrong may try again, and may put as many old set points into a queue that is blocked as the first time.
-        if case.must.leads_to == "stands" and self._drove and stood_at_s is None:
+        # And wheels show only at some speed whether they obey: in a narrow curve one side nearly stands.
+        shows = WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
+        if case.must.leads_to == "stands" and self._drove and stood_at_s is None and shows:
             complaints.append("must stand, drove all the while")
         old_frames = witness.envelope.old_frames - self._old_frames
         allowed = case.must.old_frames * (1 + witness.resumes - self._resumes)

@@ -1,5 +1,7 @@
 """Watches every tick of a soak from both ends of the bus: envelope, standstill, and tick accounting."""
 
+import math
+
 from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.table import EnvelopeSettings
@@ -49,6 +51,8 @@ class SoakWitness:
         self._sensed_at_s = 0.0
         self._told_standing = True
         self.stood_at_s: float | None = None
+        self.slowest_m_s = 0.0
+        """That a side was told since a standstill was looked for."""
         self._heard_at_s = 0.0
         self._must_stand = ""
         self._begun_s: float | None = None
@@ -99,6 +103,7 @@ class SoakWitness:
     def look_for_a_stand(self) -> None:
         """From now on `stood_at_s` is that of the first standstill."""
         self.stood_at_s = None
+        self.slowest_m_s = math.inf
 
     def first_stand_s(self) -> float | None:
         """When the robot's end of the bus first knew nothing but to stand, since it was looked for."""
@@ -150,4 +155,5 @@ class SoakWitness:
             elif told.standing:
                 self.stood_at_s = at_s
         self._told_standing = told.standing
+        self.slowest_m_s = min(self.slowest_m_s, abs(told.left_m_s), abs(told.right_m_s))
         self._heard_at_s = at_s
