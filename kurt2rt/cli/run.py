@@ -133,6 +133,9 @@ def run(
         kurt2rt sim --bus shared:desk
         kurt2rt run --robot shared:desk --page
 
+    The run is recorded: kurt2rt replay decides it again, kurt2rt why explains
+    it, and Foxglove shows it.
+
     With --teacher none nobody can say resume: any robot drives at once where
     it knows the situation, and once stopped by the guard it stands until the
     program is started anew. Of several taught behaviours it follows one:

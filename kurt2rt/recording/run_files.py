@@ -110,6 +110,9 @@ class RunFiles:
         path = self.run / segment_name(self._number + 1)
         try:
             segment = Segment(path, self._context, self._disk)
+        except FileExistsError:
+            self._number += 1  # whoever made it, it is kept
+            raise
         except OSError:
             with contextlib.suppress(OSError):  # told above; without its name it leaves no riddle
                 path.unlink()
