@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import os
 import re
 import signal
 import time
@@ -39,6 +40,8 @@ from kurt2rt.teaching.question import Question, WayQuestion
 from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.upkeep import Upkeep
 
+_LEVELS = {"red": "<3>", "yellow": "<5>"}
+"""Of systemd's journal, by how the line looks on a screen."""
 _WAITS = "the robot program waits for what it needs"
 
 
@@ -102,6 +105,7 @@ class RobotProgram:
         self._opened: OpenedRobot | None = None
         self._knowledge: OpenedKnowledge | None = None
         self._told = ""
+        self._to_journal = "JOURNAL_STREAM" in os.environ
 
     def run(self) -> None:
         """Run until somebody ends it. Raises what `kurt2rt.service.serve` and `kurt2rt.app.open_robot` do."""
@@ -143,6 +147,7 @@ class RobotProgram:
         opened = self._opened
         assert opened is not None
         ending.waits_for = "its runtime"
+        self._upkeep.notifier.ping()  # the next one comes from the first tick
         openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening)
         return await serve(
             opened.robot,
@@ -276,14 +281,15 @@ class RobotProgram:
         stands = [doing(status)] if status.runtime.school.stopped_because else []
         told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
         if _without_numbers(told) != _without_numbers(self._told):
-            self._tell(told or "nothing is wrong any more")
+            self._tell(told or "nothing is wrong any more", "red" if told and not stands else None)
         self._told = told
 
     def _say(self, text: str, style: str | None = None) -> None:
         self._printer.put(lambda: self._tell(text, style))
 
     def _tell(self, text: str, style: str | None = None) -> None:
-        self._console.print(text, style=style, markup=False, highlight=False, soft_wrap=True)
+        level = _LEVELS.get(style or "", "") if self._to_journal else ""
+        self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
 
 
 def _without_numbers(text: str) -> str:
