@@ -1,5 +1,6 @@
 """Playing streams: a real guard, a real watchdog and a real CanBus live through them, and all that goes out is kept."""
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -35,18 +36,16 @@ class SlowBus:
         """Which of them did not."""
         self.waiting = 0
         """Frames that were taken and are not confirmed yet."""
-        self._carried = self._forgotten = 0
-        self._confirmation = Frame(1, b"")
-        self._confirmation.is_rx = False
+        self._queue: deque[Frame] = deque()
+        self._carried = 0
 
     def carry(self) -> None:
         """Carry what waits: its confirmations can be received now."""
-        self._carried += self.waiting + self._forgotten
-        self.waiting = self._forgotten = 0
+        self._carried = len(self._queue)
+        self.waiting = 0
 
     def forget(self) -> None:
         """What waits counts no more, though it is carried one day."""
-        self._forgotten += self.waiting
         self.waiting = 0
 
     def now_s(self) -> float | None:
@@ -59,7 +58,7 @@ class SlowBus:
         if self._carried == 0:
             return None
         self._carried -= 1
-        return self._confirmation
+        return self._queue.popleft()
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
         self.attempts.append(msg)
@@ -68,6 +67,9 @@ class SlowBus:
             raise can.CanOperationError("transmit queue is full")
         if self.confirms:
             self.waiting += 1
+            confirmation = Frame(msg.arbitration_id, bytes(msg.data))
+            confirmation.is_rx = False
+            self._queue.append(confirmation)
         if self.interrupt is not None:
             interrupt, self.interrupt = self.interrupt, None
             interrupt()
