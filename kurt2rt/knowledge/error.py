@@ -8,7 +8,12 @@ class KnowledgeError(Exception):
     """Knowledge cannot be read or written. The message is one line: what, where, what to do."""
 
 
+class StuckError(KnowledgeError):
+    """SQLite does not come out of it by itself, whatever the disk does: only a new connection helps."""
+
+
 _ADVICE = {
+    sqlite3.SQLITE_PROTOCOL: "its locks are stuck; look at the disk's health, and start the robot program anew",
     sqlite3.SQLITE_FULL: "the disk is full; make room on it",
     sqlite3.SQLITE_IOERR: "the disk fails; look at its health and room, and keep a copy of the file",
     sqlite3.SQLITE_BUSY: "another program holds it locked; close that program",
@@ -28,4 +33,5 @@ def explained(error: sqlite3.Error, path: Path) -> KnowledgeError:
     advice = "SQLite refuses it; keep the file, and go on with a backup copy"
     if primary is not None:
         advice = _ADVICE.get(primary, advice)
-    return KnowledgeError(f"{path}: {advice} (SQLite: {error})")
+    kind = StuckError if primary == sqlite3.SQLITE_PROTOCOL else KnowledgeError
+    return kind(f"{path}: {advice} (SQLite: {error})")

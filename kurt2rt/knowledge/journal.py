@@ -129,6 +129,20 @@ class Journal:
         for statement, rows in differences:
             self._connection.executemany(statement, rows)
 
+    def reconnect(self) -> None:
+        """Let SQLite begin anew with the same files, as their only writer still; not used before this succeeds.
+
+        Raises KnowledgeError.
+        """
+        self._require_in_place()
+        with self._reading():
+            self._connection.close()  # all its locks go with it
+        # Whoever closes last merges the log and removes it.
+        self._files = (self._files[0], journal_file.identities(self.path)[1])
+        self._connection = journal_file.connect(self.path, "mode=rw")
+        journal_file.make_durable(self._connection, self.path)
+        self._files = (self._files[0], journal_file.identities(self.path)[1])
+
     def entries(self) -> list[StoredEntry]:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
         return list(self.each_entry())
@@ -230,6 +244,9 @@ class Journal:
                 raise
         except sqlite3.Error as error:
             raise explained(error, self.path) from error
+        self._require_in_place()
+
+    def _require_in_place(self) -> None:
         # SQLite goes on writing into a file that was deleted under it, and all would be gone at the end.
         if journal_file.identities(self.path) != self._files:
             raise KnowledgeError(

@@ -81,7 +81,13 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
     It is born whole: built in memory, written beside, synced, then renamed, so that a crash never leaves half a file.
     """
     orphan = log_of(path)
-    if orphan.exists() and orphan.stat().st_size > 0:  # SQLite would mix its lessons into the new file
+    try:
+        size = orphan.stat().st_size
+    except FileNotFoundError:
+        size = 0
+    except OSError as error:
+        raise KnowledgeError(f"{orphan}: cannot be looked at ({error}); look at the disk's health") from error
+    if size > 0:  # SQLite would mix its lessons into the new file
         raise KnowledgeError(
             f"{path}: is gone, but its log {orphan.name} is still there and may hold lessons; "
             "put the file back beside it, or move the log away"

@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Self
 
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.error import KnowledgeError, StuckError
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
@@ -91,6 +91,7 @@ class JournalWriter:
         self._waiting: list[JournalEntry] = []
         self._statistics: Statistics | None = None
         self._flushes: list[_Flush] = []
+        self._stuck = False
         self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
         self._thread.start()
 
@@ -199,9 +200,13 @@ class JournalWriter:
         while True:
             stop = self._take_in(pause_s)
             try:
+                if self._stuck:
+                    self._journal.reconnect()
+                    self._stuck = False
                 self._write()
             except KnowledgeError as error:
                 self._failure = str(error)
+                self._stuck = self._stuck or isinstance(error, StuckError)
                 pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
             else:
                 self._failure = None

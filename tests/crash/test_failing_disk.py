@@ -1,17 +1,20 @@
 """Each call that SQLite makes to the disk fails once, or for a while: no lesson is lost, none comes twice."""
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
+from kurt2rt.knowledge.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.error import KnowledgeError, StuckError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import Acknowledgement
-from tests.crash.patience import LESSONS, a_lesson_at_a_time, with_patience
+from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from tests.crash.patience import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
 from tests.crash.taught import require_kept
 from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched
-from tests.knowledge.lessons import BINDING, STAMP
+from tests.knowledge.lessons import BINDING, STAMP, created, entry
 
 
 def calls_of_a_lesson_at_a_time(path: Path) -> list[Call]:
@@ -52,3 +55,38 @@ def test_a_call_that_fails_costs_no_lesson(folder: Path, failure: Failure) -> No
 @pytest.mark.parametrize("failure", Failure)
 def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(folder: Path, failure: Failure, lasts: int) -> None:
     assert set(fail_each_call(folder, failure, lasts, every=1)) == set(Call)
+
+
+class StuckJournal(Journal):
+    """Its locks are stuck until it connects anew, which does not succeed at once."""
+
+    stuck = True
+    tries = 0
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        if self.stuck:
+            raise StuckError(f"{self.path}: its locks are stuck")
+        return super().append(entries)
+
+    def reconnect(self) -> None:
+        self.tries += 1
+        super().reconnect()
+        if self.tries < 3:
+            raise KnowledgeError(f"{self.path}: cannot be opened")
+        self.stuck = False
+
+
+def test_a_writer_whose_locks_are_stuck_begins_anew_and_loses_nothing(folder: Path) -> None:
+    path = folder / "knowledge"
+    journal = StuckJournal.open(path, BINDING)
+    journal.stuck = False
+    journal.append([entry(1)])
+    journal.stuck = True
+    with JournalWriter(journal, now=lambda: STAMP, retry=SOON) as writer:
+        writer.submit(created(2))
+        writer.submit(created(3))
+        assert writer.flush(LONGEST_S)
+        assert writer.trouble is None
+        assert [each.sequence for each in writer.acknowledged()] == [2, 3]
+    assert journal.tries == 3
+    require_kept(path, told=3)
