@@ -1,7 +1,7 @@
 """What a recording shows without a word of the project's own: Foxglove's scan, pose, transform, scene and log."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 from foxglove.messages import (
     Color,
@@ -24,17 +24,16 @@ from foxglove.messages import (
     Vector3,
 )
 
-from hal.robot_settings import RobotSettings, SensorSettings
+from hal.robot_settings import RobotSettings
 from kurt2rt.channel.ground import WorldView
 from kurt2rt.layers.decision import Decision
 from kurt2rt.recording.odometry import PlanePose
+from kurt2rt.recording.rays import SCAN_STEP_DEG, SensorRays
 from kurt2rt.rla.rla import rla_title
 
 ROBOT, START, WORLD = "robot", "start", "world"
 """Frames: the robot's centre; where it was switched on, by its encoders; the simulated world."""
 
-SCAN_STEP_DEG = 3
-_SCAN_RAYS = 360 // SCAN_STEP_DEG
 _DRIVES = Color(r=0.15, g=0.55, b=0.3, a=1.0)
 _ASKS = Color(r=0.9, g=0.6, b=0.1, a=1.0)
 _STANDS = Color(r=0.7, g=0.2, b=0.2, a=1.0)
@@ -72,37 +71,29 @@ class RobotPictures:
     """Scans and scenes of one robot."""
 
     def __init__(self, settings: RobotSettings) -> None:
-        self._infrared = settings.infrared
         self._length_m = settings.geometry.outline_length_m
         self._width_m = settings.geometry.outline_width_m
-        self._rays = [(sensor.x_m, sensor.y_m, *_direction(sensor)) for sensor in settings.infrared.sensors]
+        self._rays = SensorRays(settings.infrared)
 
-    def scan(self, counts: Iterable[int], time_ns: int) -> LaserScan:
-        """What the sensors see, as seen from the robot's centre: infinite where none sees anything.
-
-        A scan has rays at even angles, so each sensor's hit stands in the ray next to it.
-        """
-        ranges = [math.inf] * _SCAN_RAYS
-        for x_m, y_m, seen in self._hits(counts):
-            if seen:
-                ray = round(math.degrees(math.atan2(y_m, x_m)) / SCAN_STEP_DEG) % _SCAN_RAYS
-                ranges[ray] = min(ranges[ray], math.hypot(x_m, y_m))
+    def scan(self, counts: Sequence[int], time_ns: int) -> LaserScan:
+        """What the sensors see, as seen from the robot's centre."""
         return LaserScan(
             timestamp=timestamp(time_ns),
             frame_id=ROBOT,
             pose=_pose(PlanePose(0.0, 0.0, 0.0)),
             start_angle=0.0,
             end_angle=math.radians(360 - SCAN_STEP_DEG),
-            ranges=ranges,
+            ranges=self._rays.scan_m(counts),
         )
 
-    def scene(self, counts: Iterable[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
+    def scene(self, counts: Sequence[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
         """The robot's outline, the rays of its sensors, and what drives it as text."""
         points: list[Point3] = []
         colors: list[Color] = []
-        for (from_x_m, from_y_m, _, _), (x_m, y_m, seen) in zip(self._rays, self._hits(counts), strict=True):
-            points += (Point3(x=from_x_m, y=from_y_m, z=_RAY_HEIGHT_M), Point3(x=x_m, y=y_m, z=_RAY_HEIGHT_M))
-            colors += [_RAY if seen else _FAR_RAY] * 2
+        for ray in self._rays.of(counts):
+            points.append(Point3(x=ray.from_x_m, y=ray.from_y_m, z=_RAY_HEIGHT_M))
+            points.append(Point3(x=ray.to_x_m, y=ray.to_y_m, z=_RAY_HEIGHT_M))
+            colors += [_RAY if ray.seen else _FAR_RAY] * 2
         color = _DRIVES if decision.driving else _ASKS if decision.asking else _STANDS
         body = CubePrimitive(
             pose=_pose(PlanePose(0.0, 0.0, 0.0), _ROBOT_HEIGHT_M / 2),
@@ -134,15 +125,6 @@ class RobotPictures:
             texts=[text],
         )
         return SceneUpdate(entities=[entity])
-
-    def _hits(self, counts: Iterable[int]) -> list[tuple[float, float, bool]]:
-        """Where each ray ends, x and y in metres, and whether something is there."""
-        far_m = self._infrared.far_m
-        hits = []
-        for (x_m, y_m, dx, dy), count in zip(self._rays, counts, strict=True):
-            away_m = self._infrared.distance_m(count)
-            hits.append((x_m + away_m * dx, y_m + away_m * dy, away_m < far_m))
-        return hits
 
 
 def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
@@ -186,11 +168,6 @@ def words_of(decision: Decision, behaviour: str) -> str:
     if decision.action is not None:
         return f"{decision.action}, as the teacher says"
     return "asks" if decision.asking else f"stands: {decision.cause.value}"
-
-
-def _direction(sensor: SensorSettings) -> tuple[float, float]:
-    heading_rad = math.radians(sensor.heading_deg)
-    return math.cos(heading_rad), math.sin(heading_rad)
 
 
 def _pose(pose: PlanePose, height_m: float = 0.0) -> Pose:
