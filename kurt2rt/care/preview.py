@@ -21,8 +21,6 @@ class Tried:
     """What an undo would have changed in one run."""
 
     run: str
-    began_s: float
-    """Time of the runtime's clock at the first tick."""
     found: Counterfactual
 
 
@@ -58,14 +56,10 @@ def preview_undo(path: Path, lesson: str | None, of: str | None, recordings: Pat
 
 
 def _tried(run: Run, before: Known, after: Known, report: Report) -> Tried:
-    began_s = list[float]()
-
     def on_tick(tick: ReplayedTick) -> None:
-        if not began_s:
-            began_s.append(tick.entry.now_s)
         if tick.entry.number % REPORT_EVERY == 1:
             report(run.name, tick.entry.number)
 
     old, new = (Shadow(run, each.events, each.statistics) for each in (before, after))
     found = counterfactual(run, new, old, on_tick)
-    return Tried(run.name, began_s[0] if began_s else 0.0, found)
+    return Tried(run.name, found)

@@ -89,7 +89,7 @@ def _verdict_in_words(run: Run, verdict: Verdict) -> Iterator[str]:
         )
     else:
         first = verdict.differences[0]
-        yield f"not the same: after {verdict.ticks} ticks, at {first.now_s:.2f} s (tick {first.tick}):"
+        yield f"not the same: {verdict.ticks} ticks were, and after {verdict.lasted_s:.2f} s, came tick {first.tick}:"
         for each in verdict.differences[:_DIFFERENCES]:
             yield f"  {each.in_words}"
         if len(verdict.differences) > _DIFFERENCES:
@@ -110,7 +110,6 @@ def _verdict_as_json(run: Run, verdict: Verdict) -> dict[str, Any]:
         "differences": [
             {
                 "tick": each.tick,
-                "now_s": each.now_s,
                 "field": each.field,
                 "recorded": repr(each.recorded),
                 "replayed": repr(each.replayed),
@@ -232,6 +231,6 @@ def _bar(run: Run) -> Iterator[OnTick]:
 
         def on_tick(tick: ReplayedTick) -> None:
             if tick.entry.number % _TELL_EVERY_TICKS == 0:
-                report("replay", tick.entry.now_s, max(whole_s, tick.entry.now_s))
+                report("replay", run.second_of(tick.entry), max(whole_s, run.second_of(tick.entry)))
 
         yield on_tick

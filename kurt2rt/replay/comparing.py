@@ -12,7 +12,6 @@ class Difference(NamedTuple):
     """Something that came out differently."""
 
     tick: int
-    now_s: float
     field: str
     """Dots between its levels."""
     recorded: object
@@ -24,7 +23,7 @@ class Difference(NamedTuple):
         return f"{self.field} was {_said(self.recorded)}, and is {_said(self.replayed)} now"
 
     def __str__(self) -> str:
-        return f"at {self.now_s:.2f} s (tick {self.tick}) {self.in_words}"
+        return f"tick {self.tick}: {self.in_words}"
 
 
 def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
@@ -35,7 +34,7 @@ def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
     again = tick_entry_of(record, saved=entry.saved, knowledge=knowledge)
     if again == entry:
         return []
-    return [Difference(entry.tick, entry.now_s, *each) for each in _differences("", entry, again)]
+    return [Difference(entry.tick, *each) for each in _differences("", entry, again)]
 
 
 def _differences(place: str, recorded: object, replayed: object) -> Iterator[tuple[str, object, object]]:

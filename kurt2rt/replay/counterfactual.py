@@ -24,7 +24,7 @@ class Stretch(NamedTuple):
 
     level: str
     from_s: float
-    """Time of the runtime's clock at the first tick."""
+    """At the first tick, since the first tick of the run."""
     to_s: float
     """At the last one."""
     ticks: int
@@ -76,7 +76,10 @@ def counterfactual(
     before: Look = answers_then if was is None else was.look
     count = _Count()
     for tick in replay:
-        count.take_in(tick.record, before(tick.record, replay.runtime), would_be.look(tick.record, replay.runtime))
+        at_s = run.second_of(tick.entry)
+        count.take_in(
+            at_s, tick.record, before(tick.record, replay.runtime), would_be.look(tick.record, replay.runtime)
+        )
         if on_tick is not None:
             on_tick(tick)
     return count.result(run.trouble)
@@ -90,14 +93,15 @@ class _Count:
         self._open: dict[str, Stretch] = {}
         self._stretches: list[Stretch] = []
 
-    def take_in(self, record: TickRecord, was: Answers, would_be: Answers) -> None:
-        """One tick."""
+    def take_in(self, at_s: float, record: TickRecord, was: Answers, would_be: Answers) -> None:
+        """One tick, `at_s` since the first one."""
         self._ticks += 1
         decides = record.decision.cause in _DECIDES
         self._decided += decides
-        self._follow(BASIC, record, was.basic, would_be.basic, decides=decides and record.decision.asks_at == BASIC)
+        basic = decides and record.decision.asks_at == BASIC
+        self._follow(BASIC, at_s, was.basic, would_be.basic, decides=basic)
         if was.mid is not None and would_be.mid is not None:
-            self._follow(MID, record, was.mid, would_be.mid, decides=decides)
+            self._follow(MID, at_s, was.mid, would_be.mid, decides=decides)
 
     def result(self, trouble: str) -> Counterfactual:
         """All that was counted."""
@@ -113,18 +117,18 @@ class _Count:
             trouble,
         )
 
-    def _follow(self, level: str, record: TickRecord, was: Answer, would_be: Answer, *, decides: bool) -> None:
+    def _follow(self, level: str, at_s: float, was: Answer, would_be: Answer, *, decides: bool) -> None:
         differs = decides and was.action != would_be.action
         if differs:
             self._note(level, was, would_be)
         stretch = self._open.get(level)
         if differs and stretch is not None and _alike(stretch, was, would_be):
-            self._open[level] = stretch._replace(to_s=record.now_s, ticks=stretch.ticks + 1)
+            self._open[level] = stretch._replace(to_s=at_s, ticks=stretch.ticks + 1)
             return
         if stretch is not None:
             self._stretches.append(self._open.pop(level))
         if differs:
-            self._open[level] = Stretch(level, record.now_s, record.now_s, 1, was, would_be)
+            self._open[level] = Stretch(level, at_s, at_s, 1, was, would_be)
 
     def _note(self, level: str, was: Answer, would_be: Answer) -> None:
         if level == MID:

@@ -82,6 +82,8 @@ class Replay:
 def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
     """The runtime as it was after the last tick that began by `now_s` of the runtime's clock, and that tick.
 
+    `Run.began_s` is that of the first tick.
+
     Of a time before the first tick, the first. Raises RecordingError, also for a run without ticks.
     """
     replay = Replay(run)

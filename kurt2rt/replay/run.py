@@ -52,6 +52,8 @@ class Run:
         self._torn = torn
         self._ends_s = ends_s
         self._gap = ""
+        self.began_s: float | None = None
+        """Time of the runtime's clock at the first tick; None until that was read."""
         self._check()
 
     @property
@@ -61,8 +63,13 @@ class Run:
 
     @property
     def lasts_s(self) -> float:
-        """Time of the runtime's clock at the last tick; 0 where nobody knows. Reads the last segment."""
-        return self._ends_s()
+        """From the first tick to the last, by the runtime's clock; 0 where nobody knows. Reads the last segment."""
+        first = next(self.entries(), None)
+        return 0.0 if first is None else max(self._ends_s() - first.now_s, 0.0)
+
+    def second_of(self, entry: TickEntry) -> float:
+        """How long after the first tick one began that was read."""
+        return 0.0 if self.began_s is None else entry.now_s - self.began_s
 
     @property
     def whole(self) -> bool:
@@ -105,11 +112,13 @@ class Run:
         """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
         self._gap = ""
         for number, entry in enumerate(self._read(), start=1):
+            if number == 1:
+                self.began_s = entry.now_s
             if entry.number != number:
                 missing = entry.number - number
                 self._gap = (
-                    f"{missing} ticks before {entry.now_s:.2f} s (tick {entry.tick}) are not in the recording, "
-                    "so what came after them cannot be replayed"
+                    f"{missing} ticks before {self.second_of(entry):.2f} s (tick {entry.tick}) are not in the "
+                    "recording, so what came after them cannot be replayed"
                 )
                 return
             yield entry

@@ -34,16 +34,15 @@ class Verdict:
 def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> Verdict:
     """Replay a run up to the first difference. `on_tick` is called for each tick. Raises RecordingError."""
     ticks = knowledge = 0
-    first_s = last_s = 0.0
+    lasted_s = 0.0
     differences: list[Difference] = []
     for tick in Replay(run):
         differences = compare(*tick)
         if differences:
             break
-        last_s = tick.entry.now_s
-        first_s = first_s if ticks else last_s
+        lasted_s = run.second_of(tick.entry)
         ticks += 1
         knowledge += tick.entry.knowledge is not None
         if on_tick is not None:
             on_tick(tick)
-    return Verdict(ticks, last_s - first_s, knowledge, tuple(differences), run.trouble, run.whole)
+    return Verdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)

@@ -144,7 +144,7 @@ def test_what_came_after_a_gap_is_not_replayed_and_that_is_said() -> None:
     run = part_of(stored("walls"), range(201, 204))
     assert differences(run) == (200, [])
     assert not run.whole
-    assert run.trouble.startswith("3 ticks before 2.04 s (tick 204) are not in the recording")
+    assert run.trouble.startswith("3 ticks before 2.03 s (tick 204) are not in the recording")
 
 
 def test_a_run_whose_beginning_is_gone_says_so() -> None:

@@ -87,8 +87,7 @@ def _changes(tried: Tried) -> Iterator[str]:
     yield f"{tried.run}: of {found.decided} decisions: {kinds}; the longest:"
     longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_STRETCHES]
     for each in sorted(longest, key=lambda each: each.from_s):
-        from_s, to_s = each.from_s - tried.began_s, each.to_s - tried.began_s
-        yield f"  {from_s:7.2f} to {to_s:7.2f} s  {said(each.would_be)}, instead of {said(each.was)}"
+        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {said(each.would_be)}, instead of {said(each.was)}"
 
 
 def _told(record: LessonRecord) -> str:

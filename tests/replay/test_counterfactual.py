@@ -1,0 +1,138 @@
+"""Other knowledge looks on at a run, and it is told where it would have decided otherwise."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.recording.error import RecordingError
+from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import ReplayedTick
+from kurt2rt.replay.run import Run
+from kurt2rt.replay.shadow import Shadow, shadow_of
+from kurt2rt.rla.rla import BASIC, MID, ActionReplaced, Origin, Phase, Rla, RlaCreated, TeachingEvent
+from tests.replay.stories import STORED, STORIES
+
+ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
+
+
+@pytest.fixture(scope="module", params=STORIES)
+def name(request: pytest.FixtureRequest) -> str:
+    said: str = request.param
+    return said
+
+
+def stored(name: str) -> Run:
+    return read_run(STORED / f"{name}.mcap")
+
+
+def taught_in(run: Run) -> list[TeachingEvent]:
+    return [event for entry in run.entries() for event in entry.events]
+
+
+@pytest.fixture(scope="module")
+def lessons() -> dict[str, list[TeachingEvent]]:
+    return {name: taught_in(stored(name)) for name in STORIES}
+
+
+def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
+    name: str, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored(name)
+    found = counterfactual(run, Shadow(run, lessons[name]), Shadow(run, lessons[name]))
+    assert found.same
+    assert found.ticks == 4400
+
+
+def test_who_knows_nothing_would_have_asked_wherever_it_drove(
+    name: str, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored(name)
+    whole = Shadow(run, lessons[name])
+    found = counterfactual(run, Shadow(run, ()), whole)
+    assert found.would_ask > 1000
+    assert (found.other_action, found.would_drive) == (0, 0)
+    stretch = next(each for each in found.stretches if each.level == BASIC)
+    assert stretch.would_be == (None, None, math.inf, 0.0)
+    assert stretch.was.rla is not None
+    assert stretch.was.share_of_radius <= 1.0
+    assert sum(each.ticks for each in found.stretches if each.level == BASIC) == found.would_ask
+    assert all(each.from_s <= each.to_s <= 44.0 for each in found.stretches)
+
+
+def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("errand")
+    assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
+
+
+def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("walls")
+    stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
+    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 4400 - stood
+
+
+def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
+    lessons: dict[str, list[TeachingEvent]],
+) -> None:
+    run = stored("walls")
+    known = lessons["walls"]
+    used = Shadow(run, known)
+    counted: dict[int, int] = {}
+    for each in counterfactual(run, Shadow(run, ()), used).stretches:
+        assert each.was.rla is not None
+        counted[each.was.rla.rla_id] = counted.get(each.was.rla.rla_id, 0) + each.ticks
+    most = max(counted, key=lambda rla_id: counted[rla_id])
+    other = "back" if used_action(used, most) != "back" else "forward"
+    found = counterfactual(run, Shadow(run, [*known, ActionReplaced(most, other, "", ORIGIN)]), used)
+    assert found.other_action == counted[most]
+    assert {each.would_be.action for each in found.stretches} == {other}
+    assert {each.would_be.rla.rla_id for each in found.stretches if each.would_be.rla is not None} == {most}
+
+
+def used_action(shadow: Shadow, rla_id: int) -> str:
+    rla = shadow._system.get(rla_id)
+    assert rla is not None
+    return rla.action
+
+
+def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("errand")
+    known = lessons["errand"]
+    whole = Shadow(run, known)
+    ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
+    less = [event for event in known if not isinstance(event, RlaCreated) or event.rla.level != MID]
+    found = counterfactual(run, Shadow(run, less), whole)
+    assert ways
+    assert found.mid_otherwise > 100
+    assert (found.other_action, found.would_ask, found.would_drive) == (0, 0, 0)
+    assert {each.level for each in found.stretches} == {MID}
+
+
+def test_each_tick_is_told_of() -> None:
+    run = stored("walls")
+    seen: list[ReplayedTick] = []
+    found = counterfactual(run, Shadow(run, ()), on_tick=seen.append)
+    assert isinstance(found, Counterfactual)
+    assert [tick.entry.number for tick in seen] == list(range(1, 4401))
+    assert not found.trouble
+
+
+def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
+    tmp_path: Path, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored("walls")
+    path = tmp_path / "walls.knowledge"
+    with open_knowledge(path, run.robot, run.task) as journal:
+        journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in lessons["walls"]])
+    before = path.read_bytes()
+    assert counterfactual(run, shadow_of(run, path), Shadow(run, lessons["walls"])).same
+    assert path.read_bytes() == before
+
+
+def test_knowledge_of_other_features_is_refused() -> None:
+    run = stored("walls")
+    with pytest.raises(RecordingError, match="this knowledge cannot decide there"):
+        Shadow(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])
