@@ -32,7 +32,8 @@ EVENT_VERSION = 6
 Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
 behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
 rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
-Up to version 4 no situation was named. Up to version 5 nothing was redone, nor merged from another file.
+Up to version 4 no situation was named. Up to version 5 nothing was redone, nor merged from another file, and no
+credit told of which edge it was.
 """
 
 _ADDED: tuple[tuple[int, str, str, object], ...] = (
@@ -107,7 +108,7 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
                 "rla_id": rla_id,
                 "value": value,
                 "decided_at_tick": decided_at_tick,
-                "credits": [[credit.rla_id, credit.change] for credit in credits_],
+                "credits": [[*credit] if credit.before is not None else [*credit[:2]] for credit in credits_],
                 "said": said,
             }
         case Appraised(appraisal, value, decided_at_tick, _):
@@ -208,13 +209,17 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
 
 
 def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
-    pairs = _value(content, "credits")
-    if not isinstance(pairs, list) or not all(isinstance(pair, list) and len(pair) == 2 for pair in pairs):
-        raise ValueError("credits must be a list of pairs of an RLA's id and a number")
+    rows = _value(content, "credits")
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) in (2, 3) for row in rows):
+        raise ValueError("credits must be a list of pairs of an RLA's id and a number, or with the id of one before it")
     return tuple(
-        Credit(_whole({"rla_id of a credit": rla_id}, "rla_id of a credit", least=1), _number(change, "credits"))
-        for rla_id, change in pairs
+        Credit(_id_of_credit(rla_id), _number(change, "credits"), *map(_id_of_credit, before))
+        for rla_id, change, *before in rows
     )
+
+
+def _id_of_credit(value: object) -> int:
+    return _whole({"rla_id of a credit": value}, "rla_id of a credit", least=1)
 
 
 def _opinion(content: dict[str, Any], key: str) -> int:

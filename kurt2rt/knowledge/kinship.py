@@ -14,6 +14,7 @@ from kurt2rt.rla.lesson_book import LessonRecord, Pile, pile_of
 from kurt2rt.rla.rla import (
     ActionReplaced,
     ActionWithdrawn,
+    Credit,
     KnowledgeMerged,
     Lesson,
     RlaCreated,
@@ -115,7 +116,9 @@ class Kinship:
                 return RlaCreated(replace(rla, rla_id=rla_id, origin=origin))
             case RlaRewarded():
                 credits_ = tuple(
-                    each._replace(rla_id=self.rlas[each.rla_id]) for each in lesson.credits if each.rla_id in self.rlas
+                    Credit(self.rlas[each.rla_id], each.change, each.before and self.rlas[each.before])
+                    for each in lesson.credits
+                    if each.rla_id in self.rlas and (each.before is None or each.before in self.rlas)
                 )
                 return replace(lesson, rla_id=self.rlas[lesson.rla_id], origin=origin, credits=credits_)
             case ActionReplaced() | ActionWithdrawn() | RlaDeleted():

@@ -41,10 +41,13 @@ class EdgeWeights:
         self._before = rla_id
 
     def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
-        """What the change of the weights does to the worths."""
+        """What each weight changes by, as a share of the first one: falling weights are worth more."""
+        present = self._accounts.present
         return tuple(
-            Credit(rla_id, _worth(edges) - _worth(self._accounts.present.get(rla_id)))
+            Credit(rla_id, (present.get(rla_id, {}).get(before, FIRST_WEIGHT) - edges[before]) / FIRST_WEIGHT, before)
             for rla_id, edges in self._changed(value, trace).items()
+            for before in edges
+            if edges[before] != present.get(rla_id, {}).get(before)
         )
 
     def take(self, value: int, trace: Trace) -> None:
@@ -52,13 +55,17 @@ class EdgeWeights:
         self._accounts.present.update(self._changed(value, trace))
 
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
-        """Shift all edges into an RLA, so that its worth changes by the credit: which edge it was is not kept."""
-        for (rla_id, change), depth in bookings:
+        """Change the edge that a credit is of; in old journals it is of an RLA, and shifts all edges into that one."""
+        for (rla_id, change, before), depth in bookings:
             edges = self._accounts.at(rla_id, depth)
-            if edges is None:
+            if edges is None and (before is None or sign < 0):
                 continue
-            shifted = {before: _bounded(weight - sign * change * FIRST_WEIGHT) for before, weight in edges.items()}
-            self._accounts.put(rla_id, depth, shifted)
+            edges = dict(edges or {})
+            if before is not None and sign > 0:
+                edges.setdefault(before, FIRST_WEIGHT)
+            for edge in edges if before is None else edges.keys() & {before}:
+                edges[edge] = _bounded(edges[edge] - sign * change * FIRST_WEIGHT)
+            self._accounts.put(rla_id, depth, edges)
 
     def worth(self, rla_id: int) -> float:
         """From -1 to 1; 0 for one that nothing was ever said of."""

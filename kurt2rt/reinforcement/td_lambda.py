@@ -59,12 +59,14 @@ class TdLambda:
 
     def take(self, value: int, trace: Trace) -> None:
         """V_i += alpha r e_i(t)."""
-        for rla_id, change in self.credits_of(value, trace):
+        for rla_id, change, _ in self.credits_of(value, trace):
             self._add(rla_id, change)
 
     def book(self, bookings: Iterable[Booking], sign: int) -> None:
         """Add credits to values, or take them off."""
-        for (rla_id, change), depth in bookings:
+        for (rla_id, change, before), depth in bookings:
+            if before is not None:  # of the other rule
+                continue
             earned = self._accounts.at(rla_id, depth)
             if earned is not None or sign > 0:
                 self._accounts.put(rla_id, depth, (earned or 0.0) + sign * change)

@@ -123,7 +123,9 @@ class Credit(NamedTuple):
 
     rla_id: int
     change: float
-    """What its value was changed by."""
+    """What its value was changed by; with `before` what that of the edge was."""
+    before: int | None = None
+    """The RLA before it, where it was an edge of the network whose weight was changed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,7 @@ events = st.one_of(
     st.builds(
         RlaRewarded,
         *(ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
-        st.lists(st.builds(Credit, ids, numbers), max_size=5).map(tuple),
+        st.lists(st.builds(Credit, ids, numbers, st.none() | ids), max_size=5).map(tuple),
         st.none() | opinions,
     ),
     st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
@@ -150,7 +150,8 @@ def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
         (rewarded(1), "version", 3, "rewarded has no 'credits' in version 3"),
         (rewarded(1), "said", 2, "said must be -1, 0 or 1, not 2"),
         (rewarded(1), "credits", None, "credits must be a list of pairs"),
-        (rewarded(1), "credits", [[1, 0.5, 2]], "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[1, 0.5, 2, 3]], "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[1, 0.5, 0]], "rla_id of a credit must be a whole number from 1"),
         (rewarded(1), "credits", [[0, 0.5]], "rla_id of a credit must be a whole number from 1"),
         (rewarded(1), "credits", [[1, "much"]], "credits must be made of finite numbers"),
         (APPRAISED, "value", 2, "value must be -1, 0 or 1, not 2"),

@@ -64,7 +64,7 @@ def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
     for _ in range(10_000):
         learner.take(1, last)
     assert learner.edge_weights == {(3, 4): 10.0}
-    assert learner.credits_of(1, last) == (Credit(4, 0.0),)
+    assert learner.credits_of(1, last) == ()
 
 
 def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
@@ -79,19 +79,36 @@ def test_standing_is_no_way_from_one_to_the_other() -> None:
     assert rule(1, None, 2, 2, 3).edge_weights == {(2, 3): 100.0}
 
 
-def test_credits_tell_by_what_worths_change_and_an_undo_takes_them_off() -> None:
+def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_other() -> None:
     learner = rule(1, 2, 3, 4, 2, 4)
-    before = {rla_id: learner.worth(rla_id) for rla_id in (2, 3, 4)}
+    before = learner.edge_weights
     credits_ = learner.credits_of(-1, LAST)
-    assert {credit.rla_id for credit in credits_} == {2, 3, 4}
+    assert {(credit.before, credit.rla_id) for credit in credits_} == {(1, 2), (2, 3), (3, 4)}
     learner.take(-1, LAST)
-    for rla_id, change in credits_:
-        assert learner.worth(rla_id) == pytest.approx(before[rla_id] + change)
+    blamed = learner.edge_weights
+    for rla_id, change, edge_from in credits_:
+        assert edge_from is not None
+        assert blamed[edge_from, rla_id] == pytest.approx(100 - 100 * change)
     learner.take(1, Trace({}, ((2, 4),)))
-    now = {rla_id: learner.worth(rla_id) for rla_id in (2, 3, 4)}
-    learner.book([Booking(credit, 0) for credit in credits_], -1)
-    for rla_id, change in credits_:
-        assert learner.worth(rla_id) == pytest.approx(now[rla_id] - change)
+    bookings = [Booking(credit, 0) for credit in credits_]
+    learner.book(bookings, -1)
+    assert learner.edge_weights == pytest.approx({**before, (2, 4): 90.0})
+    learner.book(bookings, 1)
+    assert learner.edge_weights == pytest.approx({**blamed, (2, 4): 90.0})
+
+
+def test_credits_from_the_journal_make_the_edges_that_they_are_of() -> None:
+    learner = rule()
+    learner.book([Booking(Credit(4, 0.1, 3), 0), Booking(Credit(4, -0.5, 2), 0)], 1)
+    assert learner.edge_weights == pytest.approx({(3, 4): 90.0, (2, 4): 150.0})
+    learner.book([Booking(Credit(9, 0.1, 3), 0)], -1)
+    assert (3, 9) not in learner.edge_weights
+
+
+def test_credits_of_an_earlier_kurt2rt_shift_all_edges_into_an_rla() -> None:
+    learner = rule(3, 4, 2, 4)
+    learner.book([Booking(Credit(4, 0.1), 0)], 1)
+    assert learner.edge_weights[3, 4] == learner.edge_weights[2, 4] == pytest.approx(90.0)
 
 
 def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
