@@ -80,7 +80,7 @@ class RunRecorder:
         # Counted apart, for two threads count.
         self._without_room = self._not_written = 0
         self._failure = ""
-        self._unsaved = 0
+        self._unsaved = self._notes = 0
         self._world: WorldView | None = None
         self.written = 0
         """Ticks that the disk has."""
@@ -116,10 +116,11 @@ class RunRecorder:
             # The wall clock may be set meanwhile; the stamps go on evenly.
             self._began_at_ns = time.time_ns() - round(record.now_s * _NS_PER_S)
         truth = world = None
-        if self._ground is not None and record.tick % _PLACE_EVERY_TICKS == 0:
+        if self._ground is not None and self._notes % _PLACE_EVERY_TICKS == 0:
             truth = self._ground.place()
-            if record.tick % _WORLD_EVERY_TICKS == 0:
+            if self._notes % _WORLD_EVERY_TICKS == 0:
                 world = self._ground.world()
+        self._notes += 1
         self._note(_Ticked(record, saved, truth, world))
 
     def acknowledged(self, acknowledgement: Acknowledgement) -> None:

@@ -7,7 +7,7 @@ import pytest
 from kurt2rt.recording.entries import TickEntry, decode_tick
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.recording.topics import GROUND, HEALTH, SCENE, TICK, TRUTH
+from kurt2rt.recording.topics import GROUND, SCENE, TICK, TRUTH
 from tests.cli.helpers import CommandLine, running
 
 WORDS = ("run", "--seconds", "1.3", "--teacher", "none", "--knowledge", "mine.knowledge")
@@ -34,7 +34,7 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     assert len(numbers) > 10
     (segment,) = segments_in(run)
     topics = {each.topic for each in SegmentReader(segment).messages()}
-    assert {TICK, SCENE, TRUTH, GROUND, HEALTH} <= topics
+    assert {TICK, SCENE, TRUTH, GROUND} <= topics
 
 
 def test_to_another_folder_where_one_is_given(kurt2rt: CommandLine, folder: Path) -> None:

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
+from kurt2rt.channel.ground import Post, Wall, WorldView
+from kurt2rt.channel.state import SimulatedPlace
+from kurt2rt.health.plain import report_of
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.attachments import KNOWLEDGE
 from kurt2rt.recording.disk import RealDisk, WritableFile
@@ -16,10 +19,11 @@ from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.recording.segment_reader import LoggedMessage, SegmentReader
-from kurt2rt.recording.topics import LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK
+from kurt2rt.recording.topics import GROUND, HEALTH, LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK, TRUTH
 from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
+from tests.health.reports import WELL
 from tests.recording.desk_recording import ATTACHMENTS, BEGAN_AT_NS, HEAD, NAME, RecordedDesk
 from tests.recording.test_segment import FailingDisk
 
@@ -271,3 +275,40 @@ def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) 
     (segment,) = segments_in(tmp_path / "runs" / NAME)
     assert SegmentReader(segment).head().attachments == ATTACHMENTS
     assert "100 of its ticks and notes lost" in desk.recorder.trouble
+
+
+def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.run(1)
+    desk.recorder.healthy(WELL)
+    desk.recorder.close()
+    (told,) = messages_of(tmp_path / NAME, HEALTH)
+    assert report_of(json.loads(told.data)) == WELL
+
+
+class Elsewhere:
+    """The ground under a simulated robot."""
+
+    def place(self) -> SimulatedPlace:
+        return SimulatedPlace(1.0, 2.0, 0.0, 0.0, 0, 0)
+
+    def world(self) -> WorldView:
+        corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
+        return WorldView(0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (Post("post", 1.0, 1.0, 0.1),))
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        raise AssertionError(name, dx_m, dy_m)
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        raise AssertionError(x_m, y_m, heading_rad)
+
+
+def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk.recorder.tend()
+    for _ in range(6):
+        desk.second()
+    desk.recorder.close()
+    assert len(messages_of(tmp_path / NAME, TRUTH)) == 120
+    assert len(messages_of(tmp_path / NAME, GROUND)) == 2
