@@ -17,6 +17,7 @@ from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.channel.wire import encode_state
+from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import Phase
@@ -56,11 +57,13 @@ class Channel:
         telling: Telling,
         endpoint: Endpoint,
         pairing_trouble: Callable[[], tuple[str, ...]],
+        explaining: Explaining,
     ) -> None:
         self._reception = reception
         self._site = site
         self._telling = telling
         self._pairing_trouble = pairing_trouble
+        self._explaining = explaining
         self._texts: dict[str, str] = {}
         self._every_ticks = max(1, round(1 / (PICTURES_PER_S * runtime.robot.can.cycle_s)))
         self._ticks = 0
@@ -102,6 +105,7 @@ class Channel:
             else:
                 reception.settle(result.command_id, done(tick, result.text))
         self._telling.follow(record)
+        self._explaining.follow(record)
         self._ticks += 1
         if self._ticks % self._every_ticks == 0:
             self._site.show(encode_state(self._telling.picture(record)))
@@ -124,8 +128,16 @@ async def open_channel(
     boot = surroundings.boot
     hello = describe(runtime, boot, simulated=surroundings.ground is not None)
     stamp_of = surroundings.safekeeping.stamp_of
+    explaining = Explaining(runtime, stamp_of)
     reception = Reception(
-        runtime, boot, hello, stamp_of, surroundings.copies, surroundings.ground, health=surroundings.health
+        runtime,
+        boot,
+        hello,
+        stamp_of,
+        surroundings.copies,
+        surroundings.ground,
+        health=surroundings.health,
+        why=explaining.tell,
     )
     telling = Telling(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health
@@ -136,7 +148,7 @@ async def open_channel(
     try:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(_refresh, teachers, runtime)
-            yield Channel(runtime, reception, site, telling, endpoint, lambda: teachers.trouble)
+            yield Channel(runtime, reception, site, telling, endpoint, lambda: teachers.trouble, explaining)
             tasks.cancel_scope.cancel()
     finally:
         reception.close()

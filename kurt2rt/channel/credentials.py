@@ -28,7 +28,9 @@ AUTO = "auto"
 """Name of the scripted teacher."""
 TERMINAL = "terminal"
 """Name of whoever teaches from a terminal of the robot's own machine, so that the page can be open beside it."""
-OF_THIS_MACHINE = frozenset({LOCAL, AUTO, TERMINAL})
+ONLOOKER = "onlooker"
+"""Name of whoever only asks, at the robot's own machine, while others teach."""
+OF_THIS_MACHINE = frozenset({LOCAL, AUTO, TERMINAL, ONLOOKER})
 """Made on demand, by programs that can read both folders; nobody paired them."""
 RESERVED = frozenset({CRITIC})
 """In the journal these are no people; whoever had such a name would pass for the robot itself."""

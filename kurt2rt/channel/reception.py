@@ -30,6 +30,7 @@ from kurt2rt.channel.requests import (
     StopRequest,
     StreamRequest,
     TakeRequest,
+    WhyRequest,
     WorldRequest,
 )
 from kurt2rt.health.plain import plain_of
@@ -92,10 +93,11 @@ class Reception:
         *,
         longest_wait_s: float = LONGEST_WAIT_S,
         health: Callable[[], HealthReport | None] = lambda: None,
+        why: Callable[[], dict[str, Any] | None] = lambda: None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
-        `health`: the newest report; None before the first.
+        `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
         """
         self._runtime = runtime
         self._boot = boot
@@ -105,6 +107,7 @@ class Reception:
         self._ground = ground
         self._longest_wait_s = longest_wait_s
         self._health = health
+        self._why = why
         self._outcomes = Outcomes()
         self._newest: dict[str, Sender] = {}
         self._under_way: set[asyncio.Task[None]] = set()
@@ -139,6 +142,8 @@ class Reception:
             case HealthRequest():
                 health = self._health()
                 return Reply(Verdict.DONE, {"health": None if health is None else plain_of(health)})
+            case WhyRequest():
+                return Reply(Verdict.DONE, {"why": self._why()})
             case WorldRequest():
                 return self._world()
         return Reply(Verdict.NOT_HERE)

@@ -8,14 +8,20 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from hal.robot_settings import RobotSettings, load_robot
+from hal.settings import SettingsError
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
 from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.why_live import ask_why
+from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.from_run import Explained, explain_run
 from kurt2rt.explain.render import render_timeline, render_why
 from kurt2rt.explain.timeline import timeline_of
+from kurt2rt.explain.tipping import Tip
 from kurt2rt.recording.run_folder import find_run
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.run import Run
-from kurt2rt.service_settings import load_service
+from kurt2rt.service_settings import ServiceSettings, load_service
 
 _WIDE = 130
 _FORMATS = (".png", ".svg", ".pdf")
@@ -38,11 +44,25 @@ def why(
     limit: Annotated[
         int, typer.Option(min=1, help="Of a run with more stretches show those in which it did not drive by itself.")
     ] = _STRETCHES,
+    live: Annotated[
+        bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
+    ] = False,
+    name: Annotated[
+        str | None,
+        typer.Option("--as", help="With --live, ask as this paired device. Default: as an onlooker of this machine."),
+    ] = None,
+    robot: Annotated[
+        str | None, typer.Option(help="With --live, address of the robot. Default: as noted with the pairing.")
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(min=1, max=65535, help="With --live, UDP port of the robot. Default: as noted with the pairing."),
+    ] = None,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",
 ) -> None:
-    """Explain what the robot did, and why: of one moment of a run, or a run as a whole.
+    """Explain what the robot did, and why: at a moment of a run, in a whole run, or now.
 
     Of one moment: which RLA won and by how much, which was behind it, which
     features mattered, who taught it when and instead of what, how often it was
@@ -52,6 +72,7 @@ def why(
         kurt2rt why --at 12.34 --picture why.png
         kurt2rt why --from 60 --to 90 --picture minute.png
         kurt2rt why 20261122T031005Z-wall_following
+        kurt2rt why --live
 
     The run is replayed up to that moment, so what is told is what the robot
     knew then.
@@ -61,7 +82,15 @@ def why(
         raise typer.BadParameter("give a moment, or a part of the run with --from and --to", param_hint="--at")
     if to_s is not None and to_s <= from_s:
         raise typer.BadParameter(f"{to_s:g} is not behind --from {from_s:g}", param_hint="--to")
-    found = find_run(run, runs or Path(load_service(settings).recordings))
+    service = load_service(settings)
+    if live:
+        if run is not None or at is not None or from_s or to_s is not None:
+            raise typer.BadParameter("is of now; leave out run, --at, --from and --to", param_hint="--live")
+        _show_live(service, name, robot, port, picture)
+        return
+    if name is not None or robot is not None or port is not None:
+        raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
+    found = find_run(run, runs or Path(service.recordings))
     recorded = read_run(found)
     console = console_of(_WIDE)
     if at is None:
@@ -109,10 +138,37 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
             style="yellow",
         )
     if picture is not None:
-        from kurt2rt.explain.picture import draw_why
+        _draw(explained.facts, explained.tips, run.robot, where, picture)
 
-        draw_why(explained.facts, explained.tips, run.robot, where, picture)
-        _say_where(picture)
+
+def _show_live(
+    service: ServiceSettings, name: str | None, host: str | None, port: int | None, picture: Path | None
+) -> None:
+    device = _device(service, name or ONLOOKER)
+    robot = load_robot(service.robot)
+    facts, found = ask_why(device, host or device.host, port or device.port, robot)
+    where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
+    console_of(_WIDE).print(render_why(facts, found, where))
+    if picture is not None:
+        if not set(robot.infrared.names) <= set(facts.basic.names):
+            raise SettingsError(
+                f"{robot.name}: has other sensors than the robot that answers; name its settings in runtime settings"
+            )
+        _draw(facts, found, robot, where, picture)
+
+
+def _device(service: ServiceSettings, name: str) -> Device:
+    if name in OF_THIS_MACHINE:
+        return local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port).device
+    return read_device(Path(service.devices) / name)
+
+
+def _draw(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, where: str, picture: Path) -> None:
+    # Not at the top: matplotlib is an extra, and a robot does without it.
+    from kurt2rt.explain.picture import draw_why
+
+    draw_why(facts, found, robot, where, picture)
+    _say_where(picture)
 
 
 def _explain(run: Run, at_s: float) -> Explained:

@@ -35,9 +35,12 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     SituationsRequest,
     TakeRequest,
+    WhyRequest,
     WorldRequest,
 )
 from kurt2rt.channel.state import State
+from kurt2rt.explain.facts import DecisionFacts
+from kurt2rt.explain.plain import facts_of_plain
 from kurt2rt.health.plain import report_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import Phase
@@ -154,6 +157,15 @@ class TeacherClient(Lessons):
             return None if told is None else report_of(told)
 
         return await self._asking.told(HealthRequest(), read)
+
+    async def why(self) -> DecisionFacts | None:
+        """What the robot's newest decision rested on; None before its first tick."""
+
+        def read(response: Response) -> DecisionFacts | None:
+            told = facts_of(response).get("why")
+            return None if told is None else facts_of_plain(told)
+
+        return await self._asking.told(WhyRequest(), read)
 
     async def world(self) -> World | None:
         """The simulated world; None where the robot is a real one."""

@@ -22,6 +22,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.channel.site import Keys, RobotSite
 from kurt2rt.channel.telling import Safekeeping, Telling
+from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
@@ -106,6 +107,7 @@ class Desk:
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)
         copies: Copies = self.shelf
+        explaining = Explaining(self.runtime, stamp_of)
         self.reception = Reception(
             self.runtime,
             BOOT,
@@ -115,12 +117,15 @@ class Desk:
             ground,
             longest_wait_s=longest_wait_s,
             health=lambda: self.health,
+            why=explaining.tell,
         )
         safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
         self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health)
         # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
         self.site = RobotSite(cast(Keys, keys), self.reception)
-        self.channel = Channel(self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None), tuple)
+        self.channel = Channel(
+            self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None), tuple, explaining
+        )
         self.record: TickRecord
         self.written = 0
         self._number = 0

@@ -37,10 +37,12 @@ from kurt2rt.channel.requests import (
     StreamRequest,
     TakeRequest,
     UndoRequest,
+    WhyRequest,
     WorldRequest,
 )
 from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.explain.plain import facts_of_plain
 from kurt2rt.health.plain import report_of
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
@@ -78,7 +80,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
 }
 COMMANDS = {**MOVING, **LASTING}
-READING = {HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WorldRequest}
+READING = {HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest, WorldRequest}
 
 
 @pytest.fixture
@@ -484,6 +486,16 @@ async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_ma
     for device in ("ann", "bob"):
         told = decode_answer(encode_answer((await desk.ask(HealthRequest(), device)).body))
         assert report_of(told["health"]) == ILL
+
+
+async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))
+    facts = facts_of_plain(told["why"])
+    assert facts.tick == desk.tick
+    assert facts.basic.nearest is not None
+    (taught,) = facts.basic.nearest.acts
+    assert (taught.text, taught.teacher, taught.stamp) == ("RLA 1 taught: forward", "ann", STAMP)
 
 
 async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: Desk) -> None:

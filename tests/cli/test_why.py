@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, running
 from tests.replay.stories import STORED
 
 WALLS = STORED / "walls.mcap"
@@ -82,3 +82,29 @@ def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine,
 
 def test_where_nothing_was_recorded_the_answer_says_what_to_do(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "no recorded run" in kurt2rt.refused("why", "--runs", tmp_path)
+
+
+def test_a_robot_that_runs_is_asked_over_the_channel_by_an_onlooker(
+    kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with running("run", "--port", "0", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
+        port = robot.wait_for("UDP port").split()[-1]
+        robot.wait_for("stands and asks")
+        said = kurt2rt("why", "--live", "--port", port, "--picture", tmp_path / "now.svg")
+    assert said.exit_code == 0, said.err
+    assert "now: wall_following on kurt2-indoor, tick " in said.out
+    assert "Nothing was taught yet, so the robot asks." in said.out
+    assert "stands and asks" in (tmp_path / "now.svg").read_text(encoding="utf-8")
+
+
+def test_where_no_robot_runs_that_is_said(
+    kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert "no robot answers at 127.0.0.1:9 as onlooker" in kurt2rt.refused("why", "--live", "--port", "9")
+
+
+def test_now_is_no_moment_of_a_run(kurt2rt: CommandLine) -> None:
+    assert "is of now" in kurt2rt.misused("why", "--live", "--at", "3")
+    assert "give --live" in kurt2rt.misused("why", "--as", "phone")

@@ -36,7 +36,7 @@ from kurt2rt.channel.requests.organising import (
     SessionRequest,
     TakeRequest,
 )
-from kurt2rt.channel.requests.reading import HealthRequest, HelloRequest, LessonsRequest, SituationsRequest
+from kurt2rt.channel.requests.reading import HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest
 from kurt2rt.channel.requests.request import CommandRequest, Request, StreamRequest
 from kurt2rt.channel.requests.world import MoveWallRequest, PlaceRequest, WorldRequest
 from kurt2rt.channel.schema import Check
@@ -87,6 +87,7 @@ __all__ = [
     "TakeRequest",
     "UndoRequest",
     "WatchRequest",
+    "WhyRequest",
     "WorldRequest",
     "checks_of",
 ]
@@ -120,6 +121,7 @@ REQUESTS: tuple[type[Request], ...] = (
     ExportRequest,
     LessonsRequest,
     HealthRequest,
+    WhyRequest,
     WorldRequest,
     MoveWallRequest,
     PlaceRequest,

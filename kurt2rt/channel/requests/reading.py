@@ -35,3 +35,10 @@ class HealthRequest(Request):
     """How the robot's program, its bus, its disk and its machine are."""
 
     path: ClassVar[str] = "/health"
+
+
+@dataclass(frozen=True, slots=True)
+class WhyRequest(Request):
+    """What the newest decision rested on."""
+
+    path: ClassVar[str] = "/why"

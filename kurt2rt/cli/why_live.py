@@ -1,0 +1,56 @@
+"""What `kurt2rt why --live` asks a robot that runs."""
+
+from typing import NamedTuple
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.channel.credentials import Device
+from kurt2rt.explain.facts import DecisionFacts
+from kurt2rt.explain.tipping import Tip, tips
+from kurt2rt.perception.definition import load_situation
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.client import TeacherClient
+
+_FIRST_TICK_S = 0.1
+
+
+class Asked(NamedTuple):
+    """What a robot said of its newest decision."""
+
+    facts: DecisionFacts
+    tips: tuple[Tip, ...]
+    """Of the RLAs that it told of, the nearest ones; none where its task is not known here."""
+
+
+def ask_why(device: Device, host: str, port: int, robot: RobotSettings) -> Asked:
+    """Ask over the teacher's channel, as one who does not teach. Raises NoAnswerError, CredentialsError."""
+
+    async def ask() -> DecisionFacts:
+        async with TeacherClient(device.folder, host, port) as client:
+            client.watching = False  # who asks does not look at it: it is not told that its teacher is there
+            while (facts := await client.why()) is None:  # noqa: ASYNC110 - the first tick tells nobody
+                await anyio.sleep(_FIRST_TICK_S)
+            return facts
+
+    try:
+        facts = anyio.run(ask)
+    except NoAnswerError as error:
+        raise NoAnswerError(
+            f"no robot answers at {host}:{port} as {device.name}; is kurt2rt run running? ({error})"
+        ) from error
+    return Asked(facts, _tips_of(facts, robot))
+
+
+def _tips_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[Tip, ...]:
+    """Only those with which another RLA answers: whether the robot would ask, one farther off may decide."""
+    try:
+        definition = load_situation(load_task(facts.task).situation, robot.infrared.names)
+    except SettingsError:  # a task of the robot's own
+        return ()
+    if definition.names != facts.basic.names or len(facts.infrared_counts) != len(robot.infrared.sensors):
+        return ()
+    told_of_all = facts.basic.count <= 1 + len(facts.basic.others)
+    return tuple(tip for tip in tips(facts, definition, robot.infrared) if told_of_all or tip.rla is not None)
