@@ -25,6 +25,7 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
+from tests.replay.stories import STORED
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])
@@ -121,13 +122,16 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def folder(tmp_path: Path, taught: Path) -> Path:
-    """Where a reader works: a short task, and what the demo leaves behind."""
+    """Where a reader works: a short task, what the demo leaves behind, and a recorded run."""
     (tmp_path / TAUGHT_BY_THE_DEMO).parent.mkdir(parents=True)
     shutil.copy(taught, tmp_path / TAUGHT_BY_THE_DEMO)
     task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
     task["teaching"].update(supervised_s=5.0, corrections_s=3.0)
     task["exam"].update(duration_s=5.0)
     (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
+    recorded = tmp_path / "var/runs/20261122T031005Z-wall_following/0001.mcap"
+    recorded.parent.mkdir(parents=True)
+    shutil.copy(STORED / "walls.mcap", recorded)
     return tmp_path
 
 

@@ -1,0 +1,78 @@
+"""`kurt2rt replay`, of the stored runs."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.replay.reading import read_run
+from tests.cli.helpers import CommandLine
+from tests.replay.stories import STORED
+
+WALLS = STORED / "walls.mcap"
+
+
+def test_a_run_is_the_same_again(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("replay", WALLS)
+    assert said.exit_code == 0, said.err
+    assert "task wall_following, robot kurt2-indoor on sim, recorded by kurt2rt story" in said.out
+    assert "the same: 4400 ticks (44.0 s) were decided again as they were" in said.out
+
+
+def test_the_newest_run_is_meant_where_none_is_named(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    for name, story in (("20261122T031005Z-walls", "walls"), ("20261123T031005Z-errand", "errand")):
+        (tmp_path / name).mkdir()
+        shutil.copy(STORED / f"{story}.mcap", tmp_path / name / "0001.mcap")
+    said = json.loads(kurt2rt("replay", "--runs", tmp_path, "--json").out)
+    assert (said["task"], said["same"], said["ticks"], said["trouble"]) == ("errands", True, 4400, "")
+    said = json.loads(kurt2rt("replay", "20261122T031005Z-walls", "--runs", tmp_path, "--json").out)
+    assert said["task"] == "wall_following"
+
+
+def test_settings_of_today_change_nothing(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("hal.settings.CONFIG_DIR", tmp_path / "there are none")
+    settings = Path(__file__).parents[2] / "config" / "runtime" / "default.yaml"
+    said = kurt2rt("replay", WALLS, "--settings", settings)
+    assert said.exit_code == 0, said.err
+
+
+def test_what_comes_out_otherwise_is_named_and_ends_with_one(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kurt2rt.teaching.tuition.Tuition.event_of", _teaches_nothing)
+    said = kurt2rt("replay", WALLS)
+    assert said.exit_code == 1
+    assert "not the same: " in said.out
+    assert json.loads(kurt2rt("replay", WALLS, "--json").out)["differences"][0]["field"]
+
+
+def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    run = read_run(WALLS)
+    some = [event for entry in run.entries() for event in entry.events][:4]
+    knowledge = tmp_path / "some.knowledge"
+    with open_knowledge(knowledge, run.robot, run.task) as journal:
+        journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in some])
+    said = kurt2rt("replay", WALLS, "--with", knowledge, "--limit", "3")
+    assert said.exit_code == 0, said.err
+    assert f"of them knowledge had a say; with {knowledge}:" in said.out
+    assert "another action" in said.out
+    assert "where it would have decided otherwise: the longest 3 of " in said.out
+    as_json = json.loads(kurt2rt("replay", WALLS, "--with", knowledge, "--json").out)
+    assert as_json["same"] is False
+    assert sum(each["ticks"] for each in as_json["stretches"]) == (
+        as_json["other_action"] + as_json["would_ask"] + as_json["would_drive"]
+    )
+
+
+def test_no_run_and_no_knowledge_are_refused_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "no recorded run" in kurt2rt.refused("replay", "--runs", tmp_path)
+    assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--with", tmp_path / "nothing.knowledge")
+
+
+def _teaches_nothing(*_: object) -> tuple[str, None]:
+    return "nothing", None
