@@ -176,7 +176,7 @@ class RobotProgram:
             *((Need("recordings", self._look_at_recordings),) if self._orders.record else ()),
         )
         start = Start(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
-        with self._upkeep.ending.first(self._hold, lambda: loop.call_soon_threadsafe(waiting.cancel)):
+        with self._upkeep.ending.first(self._brake, lambda: loop.call_soon_threadsafe(waiting.cancel)):
             try:
                 await start.wait()
             except BaseException:
@@ -187,9 +187,13 @@ class RobotProgram:
             self._opened.robot.release()
 
     def _hold(self) -> None:
-        """Have a robot stand that is there before the rest."""
+        """Have a robot stand that is there before the rest, and look whether its bus still is."""
         if self._opened is not None:
             self._opened.robot.sense(time.monotonic())
+        self._brake()
+
+    def _brake(self) -> None:
+        if self._opened is not None:
             self._opened.robot.emergency_stop(_WAITS)
 
     def _take_robot(self) -> None:

@@ -1,10 +1,12 @@
 """The unit says what the issue asks of it, and systemd's own tools agree."""
 
 import shlex
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from config import CONFIG_DIR
 from kurt2rt.systemd.error import UnitError
 from kurt2rt.systemd.examination import MOST_EXPOSURE, examine, has_tool
 from kurt2rt.systemd.installing import install, uninstall
@@ -110,3 +112,10 @@ def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine, tmp_pa
     assert f"ExecStart={program()[0]} " in said.out
     assert " run --service --robot can1 --settings default --page\n" in said.out
     assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")
+
+
+def test_it_comes_with_pip() -> None:
+    project = tomllib.loads((CONFIG_DIR.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    patterns = project["tool"]["setuptools"]["package-data"]["config"]
+    packed = {path for pattern in patterns for path in CONFIG_DIR.glob(pattern)}
+    assert set((CONFIG_DIR / "service").iterdir()) <= packed
