@@ -37,6 +37,16 @@ class Manager:
             lines += self._socket.recv(4096).decode().splitlines()
         return lines
 
+    def hears(self, line: str, within_s: float) -> bool:
+        """Whether the line comes within so long a silence."""
+        self._socket.settimeout(within_s)
+        try:
+            while line not in self._socket.recv(4096).decode().splitlines():
+                pass
+        except TimeoutError:
+            return False
+        return True
+
     def close(self) -> None:
         self._socket.close()
 
