@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
-from kurt2rt.health.report import HealthReport
+from kurt2rt.health.report import SENSORS, HealthReport
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.question import FeatureDifference, ask
@@ -95,7 +95,7 @@ class Telling:
             session=school.session,
             clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
             guard=record.grant.reasons,
-            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.learning.trouble,
+            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.learning.trouble or self._urgent(),
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.ledger.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
@@ -119,6 +119,13 @@ class Telling:
     def _late(self) -> float:
         health = self._health()
         return self._runtime.ledger.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
+
+    def _urgent(self) -> str:
+        """What else the teacher should know at once, such as a disk without room; it may be a second old."""
+        health = self._health()
+        # Sensors that are silent are told by the cause, without delay.
+        urgent = () if health is None else (each for each in health.troubles if each.urgent and each.about != SENSORS)
+        return next((f"{each.what}; {each.to_do}" for each in urgent), "")
 
     def _radius(self, level: str) -> float:
         mid = self._runtime.mid

@@ -28,13 +28,19 @@ class MachineWatch:
         self._looked_at_s, self._used_s = now_s, used_s
         battery, discharging = battery_of(self._power)
         return Machine(
-            memory_bytes=int(_text(_PROC / "self" / "statm").split()[1]) * self._page_bytes,
+            memory_bytes=self._memory_bytes(),
             available_bytes=_available_bytes(),
             processor_share=share,
             threads=threading.active_count(),
             battery=battery,
             discharging=discharging,
         )
+
+    def _memory_bytes(self) -> int:
+        match _text(_PROC / "self" / "statm").split():
+            case [_, resident, *_]:
+                return int(resident) * self._page_bytes
+        return 0
 
 
 def battery_of(power: Path) -> tuple[float | None, bool]:

@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+SENSORS = "sensors"
+"""What a trouble with them is about."""
+
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
@@ -87,7 +90,7 @@ class Machine:
     """The program and the machine that it runs on."""
 
     memory_bytes: int
-    """That the program holds."""
+    """That the program holds; 0 where the kernel does not tell."""
     available_bytes: int | None
     """That the machine could still give; None where it does not tell."""
     processor_share: float

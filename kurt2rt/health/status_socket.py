@@ -84,8 +84,8 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
                 reader.connect(short)
         except (FileNotFoundError, ConnectionRefusedError) as error:
             raise StatusError(
-                f"no robot program runs with the knowledge {path.with_suffix('')}; start one with kurt2rt run, or name "
-                "its knowledge file"
+                f"no robot program runs with the knowledge {path.with_suffix('')}, or it still waits for something; "
+                "start one with kurt2rt run, or name its knowledge file"
             ) from error
         except OSError as error:
             raise StatusError(f"{path}: cannot be read ({error}); be the user of the robot program") from error

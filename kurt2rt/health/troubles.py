@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.health.report import DiskSpace, Machine, Punctuality, Trouble
+from kurt2rt.health.report import SENSORS, DiskSpace, Machine, Punctuality, Trouble
 from kurt2rt.health.snapshot import Snapshot
 
 LATELY_S = 60
@@ -90,7 +90,7 @@ class TroubleBook:
                 continue
             silent = "have never been heard" if math.isinf(age_s) else f"are silent, the newest is {age_s:.1f} s old"
             to_do = "look whether the robot is switched on and its CAN cable sits; the robot stands until they are back"
-            yield _Found("sensors", name, f"the {name} {silent}", to_do, True)
+            yield _Found(SENSORS, name, f"the {name} {silent}", to_do, True)
 
     def _of_ticks(self, punctuality: Punctuality) -> Iterator[_Found]:
         to_do = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"

@@ -61,7 +61,9 @@ class RarelyTold:
 
     def copies(self) -> list[tuple[str, dict[str, Any]]]:
         """What is there already, by what it is about, for a page that was just opened."""
-        return [(about, mirror.copy) for about, mirror in self._mirrors.items() if mirror.copy is not None]
+        # Not health: while no page was open nobody asked for it, and within a second it comes anew.
+        lasting = ((about, mirror.copy) for about, mirror in self._mirrors.items() if about != "health")
+        return [(about, copy) for about, copy in lasting if copy is not None]
 
     async def _fetch_hello(self) -> dict[str, Any]:
         hello = await self._robot.hello()

@@ -115,10 +115,11 @@ def situations_view(names: tuple[str, ...]) -> dict[str, Any]:
 def health_view(report: HealthReport | None) -> dict[str, Any]:
     """How the robot's program is, in words: nothing in its first second."""
     if report is None:
-        return {"kind": "health", "says": "", "rows": [], "troubles": []}
+        return {"kind": "health", "tick": None, "says": "", "rows": [], "troubles": []}
     troubles = [{"what": each.what, "text": trouble_in(each), "urgent": each.urgent} for each in report.troubles]
     return {
         "kind": "health",
+        "tick": report.tick,
         "says": headline(report),
         "rows": [each._asdict() for each in rows_of(report)],
         "troubles": troubles,

@@ -18,10 +18,11 @@ from kurt2rt.channel.requests import (
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.health.report import Trouble
 from kurt2rt.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
-from tests.health.reports import WELL
+from tests.health.reports import ILL, WELL
 
 LEAST = load_critic().agreement.least
 APART = round(load_critic().agreement.apart_s / ROBOT.can.cycle_s)
@@ -46,6 +47,16 @@ def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(de
     assert [picture(desk).late_p99_ms for _ in range(9)] == [0.0] * 9  # looked up once a second, with 20 pictures
     later = [picture(desk).late_p99_ms for _ in range(20)]
     assert later[-1] == WELL.punctuality.p99_ms
+
+
+def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: Desk) -> None:
+    full = Trouble("disk", "only 20 MB are free for knowledge", 3.0, "make room", urgent=True)
+    desk.health = replace(ILL, troubles=(*ILL.troubles, full))
+    assert picture(desk).trouble == "only 20 MB are free for knowledge; make room"
+    desk.bus_trouble = "the cable is out"
+    assert picture(desk).trouble == "the cable is out"
+    desk.bus_trouble, desk.health = "", ILL  # in which only the sensors are urgent: the cause says so
+    assert picture(desk).trouble == ""
 
 
 def test_a_robot_that_knows_nothing(desk: Desk) -> None:

@@ -129,7 +129,9 @@ async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> No
 
 
 def test_where_none_runs_the_reader_is_told_what_to_do(path: Path) -> None:
-    with pytest.raises(StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge; start one"):
+    with pytest.raises(
+        StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge, or it .*; start one"
+    ):
         next(reports_at(path, PATIENCE_S))
 
 

@@ -1,10 +1,12 @@
 """How the robot's program is, on the page: a small line that opens to a table."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from anyio.from_thread import start_blocking_portal
 
+from kurt2rt.health.report import HealthReport
 from tests.health.reports import ILL, SILENT, WELL
 from tests.page.fake_robot import A_PLACE
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
@@ -19,7 +21,7 @@ CLASS = "return document.querySelector(arguments[0]).className;"
 @pytest.fixture
 def lesson(a_phone: Phone) -> Iterator[Lesson]:
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.report = WELL
+        page.robot.report = replace(WELL, tick=100)
         lesson = Lesson(a_phone, portal, page.robot)
         lesson.show(teacher="local", place=A_PLACE)
         pictures = portal.start_task_soon(show_on, page.robot)
@@ -32,12 +34,17 @@ def lesson(a_phone: Phone) -> Iterator[Lesson]:
             pictures.cancel()
 
 
-def falls_ill(lesson: Lesson) -> None:
-    """The robot's next report is of a second later."""
-    lesson.robot.report = ILL
+def later(lesson: Lesson, ticks: int, report: HealthReport) -> None:
+    """So many ticks later the robot makes a report."""
     state = lesson.robot.state
     assert state is not None
-    lesson.show(tick=state.tick + 100)
+    lesson.robot.report = replace(report, tick=state.tick + ticks)
+    lesson.show(tick=state.tick + ticks)
+
+
+def falls_ill(lesson: Lesson) -> None:
+    """The robot's next report is of a second later."""
+    later(lesson, 100, ILL)
 
 
 @pytest.mark.parametrize("size", [PORTRAIT, SMALL])
@@ -65,6 +72,16 @@ def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) ->
     phone.wait(lambda: lesson.robot.told.count(("stop",)) == 1, "the robot is stopped")
     phone.touch("#close-health")
     assert not phone.find("#health-table").is_displayed()
+
+
+def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
+    state = lesson.robot.state
+    assert state is not None
+    lesson.show(tick=state.tick + 600)  # and no report was made meanwhile
+    lesson.reads("#health", "no report")
+    assert lesson.phone.run(CLASS, "#health") == "warns"
+    later(lesson, 100, WELL)
+    lesson.reads("#health", "late 0.20 ms")
 
 
 def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: Lesson) -> None:

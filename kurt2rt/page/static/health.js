@@ -2,6 +2,8 @@
 
 import { setText } from "./why.js";
 
+const OLD_TICKS = 500; // a report is made each second
+
 const $ = (id) => document.getElementById(id);
 
 export class Health {
@@ -23,12 +25,13 @@ export class Health {
   // The line in the bar: how late the loop is, or how much is wrong.
   show(state) {
     const troubles = this.#report?.troubles ?? [];
+    const old = Boolean(this.#report?.tick) && state.tick - this.#report.tick > OLD_TICKS;
     const [line, missed] = [$("health"), $("missed")];
-    line.classList.toggle("warns", troubles.length > 0);
+    line.classList.toggle("warns", troubles.length > 0 || old);
     line.classList.toggle("urgent", troubles.some(({ urgent }) => urgent));
     const late = `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms`;
-    setText($("late"), troubles.length === 0 ? late : troubles.length === 1 ? "1 trouble" : `${troubles.length} troubles`);
-    setText(missed, troubles.length ? "" : `, missed ${state.missed_ticks}`);
+    setText($("late"), old ? "no report" : troubles.length === 0 ? late : troubles.length === 1 ? "1 trouble" : `${troubles.length} troubles`);
+    setText(missed, troubles.length || old ? "" : `, missed ${state.missed_ticks}`);
   }
 
   // What is wrong for which the robot stands, or that puts lessons at risk, but for what the picture says itself.
