@@ -71,6 +71,9 @@ def _loaded(text: str) -> Any:
     return yaml.load(text, Loader=_QuickLoader if quick else _Loader)
 
 
+FILES = "files"
+"""Where files are kept that are no settings."""
+
 # Whoever builds a runtime anew as it once was does so in one call, and all loaders below it look here; passing a
 # folder through each of them would put it into fifty signatures for the sake of a replay.
 _KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
@@ -78,7 +81,10 @@ _KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
 
 @contextmanager
 def kept_settings(folder: Path) -> Iterator[None]:
-    """While it lasts, `find_config` finds what was kept in `folder`, as `<kind>/<kept_name>`, and nothing else."""
+    """While it lasts, what was kept in `folder` is found, and nothing else.
+
+    `find_config` finds it as `<kind>/<kept_name>`, `find_beside` as `files/<kept_name>`.
+    """
     token = _KEPT.set(folder)
     try:
         yield
@@ -87,11 +93,17 @@ def kept_settings(folder: Path) -> Iterator[None]:
 
 
 def kept_name(name_or_path: str) -> str:
-    """File name under which settings are kept: the shipped one, or one of its own for each path."""
+    """File name under which a file is kept: the shipped one for settings, or one of its own for each path."""
     path = Path(name_or_path)
-    if path.suffix != ".yaml":
+    if not path.suffix:
         return f"{name_or_path}.yaml"
-    return f"{path.stem}-{hashlib.sha256(name_or_path.encode()).hexdigest()[:8]}.yaml"
+    return f"{path.stem}-{hashlib.sha256(name_or_path.encode()).hexdigest()[:8]}{path.suffix}"
+
+
+def find_beside(settings: Path, name: str) -> Path:
+    """Path of another file that settings name, from their own folder; it need not be there."""
+    kept = _KEPT.get()
+    return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
 
 
 def find_config(kind: str, name_or_path: str) -> Path:

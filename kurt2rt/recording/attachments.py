@@ -3,17 +3,19 @@
 import base64
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
-from hal.settings import find_config, kept_name, load_settings
+from hal.settings import FILES, find_beside, find_config, kept_name, load_settings
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.rla.rla import TeachingEvent
@@ -51,8 +53,8 @@ def attachments_of(
     }
     if saved is not None:
         attached[STATISTICS] = encode_statistics(saved)
-    for kind, name in _used_by(task, set()):
-        attached[f"{_SETTINGS}/{kind}/{kept_name(name)}"] = find_config(kind, name).read_bytes()
+    for kind, name, data in _used_by(task, set()):
+        attached[f"{_SETTINGS}/{kind}/{kept_name(name)}"] = data
     return attached
 
 
@@ -110,21 +112,28 @@ def decode_statistics(data: bytes) -> Statistics:
         raise RecordingError(f"{STATISTICS} of the run cannot be read: {type(error).__name__}: {error}") from error
 
 
-def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterable[tuple[str, str]]:
-    """Kind and name of every settings file that the runtime of a task reads by itself."""
+def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
+    """Kind, name and content of every file that the runtime of a task reads by itself."""
     named: list[tuple[str, object]] = [("situations", task.situation), ("repertoires", task.repertoire)]
     named += [("critics", task.critic), ("mid_levels", task.mid)]
     for kind, name in named:
         if not isinstance(name, str) or (kind, name) in seen:  # settings that stand in the task are in its own file
             continue
         seen.add((kind, name))
-        yield kind, name
-        if kind != "repertoires":
-            continue
-        for action in load_settings(find_config(kind, name), RepertoireSettings).actions:
-            if isinstance(action, TaughtAction | TaskAction):
-                yield "tasks", action.task
-                yield from _used_by(load_task(action.task), seen)
+        path = find_config(kind, name)
+        yield kind, name, path.read_bytes()
+        if kind == "repertoires":
+            yield from _used_by_actions(path, seen)
+
+
+def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
+    """The same of the actions that were taught themselves, and what is known of them."""
+    for action in load_settings(repertoire, RepertoireSettings).actions:
+        if isinstance(action, TaughtAction | TaskAction):
+            yield "tasks", action.task, find_config("tasks", action.task).read_bytes()
+            yield from _used_by(load_task(action.task), seen)
+            with Journal.beside_its_writer(find_beside(repertoire.resolve(), action.knowledge)) as journal:
+                yield FILES, action.knowledge, journal.image()
 
 
 def _text(packed: bytes) -> str:

@@ -6,7 +6,7 @@ from behaviors.behaviour import Behaviour
 from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
+from hal.settings import SettingsError, find_beside
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.layers.wanted import Wanted
@@ -55,14 +55,14 @@ class _Building:
                 "give one of them as an action of kind taught"
             )
         inner = _Building(self._robot, (*self._inside, here)).load(task.repertoire)
-        lessons = _lessons(action, here.parent, self._robot, task)
+        lessons = _lessons(action, repertoire, self._robot, task)
         return build_taught_system(task, self._robot, lessons, inner, wanted, mid)
 
 
 def _lessons(
-    action: TaughtAction | TaskAction, folder: Path, robot: RobotSettings, task: TaskSettings
+    action: TaughtAction | TaskAction, repertoire: Path, robot: RobotSettings, task: TaskSettings
 ) -> list[TeachingEvent]:
-    path = folder / Path(action.knowledge).expanduser()
+    path = find_beside(repertoire.resolve(), action.knowledge)
     if not path.exists():
         raise SettingsError(
             f"{path}: there is no such file; teach the task {task.name} first, or give the path of what was taught"

@@ -177,10 +177,17 @@ STORIES = {
 }
 
 
-def record_story(name: str, recordings: Path, *, seconds: float | None = None) -> Path:
-    """Let a story happen, and record it; the run's folder."""
+def record_story(
+    name: str,
+    recordings: Path,
+    *,
+    seconds: float | None = None,
+    task: TaskSettings | None = None,
+    other: Story | None = None,
+) -> Path:
+    """Let a story happen, or an`other` one in its place, and record it; the run's folder."""
     told = STORIES[name]
-    settings, task = load_robot(), load_task(told.task)
+    settings, task = load_robot(), task or load_task(told.task)
     arena = SimulatedArena(settings, task.teaching.world, 3, f"story {name}")
     notebook = Notebook()
     clock = LockstepClock(arena.step)
@@ -205,7 +212,7 @@ def record_story(name: str, recordings: Path, *, seconds: float | None = None) -
         runtime.school.stop(told.stopped)
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
     scene = Scene(arena, runtime, notebook, teacher)
-    story: Story = walls if name == "walls" else Errand(scene, task)
+    story: Story = other or (walls if name == "walls" else Errand(scene, task))
     recorder = open_run_recorder(
         recordings,
         head,

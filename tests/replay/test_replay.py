@@ -1,6 +1,7 @@
 """A recorded run comes out again as it was: each decision, and all that is known, bit for bit."""
 
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -16,9 +17,12 @@ from kurt2rt.replay.comparing import compare
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay, replay_until
 from kurt2rt.replay.run import Run
-from kurt2rt.rla.rla import MID, Phase
-from kurt2rt.teaching.commands import Stop
-from tests.replay.stories import STORED, STORIES, record_story
+from kurt2rt.rla.rla import BASIC, MID, Phase, RlaCreated
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.commands import Resume, Stop, Teach, Watch
+from kurt2rt.tick import TickRecord
+from tests.repertoire.helpers import keep, with_repertoire
+from tests.replay.stories import NAME, STORED, STORIES, Scene, record_story
 
 HERE = Path(__file__).parents[2]
 
@@ -181,3 +185,29 @@ def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:
 def test_a_stop_among_the_commands_stays_where_it_was() -> None:
     entries = [entry for entry in stored("walls").entries() if any(isinstance(each, Stop) for each in entry.commands)]
     assert [entry.tick for entry in entries] == [571]
+
+
+def follow_the_wall(scene: Scene, record: TickRecord) -> None:
+    """An action that was taught itself drives, and is lost now and then."""
+    scene.runtime.inbox.put(Watch(NAME, record.tick))
+    if record.tick == 20:
+        scene.say(lambda name: Resume(name, NAME))
+    if record.decision.asking and record.tick % 50 == 0:
+        scene.say(lambda name: Teach(name, NAME, "follow" if record.tick < 300 else "curve_left"))
+
+
+def test_actions_that_were_taught_themselves_are_kept_with_the_run(tmp_path: Path) -> None:
+    task = load_task("wall_following")
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    taught = (event for entry in stored("walls").entries() for event in entry.events)
+    lessons = [event for event in taught if isinstance(event, RlaCreated) and event.rla.level == BASIC]
+    keep(mine / "walls.knowledge", task, *lessons)
+    follows = "kind: task, name: follow, task: wall_following, knowledge: walls.knowledge"
+    curve = "kind: motor, name: curve_left, left_m_s: 0.1, right_m_s: 0.2"
+    task = with_repertoire(task, mine, follows, curve)
+    folder = record_story("walls", tmp_path / "runs", seconds=8, task=task, other=follow_the_wall)
+    shutil.rmtree(mine)
+    run = read_run(folder)
+    assert any(entry.decision.action == "follow" for entry in run.entries())
+    assert differences(run) == (800, [])
