@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import can
 
+from hal.bus_frame import is_heard
 from hal.frame import Frame
 
 _MOST_WAITING = 4096
@@ -26,9 +27,9 @@ class Cable:
 
     def carry(self, frame: can.Message, sender: "CableEnd") -> None:
         """A copy for everybody, the sender too."""
-        frame_id, now_s = frame.arbitration_id, self.now_s()
+        now_s = self.now_s()
         for end in self._ends:
-            if end.heard is None or frame_id in end.heard or frame.is_error_frame:
+            if is_heard(frame, end.heard):
                 end.hear(frame, now_s, own=end is sender)
 
     def leave(self, end: "CableEnd") -> None:
@@ -56,17 +57,18 @@ class CableEnd:
         return self._cable.now_s()
 
     def listen_to(self, frame_ids: frozenset[int]) -> None:
-        """Deliver only frames with these standard identifiers, and error frames."""
+        """Deliver only frames with these standard identifiers, and error frames, also of those that wait."""
         self.heard = frame_ids
+        self._waiting = deque(frame for frame in self._waiting if is_heard(frame, frame_ids))
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
-        """The frame that waits longest."""
+        """The frame that waits longest. Raises can.CanOperationError after shutdown."""
+        self._check_open()
         return self._waiting.popleft() if self._waiting else None
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
         """It is there. Raises can.CanOperationError after shutdown."""
-        if not self._open:
-            raise can.CanOperationError("this end of the cable is shut down")
+        self._check_open()
         self._cable.carry(msg, self)
 
     def shutdown(self) -> None:
@@ -84,3 +86,7 @@ class CableEnd:
         mine.timestamp = now_s
         mine.is_rx = not own
         self._waiting.append(mine)
+
+    def _check_open(self) -> None:
+        if not self._open:
+            raise can.CanOperationError("this end of the cable is shut down")

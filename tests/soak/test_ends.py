@@ -1,0 +1,24 @@
+"""Ends whose ways may fail behave as every bus does while they do not."""
+
+from collections.abc import Iterator
+from typing import ClassVar
+
+import pytest
+
+from hal.bus import CanBus
+from simbridge.faults.cable import Cable
+from simbridge.faults.changing_end import ChangingEnd, Ways
+from simbridge.faults.event_time import EventTime
+from tests.hal.bus_conformance import Behind, ErrorFrameConformance, Join, joining
+
+
+class TestChangingEnd(ErrorFrameConformance):
+    confirms: ClassVar[bool] = True
+    behind: ClassVar[Behind] = Behind.NEWEST_ARE_LOST
+
+    @pytest.fixture
+    def join(self) -> Iterator[Join]:
+        time = EventTime()
+        cable = Cable(time.now_s)
+        with joining(lambda: CanBus("cable", lambda _: ChangingEnd(cable.open(), Ways(), time.now_s))) as join:
+            yield join

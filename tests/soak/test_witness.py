@@ -1,0 +1,112 @@
+"""The witness would see a program that drives when it must not, and one that loses ticks or lessons."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.robot import Senses, WheelSpeeds
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.level import Level
+from kurt2rt.perception.perception import Situation
+from kurt2rt.soak.life import Life
+from kurt2rt.soak.teacher import SoakTeacher
+from kurt2rt.soak.witness import SoakWitness
+from simbridge.faults.lasting_place import LastingPlace
+from tests.soak.helpers import DAY, PATIENT, ROBOT, TABLE, TASK, recording_in, service_in
+
+AWAY = PATIENT.model_copy(update={"there": False})
+
+
+class Careless:
+    """A layer that drives whatever it is told."""
+
+    def __init__(self, behind: Level) -> None:
+        self._behind = behind
+
+    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+        decision = self._behind.decide(situation, senses, stand_because)
+        return decision._replace(wheel_speeds=WheelSpeeds(0.1, 0.1), action="forward")
+
+
+@pytest.fixture
+def place() -> Iterator[LastingPlace]:
+    place = LastingPlace(ROBOT, "a", seed=1)
+    yield place
+    place.close()
+
+
+@pytest.fixture
+def witness(place: LastingPlace) -> SoakWitness:
+    return SoakWitness(place, TABLE.envelope)
+
+
+def started(folder: Path, place: LastingPlace, witness: SoakWitness, **moods: object) -> Life:
+    """A program with a teacher of one mood."""
+    soak = DAY.model_copy(update={"moods": moods})
+    teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
+    return Life(
+        place,
+        witness,
+        teacher,
+        ROBOT,
+        TASK,
+        service_in(folder),
+        recording=recording_in(folder),
+        number=1,
+        wire="none",
+        seed=1,
+    )
+
+
+def run(life: Life, until_s: float) -> None:
+    anyio.run(life.run, until_s, lambda _: None, lambda: True)
+
+
+def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    run(life, 1.0)
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
+    assert witness.stands
+
+
+def test_one_that_drives_though_it_was_only_started_is_seen(
+    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    assert life.level.behind is not None
+    life.level.behind = Careless(life.level.behind)
+    run(life, 1.0)
+    life.close()
+    assert witness.complaints.count > 80
+    assert "drives though the program was started, and nobody said resume" in witness.complaints.told[0]
+
+
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    run(life, 0.5)
+    assert witness.complaints.count == 0
+    life.runtime.ledger.missed_ticks += 1
+    run(life, 0.6)
+    life.close()
+    assert "done and 1 missed are not as many" in witness.complaints.told[0]
+
+
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, patient=PATIENT)
+    run(life, 3.0)
+    life.knowledge.submitted.append("soak-999")
+    assert "lessons were there and" in life.close()
+
+
+def test_an_error_in_the_loop_ends_the_program_and_says_where(
+    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    life.level.behind = None
+    run(life, 1.0)
+    assert life.ended_by.startswith("AssertionError() in level.py, line ")
+    assert life.close() == ""
+    place.time.run_until(1.0)
+    assert place.standing
