@@ -1,0 +1,118 @@
+"""What is made of a day: checks, report and picture."""
+
+import json
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from kurt2rt.soak.checks import fault_check, memory_check, starts_check, steady_check
+from kurt2rt.soak.faults import FaultSeen
+from kurt2rt.soak.picture import draw_soak
+from kurt2rt.soak.report import as_json, print_report
+from kurt2rt.soak.result import Check, Minute, SoakResult, Start
+from tests.soak.helpers import DAY
+
+LIMITS = DAY.limits
+
+
+def minute(number: int, resident_mb: float = 100.0, open_files: int = 14, threads: int = 2) -> Minute:
+    mood = "patient" if number % 7 else "away"
+    return Minute(
+        60.0 * number, resident_mb, open_files, threads, 60, 200 + number, 0.8, 0.1, 0.1, 0.01, number % 3, mood
+    )
+
+
+def hours(count: float, grown_mb_per_hour: float) -> list[Minute]:
+    """Memory that grows evenly."""
+    return [minute(number, 100.0 + grown_mb_per_hour * number / 60.0) for number in range(1, round(60 * count) + 1)]
+
+
+def fault(complaint: str = "", *, drove: bool = True, stood_after_s: float | None = 0.05) -> FaultSeen:
+    return FaultSeen(100.0, "encoders", "off", drove, stood_after_s, None, complaint)
+
+
+RESULT = SoakResult(
+    name="day",
+    seed=1,
+    simulated_s=7200.0,
+    took_s=120.0,
+    ticks=719_000,
+    missed_ticks=1_000,
+    frames=720_000,
+    checks=(Check("it stands", passed=True, found="always"), Check("it drives", passed=False, found="never")),
+    minutes=tuple(hours(2, 1.0)),
+    starts=(Start(0.0, 3600.0, "none", "", ""), Start(3601.0, 3599.0, "lossy", "OSError()", "a lesson is gone")),
+    faults=(fault(), fault(drove=False), fault("must stand, drove all the while", stood_after_s=None)),
+    complaints=("at 5.000 s: 0.70 m/s",),
+    counted={"set down": 3},
+    grown_kb={"kurt2rt/rla/rla.py": 12.5},
+)
+
+
+@pytest.mark.parametrize(("grown_mb_per_hour", "passed"), [(0.0, True), (0.5, True), (1.0, False)])
+def test_memory_is_held_against_the_end_of_the_first_hour(grown_mb_per_hour: float, passed: bool) -> None:
+    assert memory_check(hours(8, grown_mb_per_hour), LIMITS).passed is passed
+
+
+def test_what_the_first_hour_takes_does_not_count() -> None:
+    first = [minute(number, 80.0 + min(number, 45)) for number in range(1, 61)]
+    later = [minute(number, 126.0) for number in range(61, 180)]
+    assert memory_check(first + later, LIMITS).found == "+1.0 MB at most, +1.0 MB at the end"
+
+
+def test_a_short_soak_is_not_asked_about_memory() -> None:
+    check = memory_check(hours(1.1, 50.0), LIMITS)
+    assert check.passed
+    assert "not asked" in check.found
+
+
+def test_files_and_threads_that_become_more_are_seen() -> None:
+    assert steady_check(hours(1, 0.0)).passed
+    leaks = [minute(number, open_files=14 + number // 10) for number in range(1, 61)]
+    assert not steady_check(leaks).passed
+    assert not steady_check([minute(1), *(minute(number, threads=3) for number in range(2, 30))]).passed
+
+
+def test_one_file_that_is_open_for_a_moment_is_none_that_leaks() -> None:
+    assert steady_check([*hours(1, 0.0), minute(61, open_files=15)]).passed
+
+
+def test_one_fault_that_led_elsewhere_is_enough() -> None:
+    assert fault_check([fault(), fault()]).passed
+    assert fault_check([fault(), fault("must stand, drove all the while")]).found == (
+        "2 faults, 2 of them while it drove; 1 not as they must"
+    )
+
+
+def test_an_end_that_nobody_expected_or_a_lost_lesson_is_enough() -> None:
+    well = Start(0.0, 100.0, "none", "", "")
+    assert starts_check([well, well._replace(ended_by="a fault")], []).passed
+    assert not starts_check([well], ["at 3.000 s: KeyError()"]).passed
+    assert not starts_check([well._replace(complaint="3 lessons came, the file holds 2")], []).passed
+
+
+def test_the_report_says_what_did_not_hold() -> None:
+    console = Console(width=120, record=True, quiet=False, file=None, force_terminal=False)
+    with console.capture() as capture:
+        print_report(RESULT, console)
+    said = capture.get()
+    assert "2.00 h in simulated time (seed 1), in 2.0 min: 60 times real time" in said
+    assert "NO" in said
+    for complaint in ("0.70 m/s", "encoders off: must stand", "at 3601.000 s: a lesson is gone", "+12.5 kB"):
+        assert complaint in said
+
+
+def test_json_has_everything_by_name() -> None:
+    content = json.loads(as_json(RESULT))
+    assert content["passed"] is False
+    assert content["faults"][2]["complaint"] == "must stand, drove all the while"
+    assert content["starts"][1]["wire"] == "lossy"
+    assert len(content["minutes"]) == 120
+    assert content["checks"][1] == {"what": "it drives", "passed": False, "found": "never"}
+
+
+def test_the_picture_is_drawn(tmp_path: Path) -> None:
+    path = tmp_path / "soak.png"
+    draw_soak(RESULT, LIMITS, path)
+    assert path.read_bytes().startswith(b"\x89PNG")
