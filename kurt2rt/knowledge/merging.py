@@ -90,6 +90,8 @@ class Merging:
         self._kinship = kinship_of(mine, theirs)
         self._known = known_rows(mine.entries, theirs.entries)
         self._record = theirs.records
+        self._by_name = {self._kinship.name_for(record.event): record.event for record in theirs.system.lessons}
+        """Lessons of theirs by the command id that they have, or would have, here."""
         self._stamps = {entry.event.origin.command_id: entry.stamped_at for entry in theirs.entries}
         self._mine_record = mine.records
 
@@ -105,7 +107,7 @@ class Merging:
             rla = self._created(each)
             near = None if rla is None else contradictions.of(rla)
             if rla is not None and near is not None:
-                distance = f"{near.distance:.1f} apart, within {self._borders.shares[rla.level]:.0%} of R"
+                distance = f"{near.distance:.1f} apart, within {100 * self._borders.shares[rla.level]:.0f} % of R"
                 conflicts.append(Conflict(_says(near.rla), _says(rla), distance))
                 if prefer == "theirs":
                     deletions.append(near.rla.rla_id)
@@ -175,10 +177,9 @@ class Merging:
         size = len(pile.before)
         if pile.mine[:size] != pile.before or pile.theirs[:size] != pile.before:
             return None
-        there = {self._kinship.name_for(record.event): record.event for record in self._theirs.system.lessons}
         ours = [self._mine_record[name].event for name in pile.mine[size:]]
         added = tuple(name for name in pile.theirs[size:] if name not in pile.mine)
-        of_theirs = [there[name] for name in added]
+        of_theirs = [self._by_name[name] for name in added]
         if all(isinstance(event, RlaRewarded) for event in of_theirs):
             return () if any(isinstance(event, RlaDeleted) for event in ours) else added
         return added if all(isinstance(event, RlaRewarded) for event in ours) else None

@@ -32,4 +32,9 @@ def bear(
                 journal.note(name, text)
         with Journal.read_only(cradle) as journal:
             image = journal.image()
-    save_new(image, path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
+    with journal_file.lock_for_writing(path):  # a robot may begin a file there at this very moment
+        save_new(image, path)

@@ -47,9 +47,14 @@ def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str
 
 
 def save_new(content: bytes, path: Path) -> None:
-    """Save `content` at `path`, where nothing may be yet; durable on return. Raises KnowledgeError."""
+    """Save `content` at `path`, where nothing may be yet; durable on return. Raises KnowledgeError.
+
+    What a program that was killed began there is in nobody's way: nothing but a whole file ever has the name.
+    """
+    unborn = path.parent / _unborn(path.name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        unborn.unlink(missing_ok=True)
         born = _is_born(content, path.parent, path.name)
         sync_folder(path.parent)
     except OSError as error:
@@ -71,9 +76,13 @@ def stamp_part(stamp: str) -> str:
     return re.sub(r"[^0-9T]", "", stamp[:19])
 
 
+def _unborn(name: str) -> str:
+    return f".{name}.unborn"
+
+
 def _is_born(content: bytes, folder: Path, name: str) -> bool:
     """Save under exactly this name; False where it is taken."""
-    path, unborn = folder / name, folder / f".{name}.unborn"
+    path, unborn = folder / name, folder / _unborn(name)
     try:
         file = unborn.open("xb")  # as long as it is there the name is ours: renaming would replace another's file
     except FileExistsError:

@@ -78,3 +78,17 @@ def test_a_branch_is_made_while_a_robot_runs_on_the_file_and_can_be_taught_on(ta
     with Journal.open(tmp_path / "b", BINDING) as journal:
         journal.append([JournalEntry(created(4), STAMP)])
         assert len(journal.events()) == 5
+
+
+def test_what_a_killed_program_left_half_is_in_nobodys_way(taught: Path, tmp_path: Path) -> None:
+    (tmp_path / ".b.unborn").write_bytes(b"half a file")
+    branch(taught, tmp_path / "b", None, stamp=NOW)
+    assert not (tmp_path / ".b.unborn").exists()
+    with Journal.read_only(tmp_path / "b") as journal:
+        assert check_knowledge(journal) == []
+
+
+def test_a_branch_where_nothing_can_be_written_is_refused_in_a_sentence(taught: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(KnowledgeError, match="cannot be made"):
+        branch(taught, tmp_path / "file" / "b", None, stamp=NOW)

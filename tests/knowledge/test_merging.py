@@ -168,7 +168,7 @@ def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, their
     append(theirs, at(4, FAR + 2.0, "right", "theirs-4"), at(5, FAR + 2.1, "right", "theirs-5"))
     (conflict,) = bring(mine, theirs, prefer).conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 4 says left", "RLA 4 says right")
-    assert conflict.where == "2.0 apart, within 20% of R"
+    assert conflict.where == "2.0 apart, within 20 % of R"
     settled = {None: {4: "left"}, "mine": {4: "left", 5: "right"}, "theirs": {5: "right", 6: "right"}}[prefer]
     assert {rla_id: action for rla_id, action in actions(mine).items() if rla_id > 3} == settled
 
