@@ -1,7 +1,7 @@
 """What the health report reads of a robot's program. Nothing here waits."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -44,12 +44,6 @@ class Instruments:
         self,
         drops: Mapping[str, Callable[[], int]] | None = None,
         says: Mapping[str, Callable[[], str]] | None = None,
-        folders: Mapping[str, Path] | None = None,
     ) -> "Instruments":
         """These and others."""
-        return Instruments(
-            self.bus,
-            {**self.drops, **(drops or {})},
-            {**self.says, **(says or {})},
-            {**self.folders, **(folders or {})},
-        )
+        return replace(self, drops={**self.drops, **(drops or {})}, says={**self.says, **(says or {})})

@@ -4,6 +4,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -41,7 +42,8 @@ class HealthWatch:
         """`boot`: random letters of this start; `knowledge`: where lessons are kept; `now`: a clock in s."""
         self._runtime = runtime
         self._keeping = keeping
-        self._instruments = instruments.with_more(folders={"knowledge": knowledge.parent})
+        folders = {"knowledge": knowledge.parent, **instruments.folders}
+        self._instruments = replace(instruments, folders=folders)
         self._boot = boot
         self._knowledge = str(knowledge)
         self._now = now

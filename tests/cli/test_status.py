@@ -29,7 +29,7 @@ def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the
         beside = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
         over_the_channel = report_of(json.loads(kurt2rt("status", "--as", "local", "--port", str(port), "--json").out))
         assert beside.boot == over_the_channel.boot
-        assert [each.of for each in over_the_channel.disks][:1] == ["knowledge"]
+        assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
 
 
 def test_where_no_robot_runs_that_is_said_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
