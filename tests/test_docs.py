@@ -52,6 +52,7 @@ LONG: dict[str, Shorten] = {
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
     "faults": lambda words: [*words, "--target", "tick", "--kind", "stuck"],
+    "soak": lambda words: [*words, "--hours", "0.01"],
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick", "--only", "match"],
 }
