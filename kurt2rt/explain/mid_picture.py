@@ -75,7 +75,7 @@ def _arrow(axes: Axes, at: tuple[float, float], along: tuple[float, float], colo
 def _draw_symbols(axes: Axes, mid: LevelFacts) -> None:
     """Two rows, the newest on the left: what was done, and what the nearest RLA knows in those places."""
     nearest = mid.nearest
-    axes.set_title("What it did at the last junctions, the newest first", fontsize=11.5, loc="left", color=INK, pad=8)
+    axes.set_title("What came last, the newest first", fontsize=11.5, loc="left", color=INK, pad=8)
     count = min(len(mid.vector), _MOST_SYMBOLS)
     axes.set_xlim(-0.1, count + 0.1)
     axes.set_ylim(-1.5, 1.9)
@@ -119,4 +119,5 @@ def _row(
             )
         )
         word = words[place] if place < len(words) else ""
-        axes.text(place + 0.5, height, word[:8], ha="center", va="center", fontsize=6.8, color=INK)
+        size = 6.8 if len(word) < 7 else 5.4
+        axes.text(place + 0.5, height, word[:10], ha="center", va="center", fontsize=size, color=INK)

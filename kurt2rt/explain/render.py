@@ -7,19 +7,9 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
-from kurt2rt.explain.sentences import (
-    because,
-    beside,
-    guarded,
-    headline,
-    mid_lines,
-    number,
-    taught,
-    used,
-    when,
-    would_change,
-)
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, number, taught, used, when, would_change
 from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.timeline import Kind, Stretch, Timeline, summary
 from kurt2rt.explain.tipping import Tip

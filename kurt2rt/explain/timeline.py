@@ -218,6 +218,12 @@ class _Reader:
         )
 
 
+def spells(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
+    """From when to when it did nothing but this, whatever the action or the question was."""
+    groups = [tuple(group) for each, group in groupby(timeline.stretches, lambda stretch: stretch.kind) if each is kind]
+    return tuple((group[0].from_s, group[-1].to_s) for group in groups)
+
+
 def summary(timeline: Timeline) -> str:
     """How much of the time the robot drove, asked and stood, in a line."""
     whole_s = timeline.to_s - timeline.from_s
@@ -228,8 +234,7 @@ def summary(timeline: Timeline) -> str:
     for kind, word in words.items():
         lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
         if lasts_s > 0:
-            spells = sum(each is kind for each, _ in groupby(stretch.kind for stretch in timeline.stretches))
-            often = f" ({times(spells)})" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            often = f" ({times(len(spells(timeline, kind)))})" if kind in (Kind.ASKS, Kind.STANDS) else ""
             parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
     lessons = sum(note.kind == "lesson" for note in timeline.notes)
     alarms = sum(note.kind == "alarm" for note in timeline.notes)

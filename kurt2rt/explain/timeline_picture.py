@@ -13,21 +13,18 @@ from matplotlib.patches import Patch
 
 from kurt2rt.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
 from kurt2rt.explain.saving import save
-from kurt2rt.explain.timeline import Kind, Note, Sample, Stretch, Timeline, summary
+from kurt2rt.explain.timeline import Kind, Note, Sample, Stretch, Timeline, spells, summary
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _CURVE = "#3b4754"
 _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
 _HIGHEST_SHARE = 1.6
-_LABEL_SHARE = 0.012
-"""Of the whole width: a stretch that is asked in and is as long has its number written at it."""
 _MOST_NUMBERED = 24
 
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
     """Write a picture as the file's name ends. Raises OSError."""
     colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
-    asked = [stretch for stretch in timeline.stretches if stretch.kind is Kind.ASKS]
     figure = Figure(figsize=(16.0, 8.6), facecolor="white")
     figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
     figure.text(0.02, 0.925, summary(timeline), fontsize=10.5, color=PALE_INK, va="center")
@@ -43,7 +40,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
         wspace=0.11,
         hspace=0.16,
     )
-    _way(figure.add_subplot(grid[:, 0]), timeline, asked, colours)
+    _way(figure.add_subplot(grid[:, 0]), timeline, colours)
     lanes = [figure.add_subplot(grid[row, 1]) for row in range(4)]
     _ribbon(lanes[0], timeline, colours)
     _familiarity(lanes[1], timeline)
@@ -73,7 +70,7 @@ def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
     return STANDS
 
 
-def _way(axes: Axes, timeline: Timeline, asked: Sequence[Stretch], colours: Mapping[str, str]) -> None:
+def _way(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """Where it went, by its encoders, in the colours of what it did."""
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
@@ -98,8 +95,9 @@ def _way(axes: Axes, timeline: Timeline, asked: Sequence[Stretch], colours: Mapp
     axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
     axes.annotate("begin", (first.x_m, first.y_m), xytext=(9, -13), textcoords="offset points", fontsize=9, color=INK)
     axes.annotate("end", (last.x_m, last.y_m), xytext=(9, -10), textcoords="offset points", fontsize=9, color=INK)
-    for number, each in enumerate(asked, start=1):
-        place = _at(samples, each.from_s)
+    asked = spells(timeline, Kind.ASKS)
+    for number, (from_s, _) in enumerate(asked, start=1):
+        place = _at(samples, from_s)
         axes.plot(place.x_m, place.y_m, "o", markersize=6, color=ASKS, markeredgecolor="white", zorder=6)
         if len(asked) <= _MOST_NUMBERED:
             axes.annotate(
@@ -136,11 +134,10 @@ def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     ):
         spans = [(stretch.from_s, stretch.lasts_s) for stretch in group]
         axes.broken_barh(spans, (0.0, 1.0), facecolors=colour, linewidth=0)
-    asked = [stretch for stretch in timeline.stretches if stretch.kind is Kind.ASKS]
+    asked = spells(timeline, Kind.ASKS)
     if len(asked) <= _MOST_NUMBERED:
-        for number, stretch in enumerate(asked, start=1):
-            middle_s = stretch.from_s + stretch.lasts_s / 2
-            axes.text(middle_s, -0.08, str(number), ha="center", va="top", fontsize=8, color=ASKS)
+        for number, (from_s, to_s) in enumerate(asked, start=1):
+            axes.text((from_s + to_s) / 2, -0.08, str(number), ha="center", va="top", fontsize=8, color=ASKS)
     _notes(axes, timeline.notes, "lesson", "v", INK, 1.22)
     _notes(axes, timeline.notes, "alarm", "X", ASKS, 1.5)
     axes.set_ylim(-0.3, 1.75)

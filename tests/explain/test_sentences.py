@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 
 from hal.robot import WheelSpeeds
+from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import Act, DecisionFacts
-from kurt2rt.explain.sentences import because, beside, guarded, headline, mid_lines, taught, used, when
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, taught, used, when
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
 from tests.explain.helpers import facts, level, story, with_mid

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from kurt2rt.explain.because import headline
 from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.picture import draw_why
-from kurt2rt.explain.sentences import headline, taught
+from kurt2rt.explain.sentences import taught
 from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.features import FeatureExtractor
 from kurt2rt.rla.rla import Phase
