@@ -50,7 +50,7 @@ async def serving(watch: Watch, path: Path) -> AsyncIterator[StatusSocket]:
     status = StatusSocket(cast(HealthWatch, watch), path)
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(status.serve)
-        await until(lambda: path.exists() or bool(status.trouble))
+        await until(lambda: is_told(path) or bool(status.trouble))
         yield status
         tasks.cancel_scope.cancel()
 
