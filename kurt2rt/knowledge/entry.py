@@ -49,9 +49,11 @@ def checksum(command_id: str, stamped_at: str, text: str) -> int:
 def read_row(row: tuple[int, str, str, str, int], where: str) -> StoredEntry:
     """A row (sequence, command id, stamp, event, checksum) as an entry. Raises KnowledgeError that begins `where`."""
     sequence, command_id, stamped_at, text, written_checksum = row
-    event = decode_event(text, where)
-    if checksum(command_id, stamped_at, text) != written_checksum or event.origin.command_id != command_id:
-        raise KnowledgeError(
-            f"{where}: was changed after it was written (checksum); keep the file, and go on with a backup copy"
-        )
-    return StoredEntry(sequence, event, stamped_at)
+    # A page of zeros has rows, too: of nothing.
+    if all(isinstance(part, str) for part in row[1:4]):
+        event = decode_event(text, where)
+        if checksum(command_id, stamped_at, text) == written_checksum and event.origin.command_id == command_id:
+            return StoredEntry(sequence, event, stamped_at)
+    raise KnowledgeError(
+        f"{where}: was changed after it was written (checksum); keep the file, and go on with a backup copy"
+    )

@@ -182,13 +182,18 @@ class Journal:
         with self._reading():
             return read_statistics(self._connection)
 
+    def damage(self) -> list[str]:
+        """What SQLite finds wrong with the file's pages, one line each: lessons may be missing without a trace."""
+        try:
+            lines = [line for (line,) in self._connection.execute("PRAGMA integrity_check")]
+        except sqlite3.Error as error:
+            return [str(explained(error, self.path))]
+        return [f"{self.path}: {each}" for line in lines if line != "ok" for each in line.splitlines()]
+
     def check(self) -> list[str]:
         """Everything that is wrong with the file, one line each; empty when it is sound."""
-        problems: list[str] = []
+        problems = self.damage()
         try:
-            for (line,) in self._connection.execute("PRAGMA integrity_check"):
-                if line != "ok":
-                    problems.append(f"{self.path}: {line}")
             for expected, row in enumerate(self._connection.execute(_ROWS), start=1):
                 if row[0] != expected:
                     problems.append(f"{self._where(row)}: stands where row {expected} should; keep the file")

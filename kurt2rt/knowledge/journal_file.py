@@ -67,11 +67,14 @@ def lock_for_writing(path: Path) -> BinaryIO:
         ) from error
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
+    except BlockingIOError as error:
         lock.close()
         raise KnowledgeError(
             f"{path}: another kurt2rt is writing it ({error}); stop that one, or give another knowledge file"
         ) from error
+    except OSError as error:
+        lock.close()
+        raise KnowledgeError(f"{path}: cannot be locked ({error}); give a path on a local disk") from error
     return lock
 
 
@@ -196,13 +199,15 @@ def log_of(path: Path) -> Path:
 
 
 def identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
-    """Which files (device, inode) stand at the journal's and its log's place; None: none does."""
+    """Which files (device, inode) stand at the place of journal and log; None: none does. Raises KnowledgeError."""
     found: list[tuple[int, int] | None] = []
     for each in (path, log_of(path)):
         try:
             status = each.stat()
-        except OSError:
+        except FileNotFoundError:
             found.append(None)
+        except OSError as error:  # not knowing is not the same as knowing that it is gone
+            raise KnowledgeError(f"{each}: cannot be looked at ({error}); look at the disk's health") from error
         else:
             found.append((status.st_dev, status.st_ino))
     return tuple(found)

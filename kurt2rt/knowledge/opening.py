@@ -61,6 +61,7 @@ def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> O
     """The journal at `path`, what it holds already, and its counts to count on from. Raises as `open_knowledge`."""
     journal = open_knowledge(path, settings, task)
     try:
+        _require_sound(journal)
         entries, saved = tuple(journal.entries()), journal.statistics()
         fold_entries(journal, entries, radius=math.inf)  # one that does not fold is refused, with file and row
     except BaseException:
@@ -68,6 +69,13 @@ def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> O
         raise
     counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
     return OpenedKnowledge(journal, entries, counter, saved)
+
+
+def _require_sound(journal: Journal) -> None:
+    damage = journal.damage()
+    if damage:  # a page that stands in another's place hides lessons, and nothing else would tell
+        first = damage[0].removeprefix(f"{journal.path}: ")
+        raise KnowledgeError(f"{journal.path}: the file is damaged ({first}); keep it, and go on with a backup copy")
 
 
 def read_lessons(
