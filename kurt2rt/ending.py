@@ -40,7 +40,7 @@ class Ending:
 
         `give_up` is called when the time is over, with what was waited for; it ends the process. None: nobody does.
         """
-        self._others = dict(others or {})
+        self._others: dict[int, Act] = {int(number): act for number, act in (others or {}).items()}
         self._give_up = give_up
         self._acts: list[Act] = []
         self._failures: list[Exception] = []
@@ -83,7 +83,7 @@ class Ending:
     def __enter__(self) -> Self:
         self._wakeup_before = signal.set_wakeup_fd(self._bell.fileno(), warn_on_full_buffer=False)
         self._thread.start()
-        for number in (*ENDING, *self._others):
+        for number in (*ENDING, *map(signal.Signals, self._others)):
             self._before[number] = signal.signal(number, _is_heard_elsewhere) or signal.SIG_DFL
         return self
 
@@ -118,7 +118,7 @@ class Ending:
                 self._hear(number)
 
     def _hear(self, number: int) -> None:
-        other = self._others.get(signal.Signals(number))
+        other = self._others.get(number)
         if other is not None:
             self._do((other,))
         elif number in ENDING and not self.asked:

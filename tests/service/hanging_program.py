@@ -6,6 +6,7 @@ from typing import Any, Never
 
 from kurt2rt.channel.endpoint import Endpoint
 from kurt2rt.channel.teachers import Teachers
+from kurt2rt.cli import robot_program
 from kurt2rt.cli.main import main
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.recording.run_files import RunFiles
@@ -22,7 +23,8 @@ async def _hang_in_the_loop(*_: Any) -> None:
 
 
 def _let_hang(thing: str) -> None:
-    hangs: dict[str, tuple[type, str, object]] = {
+    hangs: dict[str, tuple[object, str, object]] = {
+        "start": (robot_program, "go_on_teaching", _hang),
         "disk": (Journal, "checkpoint", _hang),
         "recorder": (RunFiles, "tend", _hang),
         "keys": (Teachers, "close", _hang),
