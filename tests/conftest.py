@@ -11,7 +11,7 @@ from hypothesis import settings
 settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True, max_examples=50)
 settings.load_profile("repeatable")
 
-_WAIT = {"page", "cli", "service", "channel", "teaching", "commission"}
+_WAIT = {"page", "cli", "service", "channel", "teaching", "commission", "crash"}
 """Folders whose stories wait most: browsers, programs, real time."""
 
 

@@ -1,4 +1,4 @@
-"""A knowledge file that a worn disk changed anywhere: it is refused in a sentence and left alone, or it is all there."""
+"""A knowledge file that a worn disk changed anywhere is refused in a sentence and left alone, or it is all there."""
 
 import random
 from collections import Counter
@@ -76,7 +76,7 @@ def look_at_all(path: Path, every: int) -> Counter[str]:
 
 
 def test_damage_is_told_or_does_not_matter(folder: Path) -> None:
-    outcomes = look_at_all(folder / "knowledge", every=17)
+    outcomes = look_at_all(folder / "knowledge", every=41)
     assert outcomes["refused"] > outcomes["all there"] > 0
 
 

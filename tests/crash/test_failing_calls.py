@@ -15,8 +15,6 @@ ERRORS = ("ENOSPC", "EIO", "EINTR")
 EVERY = {"fcntl": 6}
 """Of locks not all: where SQLite cannot unlock it tries for 10 s, and a writer then begins anew."""
 SOME = (
-    FailingCall("openat", 2, "EIO"),
-    FailingCall("fsync", 1, "EIO"),
     FailingCall("pwrite64", 9, "ENOSPC"),
     FailingCall("pwrite64", 11, "EINTR"),
     FailingCall("fdatasync", 2, "EIO"),
