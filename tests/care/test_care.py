@@ -168,6 +168,6 @@ def test_on_the_command_line(
     dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
     assert "would delete: RLA " in dry
     done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out
-    assert "tried on 1000 ticks of 1 runs" in done
+    assert "tried on 1000 ticks (10 s) of 1 runs" in done
     assert f"to take all of that back: kurt2rt knowledge undo {knowledge} --of compact" in done
     assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")

@@ -8,6 +8,7 @@ import typer
 from kurt2rt.care.compacting import TEACHER
 from kurt2rt.care.compacting import compact as delete_unneeded
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, Recordings, replaying, say
+from kurt2rt.knowledge.show import TICK_S
 from kurt2rt.knowledge.writer import utc_now
 
 
@@ -29,7 +30,7 @@ def compact(
         say(f"{behaviour or 'what is taught'} was wanted in no run: its RLAs stay")
     for note in done.notes:
         say(f"not tried: {note}")
-    tried = f"tried on {done.ticks} ticks of {done.runs} runs"
+    tried = f"tried on {done.ticks} ticks ({done.ticks * TICK_S:.0f} s) of {done.runs} runs"
     say(f"{file}: {len(done.deleted)} RLAs not needed, {done.kept} kept; {tried}")
     if done.deleted and not dry_run:
         say(f"to take all of that back: kurt2rt knowledge undo {file} --of {TEACHER}")
