@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
@@ -70,7 +71,7 @@ class Rounds:
         self._health = health
         self._recorder = recorder
         self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
-        self.take(service)
+        self._go_by(service)
         self._asking = False
         self._asked_at = -self._ticks_per_second
         self.last: Status | None = None
@@ -104,7 +105,12 @@ class Rounds:
             sweep()
 
     def take(self, service: ServiceSettings) -> None:
-        """Go by these periods from now on."""
+        """Go by these periods, and this budget for recordings, from now on."""
+        self._go_by(service)
+        if self._recorder is not None:
+            self._recorder.take(budget_of(service.recordings_mb))
+
+    def _go_by(self, service: ServiceSettings) -> None:
         period_s = self._runtime.robot.can.cycle_s
         self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
         self._status_ticks = round(service.status_period_s / period_s)

@@ -26,7 +26,7 @@ class ServiceSettings(Settings):
     port: Annotated[int, Field(ge=0, le=65535)]
     page_port: Annotated[int, Field(ge=0, le=65535)]
     recordings: str
-    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000)]
+    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000), WHILE_RUNNING]
 
 
 class Reloaded(NamedTuple):

@@ -74,6 +74,10 @@ class RunFiles:
         """Whether messages that are logged now come to a file."""
         return self._segment is not None
 
+    def take(self, budget: Budget) -> None:
+        """Keep to this budget from the next `tend` on; from any thread."""
+        self._budget = budget
+
     def tend(self) -> bool:
         """Once a second: have the disk keep what came, begin files and end them; whether all is kept now."""
         try:

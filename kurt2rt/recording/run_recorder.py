@@ -135,6 +135,11 @@ class RunRecorder:
         """How the program is."""
         self._note(report)
 
+    def take(self, budget: Budget) -> None:
+        """Keep to this budget from now on."""
+        if self._files is not None:
+            self._files.take(budget)
+
     def start(self) -> None:
         """Begin to write; once only. Without, whoever records calls `write_waiting` and `tend`."""
         self._started = True

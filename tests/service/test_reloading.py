@@ -95,5 +95,5 @@ def test_what_the_robot_is_stays_as_it_is(key: str) -> None:
 
 def test_the_periods_of_the_rounds_may_change() -> None:
     now = load_service()
-    read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5})
-    assert while_running(now, read) == (read, ("checkpoint_period_s", "real_time_priority"), ())
+    read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5, "recordings_mb": 500})
+    assert while_running(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
