@@ -223,7 +223,12 @@ class Journal:
                 self._connection.close()
         finally:
             if self._lock is not None:
-                self._lock.close()
+                try:
+                    self._lock.close()
+                except OSError as error:
+                    raise KnowledgeError(
+                        f"{self.path}: its lock cannot be given back ({error}); it ends with this program"
+                    ) from error
 
     def __enter__(self) -> Self:
         return self
