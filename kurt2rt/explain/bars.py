@@ -35,7 +35,10 @@ def draw_nearness(axes: Axes, level: LevelFacts, story: RlaStory | None, colours
     axes.plot(story.distance, 0, "o", markersize=15, color=_dot(story, colours), markeredgecolor=INK, zorder=5)
     name, marks = f"{story.title}: {far(story.distance)}", [(story, 0.42)]
     axes.text(story.distance, 0.42, name, fontsize=10, fontweight="bold", ha=_side(story, end), va="bottom", color=INK)
-    for other, word in ((level.runner_up, "runner-up"), (level.otherwise, "nearest that says something else")):
+    named = [(level.runner_up, "runner-up"), (level.otherwise, "nearest that says something else")]
+    if level.nearest.rla_id != story.rla_id:
+        named = [(level.nearest, "nearest")]
+    for other, word in named:
         if other is None or other is story or any(other is one for one, _ in marks) or other.distance > end:
             continue
         low = -0.42 - 0.5 * (len(marks) - 1)
@@ -95,9 +98,7 @@ def draw_tug_of_war(
 ) -> None:
     """Which features speak for the one, which for the other."""
     _bare(axes)
-    other = level.otherwise or level.runner_up
-    if story is not None and other is not None and other.rla_id == story.rla_id:
-        other = level.runner_up
+    other = None if story is None else level.rival_of(story)
     found = () if story is None or other is None else pulls(level, story, other)[:rows]
     if story is None or other is None or not found:
         axes.set_axis_off()

@@ -88,6 +88,12 @@ class LevelFacts:
             return None
         return next((other for other in self.others if other.action != self.nearest.action), None)
 
+    def rival_of(self, story: RlaStory) -> RlaStory | None:
+        """Whom to compare it with: the nearest; of the nearest itself the next that says something else."""
+        if self.nearest is not None and self.nearest.condition != story.condition:
+            return self.nearest
+        return self.otherwise or self.runner_up
+
 
 @dataclass(frozen=True, slots=True)
 class DecisionFacts:

@@ -32,7 +32,7 @@ _WORTH_POINTING = 0.03
 def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, title: str, path: Path) -> None:
     """Write a picture as the file's name ends; `found`: what would have changed it. Raises OSError."""
     level = facts.basic
-    story = level.driver if facts.cause == Cause.RLA and level.driver is not None else level.nearest
+    story = level.driver or level.nearest
     known = (*([] if story is None else [story]), *level.others)
     said = [story.action for story in known] + ([facts.action] if facts.action else [])
     if facts.mid is not None:

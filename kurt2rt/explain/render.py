@@ -14,7 +14,6 @@ from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.timeline import Kind, Stretch, Timeline, summary
 from kurt2rt.explain.tipping import Tip
 from kurt2rt.knowledge.shown import plain
-from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
 
 _FEATURES = 6
@@ -31,8 +30,7 @@ def render_why(facts: DecisionFacts, found: tuple[Tip, ...], where: str) -> Rend
     if facts.asks_at == MID and facts.mid is not None:
         parts += _of_level(facts.mid, None)
     else:
-        driver = facts.basic.driver if facts.cause == Cause.RLA else None
-        parts += _of_level(facts.basic, driver)
+        parts += _of_level(facts.basic, facts.basic.driver)
     changes = would_change(found)
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
@@ -59,7 +57,7 @@ def _of_level(level: LevelFacts, driver: RlaStory | None) -> list[RenderableType
 
 def _differences(level: LevelFacts, story: RlaStory) -> RenderableType:
     found = shares(level, story)
-    other = level.otherwise or level.runner_up
+    other = level.rival_of(story)
     pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
     table = Table(box=SIMPLE_HEAD, title_justify="left")

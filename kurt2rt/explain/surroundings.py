@@ -125,6 +125,8 @@ def _label(axes: Axes, sensor: SensorSettings, distance_m: float, text: str, *, 
     sideways = abs(math.sin(math.radians(sensor.heading_deg))) > 0.9
     x, y = _along(sensor, distance_m + (0.03 if sideways else 0.06) if sees else 0.75 * distance_m)
     aside = sees and (sideways or sensor.heading_deg % 180 == 0) and x != 0
+    if sees and x == 0:  # between those of its neighbours
+        x, y = _along(sensor, distance_m + 0.12)
     axes.text(
         x,
         y,

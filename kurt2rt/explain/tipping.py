@@ -36,10 +36,10 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
 
     `facts`: with all RLAs that may answer. The features are computed anew from the changed reading, so extremes and
     orientations follow it; averages stay. That another RLA says the same is no change. Empty where something else than
-    the situation decided.
+    the situation decided: an action that is held is held whatever is seen.
     """
     level, counts = facts.basic, facts.infrared_counts
-    if facts.latched or facts.asks_at != BASIC or facts.cause not in (Cause.RLA, Cause.HELD, Cause.UNKNOWN):
+    if facts.latched or facts.asks_at != BASIC or facts.cause not in (Cause.RLA, Cause.UNKNOWN):
         return ()
     stories = () if level.nearest is None else (level.nearest, *level.others)
     if not stories or not level.euclidean:
