@@ -11,13 +11,14 @@ import anyio.abc
 
 from kurt2rt.channel.state import State
 from kurt2rt.page.attention import Attention
-from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
+from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow, Why
 from kurt2rt.page.orders import carry_out, lets_drive, oldest_picture_s
 from kurt2rt.page.rarely_told import RarelyTold
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.seat import Seat
 from kurt2rt.page.views import answer_view, refusal_view, state_view
 from kurt2rt.page.visitor import Visitor
+from kurt2rt.page.why_view import why_view
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import NoAnswerError
 
@@ -32,6 +33,7 @@ _NOT_YOURS = "another page has the pad; press Take to have it here"
 _NO_PICTURE = "the page showed no picture of the robot as it runs now; look, and press again"
 _OLD_PICTURE = "given on an old picture; look at the robot, then say it again"
 _STOPPED_MEANWHILE = "the robot was stopped meanwhile; look at the robot, then say it again"
+_BUSY = "the robot has not answered the last ones yet; wait"
 _NOBODY_LOOKED = "nobody saw the robot on this page: it was stopped; GO lets it drive on"
 
 
@@ -124,6 +126,11 @@ class Bridge:
                 for each in self._visitors.values():
                     each.grip.release()
                 self._spawn(self._answer, visitor, message.number, self._robot.stop)
+            case Why():
+                if visitor.orders >= _MOST_ORDERS:
+                    visitor.tell(refusal_view(message.number, "busy", _BUSY))
+                else:
+                    self._spawn(self._explain, visitor, message.number)
             case Order():
                 self._order(visitor, message)
 
@@ -183,7 +190,7 @@ class Bridge:
 
     def _start(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
         if visitor.orders >= _MOST_ORDERS:
-            visitor.tell(refusal_view(number, "busy", "the robot has not answered the last ones yet; wait"))
+            visitor.tell(refusal_view(number, "busy", _BUSY))
             return
         self._spawn(self._answer, visitor, number, command)
 
@@ -200,6 +207,16 @@ class Bridge:
         visitor.tell({**view, "done": self._carried_out})
         if self._newest is not None:
             self._rarely.see_lessons(self._newest)
+
+    async def _explain(self, visitor: Visitor, number: int) -> None:
+        visitor.orders += 1
+        try:
+            view = why_view(number, await self._robot.why())
+        except NoAnswerError as error:
+            view = refusal_view(number, "unknown", str(error))
+        finally:
+            visitor.orders -= 1
+        visitor.tell(view)
 
     # The teacher's hand and eyes
 

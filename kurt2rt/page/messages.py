@@ -59,6 +59,14 @@ class StopNow:
 
 
 @dataclass(frozen=True, slots=True)
+class Why:
+    """What does the newest decision rest on? From any page."""
+
+    number: int
+    """As of a stop."""
+
+
+@dataclass(frozen=True, slots=True)
 class Order:
     """A command that is answered."""
 
@@ -70,7 +78,7 @@ class Order:
     """What the page showed when it was given."""
 
 
-PageMessage = Beat | Hidden | Press | Release | StopNow | Order
+PageMessage = Beat | Hidden | Press | Release | StopNow | Why | Order
 
 ORDERS: Mapping[str, Mapping[str, Check]] = {
     "answer": {"action": _NAME, "level": _LEVEL, "beside": Flag()},
@@ -103,6 +111,7 @@ _FIELDS: Mapping[str, Mapping[str, Check]] = {
     "press": {"hold": _COUNTER, "left_m_s": _SPEED_M_S, "right_m_s": _SPEED_M_S, "picture": _PICTURE},
     "release": {},
     "stop": {"number": _COUNTER},
+    "why": {"number": _COUNTER},
     "order": {"number": _COUNTER, "name": _NAME, "arguments": lambda _, value: value, "picture": _PICTURE},
 }
 
@@ -132,6 +141,8 @@ def parse(text: str) -> PageMessage:
             return Release()
         case "stop":
             return StopNow(**fields)
+        case "why":
+            return Why(**fields)
     name = fields["name"]
     if name not in ORDERS:
         raise WireError(f"an order has to be one of {', '.join(ORDERS)}")

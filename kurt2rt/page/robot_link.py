@@ -4,6 +4,7 @@ from collections.abc import AsyncIterator
 from typing import Protocol
 
 from kurt2rt.channel.state import State
+from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer
@@ -71,6 +72,10 @@ class RobotLink(Protocol):
 
     async def health(self) -> HealthReport | None:
         """How its program is; None in its first second."""
+        ...
+
+    async def why(self) -> DecisionFacts | None:
+        """What its newest decision rests on; None before its first tick."""
         ...
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:

@@ -11,6 +11,7 @@ import anyio.lowlevel
 from hal.robot_settings import load_robot
 from kurt2rt.channel.requests import VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -93,6 +94,7 @@ class FakeRobot:
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
     report: HealthReport | None = None
+    decided: DecisionFacts | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event)
@@ -143,6 +145,10 @@ class FakeRobot:
             raise NoAnswerError("no answer")
         await anyio.lowlevel.checkpoint()
         return self.report
+
+    async def why(self) -> DecisionFacts | None:
+        await self._answer("why")
+        return self.decided
 
     async def world(self) -> World | None:
         await self._answer("world")

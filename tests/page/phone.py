@@ -95,7 +95,7 @@ class Phone:
 
     def key(self, kind: str, code: str) -> None:
         """Press or lift a key of a laptop: keyDown or keyUp, and its code."""
-        key = {"Space": " ", "KeyW": "w", "KeyU": "u"}.get(code, code)
+        key = {"Space": " ", "KeyW": "w", "KeyU": "u", "KeyY": "y"}.get(code, code)
         event: dict[str, object] = {"type": kind, "code": code, "key": key}
         if code == "Enter" and kind == "keyDown":
             event |= {"text": "\r", "windowsVirtualKeyCode": 13}  # else no button feels it

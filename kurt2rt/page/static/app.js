@@ -2,6 +2,7 @@
 
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Critic, CRITIC } from "./critic.js";
+import { Explanation } from "./explanation.js";
 import { Goals } from "./goals.js";
 import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
@@ -33,6 +34,7 @@ const ways = new Ways(teachWay);
 const goals = new Goals(tell);
 const critic = new Critic(appraise);
 const health = new Health();
+const explanation = new Explanation(link);
 const organising = new Organising(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
@@ -421,6 +423,7 @@ keyboard({
   },
   signal: (value) => inCharge() && signal(value),
   undo: () => inCharge() && $("undo-last").checkVisibility() && $("undo-last").click(),
+  why: () => explanation.toggle(),
   help,
   mayDrive: () => inCharge() && link.fresh,
 });

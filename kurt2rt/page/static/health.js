@@ -43,6 +43,7 @@ export class Health {
   // Not modal: STOP and GO stay free.
   #open(table) {
     this.#fill();
+    for (const other of document.querySelectorAll("dialog[open]")) other.close();
     table.show();
   }
 

@@ -7,7 +7,7 @@ const DIRECTIONS = {
 
 const hasFocus = () => document.activeElement !== null && document.activeElement !== document.body;
 
-export function keyboard({ drive, stop, go, act, signal, undo, help, mayDrive }) {
+export function keyboard({ drive, stop, go, act, signal, undo, why, help, mayDrive }) {
   const down = new Set();
 
   const steer = () => {
@@ -48,6 +48,7 @@ export function keyboard({ drive, stop, go, act, signal, undo, help, mayDrive })
       : event.key === "0" ? () => signal(0)
       : event.key === "?" ? help
       : event.key.toLowerCase() === "u" ? undo
+      : event.key.toLowerCase() === "y" ? why
       : digit ? () => act(Number(digit[1] ?? digit[2]) - 1)
       : null;
     if (!does) return;

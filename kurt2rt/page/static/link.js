@@ -69,6 +69,12 @@ export class Link extends EventTarget {
     return this.#ask({ kind: "order", name, arguments: args, picture: this.picture });
   }
 
+  // What the robot's newest decision rests on; anybody who sees the page may ask.
+  why() {
+    if (!this.fresh) return Promise.resolve({ accepted: false, text: "no picture: nothing was asked" });
+    return this.#ask({ kind: "why" });
+  }
+
   press(hold, left, right) {
     if (!this.fresh) return false;
     this.#send({ kind: "press", hold, left_m_s: left, right_m_s: right, picture: this.picture });
