@@ -33,7 +33,8 @@ from kurt2rt.recording.error import RecordingError
 from kurt2rt.tasks.settings import TaskSettings
 
 _SETTINGS = "settings/"
-_COME_FROM = "imported from"
+COME_FROM = "imported from"
+"""Name of the note in a knowledge file that was imported."""
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def import_knowledge(
     require_same(given.binding, here, path, lambda level: level in levels)
     entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
     note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
-    bear(into, given.binding, entries, given.statistics, {_COME_FROM: note})
+    bear(into, given.binding, entries, given.statistics, {COME_FROM: note})
     return Taken(given, _otherwise_here(given, robot, task))
 
 

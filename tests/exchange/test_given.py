@@ -25,6 +25,7 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Credit, RlaCreated, RlaRewarded
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.knowledge.lessons import STAMP, created, origin, replaced, undone
+from tests.knowledge.test_writer import largest_file
 
 ROBOT = load_robot()
 TASK = load_task("wall_following")
@@ -195,3 +196,12 @@ def test_nothing_is_overwritten(exported: Path, taught: Path, tmp_path: Path) ->
         take(exported, there)
     with pytest.raises(KnowledgeError, match="is there already"):
         export(taught, exported)
+
+
+def test_on_a_disk_without_room_there_is_a_whole_file_or_none(taught: Path, exported: Path, tmp_path: Path) -> None:
+    for room in range(0, exported.stat().st_size, 1000):
+        with largest_file(room), pytest.raises(KnowledgeError):
+            export(taught, tmp_path / "out.zip")
+        with largest_file(room), pytest.raises(KnowledgeError):
+            take(exported, tmp_path / "k")
+    assert [each.name for each in tmp_path.iterdir() if not each.name.endswith(".lock")] == []

@@ -34,6 +34,7 @@ from kurt2rt.rla.rla import (
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.rla.space import Space
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded, session, undone
+from tests.knowledge.test_writer import largest_file
 
 BORDERS = Borders({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
 FAR = 1000.0
@@ -249,6 +250,22 @@ def test_another_kind_of_features_a_running_robot_and_a_dry_run_change_nothing(
     with pytest.raises(KnowledgeError, match="other: taught with other features"):
         bring(mine, tmp_path / "other")
     assert events(mine) == before
+
+
+def test_on_a_disk_without_room_all_of_a_merge_is_written_or_nothing(mine: Path, theirs: Path) -> None:
+    append(theirs, *(at(number, FAR * number, command_id=f"theirs-{number}") for number in range(4, 40)))
+    before = events(mine)
+    failed = 0
+    for room in range(0, 80_000, 4_000):
+        with largest_file(room):
+            try:
+                bring(mine, theirs)
+            except KnowledgeError:
+                failed += 1
+        assert len(events(mine)) in (len(before), len(before) + 37)
+    assert failed
+    bring(mine, theirs)
+    assert the_same(mine, theirs)
 
 
 Step = tuple[int, int]

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from kurt2rt.cli.knowledge.shared import WIDE, say
 from kurt2rt.cli.printed import console_of
+from kurt2rt.exchange.given import COME_FROM
 from kurt2rt.knowledge.branching import whence_of
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
@@ -19,9 +20,9 @@ from kurt2rt.knowledge.shown import plain
 def list_files(
     folder: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it.")] = Path("var"),
 ) -> None:
-    """List the knowledge files of a folder: task, how much they know, and where branches came from."""
+    """List the knowledge files of a folder: task, how much they know, and where it came from."""
     table = Table(box=SIMPLE_HEAD)
-    for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "branch of"):
+    for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
         table.add_column(heading, justify="right" if heading in ("RLAs", "lessons") else "left", overflow="fold")
     for path in sorted(folder.rglob("*.knowledge")):
         try:
@@ -36,8 +37,8 @@ def list_files(
 
 def _row(path: Path) -> tuple[str, ...]:
     with Journal.read_only(path) as journal:
-        taught, whence = read_taught(journal), whence_of(journal)
+        taught, whence, imported = read_taught(journal), whence_of(journal), journal.notes().get(COME_FROM, "")
     newest = taught.entries[-1].stamped_at[:19].replace("T", " ") if taught.entries else ""
-    came = "" if whence is None else f"{whence.file}, {whence.rows} rows"
+    came = imported if whence is None else f"{whence.file}, {whence.rows} rows"
     system = taught.system
     return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came
