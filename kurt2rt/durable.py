@@ -13,6 +13,14 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
+def make_folder(folder: Path) -> None:
+    """A folder that outlives a power cut, with those above it; it may be there already. Raises OSError."""
+    missing = [each for each in (folder, *folder.parents) if not each.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in missing:
+        sync_folder(each.parent)
+
+
 def sync_file(path: Path) -> None:
     """Make durable what any program wrote to a file. Raises OSError."""
     descriptor = os.open(path, os.O_RDWR)
@@ -24,7 +32,7 @@ def sync_file(path: Path) -> None:
 
 def write_durably(path: Path, text: str) -> None:
     """A file that is there whole after a power cut, or as it was before. Raises OSError."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     fresh = path.with_name(path.name + ".new")
     with fresh.open("w", encoding="utf-8") as file:
         file.write(text)

@@ -7,6 +7,7 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.features import features as critic_features
 from kurt2rt.critic.settings import load_critic
+from kurt2rt.durable import make_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
@@ -51,7 +52,7 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
     """
     binding = binding_of(settings, task)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
     return Journal.open(path, binding)

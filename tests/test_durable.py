@@ -1,0 +1,38 @@
+"""What has to survive a power cut is synced, and so is the name under which it is found."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt import durable
+
+
+@pytest.fixture
+def synced(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """Folders whose names were made durable, in order."""
+    folders: list[Path] = []
+    sound = durable.sync_folder
+
+    def sync_folder(folder: Path) -> None:
+        sound(folder)
+        folders.append(folder)
+
+    monkeypatch.setattr(durable, "sync_folder", sync_folder)
+    return folders
+
+
+def test_all_folders_that_were_made_are_durable(tmp_path: Path, synced: list[Path]) -> None:
+    durable.make_folder(tmp_path / "var" / "runs")
+    assert (tmp_path / "var" / "runs").is_dir()
+    assert set(synced) == {tmp_path / "var", tmp_path}
+    durable.make_folder(tmp_path / "var" / "runs")
+    assert len(synced) == 2
+
+
+def test_a_file_is_there_whole_or_as_it_was(tmp_path: Path, synced: list[Path]) -> None:
+    path = tmp_path / "var" / "report.txt"
+    durable.write_durably(path, "first\n")
+    durable.write_durably(path, "second\n")
+    assert path.read_text(encoding="utf-8") == "second\n"
+    assert [each.name for each in path.parent.iterdir()] == ["report.txt"]
+    assert synced == [tmp_path, path.parent, path.parent]
