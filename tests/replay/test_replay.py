@@ -211,3 +211,10 @@ def test_actions_that_were_taught_themselves_are_kept_with_the_run(tmp_path: Pat
     run = read_run(folder)
     assert any(entry.decision.action == "follow" for entry in run.entries())
     assert differences(run) == (800, [])
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", STORIES)
+def test_so_is_a_run_of_some_minutes(name: str, tmp_path: Path) -> None:
+    run = read_run(record_story(name, tmp_path, seconds=300))
+    assert differences(run) == (30_000, [])

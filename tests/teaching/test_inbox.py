@@ -2,6 +2,7 @@
 
 import pytest
 
+from kurt2rt.teaching.happenings import PressesForgotten, SetDown
 from kurt2rt.teaching.inbox import InboxFullError, TeacherInbox
 from tests.teaching.helpers import resume, stop, teach
 
@@ -33,3 +34,20 @@ def test_a_stop_finds_room_in_a_full_inbox() -> None:
     with pytest.raises(InboxFullError):
         inbox.put(teach("b"))
     assert inbox.take() == (teach("a"), stop())
+
+
+def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(teach("a"))
+    inbox.put(SetDown())
+    inbox.put(PressesForgotten("Ann"))
+    assert inbox.take() == (PressesForgotten("Ann"), SetDown(), teach("a"))
+
+
+def test_a_replay_says_exactly_what_the_next_tick_takes() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(stop())
+    taken = (teach("a"), SetDown(), resume())
+    inbox.hold(taken)
+    assert inbox.take() == taken
+    assert inbox.take() == ()
