@@ -1,6 +1,7 @@
 """docs/the-wire.md says what the codec does: all keys, all paths, and how many places each body has."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import cbor2
@@ -8,10 +9,13 @@ import pytest
 
 from kurt2rt.channel.requests import VERSION, checks_of
 from kurt2rt.channel.wire import PATHS, encode_state
+from kurt2rt.health.plain import plain_of
 from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.health.reports import ILL
 
 TEXT = (Path(__file__).parents[2] / "docs" / "the-wire.md").read_text(encoding="utf-8")
 PICTURE = TEXT[TEXT.index("### The picture") : TEXT.index("### What a teacher says")]
+HEALTH = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
 SAID = TEXT[TEXT.index("### What a teacher says") : TEXT.index("### Versions")]
 
 
@@ -43,6 +47,23 @@ def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
     assert {path: len(body) for path, body in bodies().items()} == {
         path: len(checks_of(kind)) for path, kind in PATHS.items()
     }
+
+
+def keys_in(plain: object) -> Iterator[str]:
+    """All keys of maps in maps and lists."""
+    if isinstance(plain, dict):
+        for key, value in plain.items():
+            yield key
+            yield from keys_in(value)
+    elif isinstance(plain, list):
+        for each in plain:
+            yield from keys_in(each)
+
+
+def test_every_key_of_the_health_report_is_explained() -> None:
+    keys = set(keys_in(plain_of(ILL)))
+    explained = set(re.findall(r"`(\w+)`", HEALTH))
+    assert keys <= explained, keys - explained
 
 
 def test_the_version_is_the_one_that_the_robot_speaks() -> None:
