@@ -149,11 +149,12 @@ class World:
         async with TeacherClient(self._device, port=self._port, patience_s=60) as robot:
             assert (await robot.take()).accepted
             assert robot.state is None or robot.state.cause == "stopped"
-            assert (await robot.resume()).accepted
             async for state in robot.states():
-                if state.cause == "rla":
+                if (state.left_m_s, state.right_m_s) != STANDSTILL:
                     self._drives.set()
                     return
+                if state.stopped_because or state.guard:  # the guard stops it on a machine that is too slow as well
+                    await robot.resume()
 
 
 def turns_wheels(payload: bytes) -> bool:
