@@ -1,6 +1,7 @@
 """`kurt2rt why`."""
 
 import math
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,7 @@ from kurt2rt.explain.from_run import Explained, explain_run
 from kurt2rt.explain.render import render_timeline, render_why
 from kurt2rt.explain.timeline import timeline_of
 from kurt2rt.explain.tipping import Tip
+from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.run_folder import find_run
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.run import Run
@@ -27,6 +29,8 @@ _WIDE = 130
 _FORMATS = (".png", ".svg", ".pdf")
 """As kurt2rt.explain.saving has them, which draws in matplotlib, an extra."""
 _STRETCHES = 40
+_REPORT_EVERY = 1000
+_DONE = TextColumn("{task.completed:.0f} s of the run")
 
 
 def why(
@@ -110,7 +114,10 @@ def _require_picture(picture: Path | None) -> None:
 
 def _show_timeline(console: Console, run: Run, from_s: float, to_s: float, limit: int, picture: Path | None) -> None:
     known = (lesson.event for lesson in run.lessons)
-    timeline = timeline_of(run.entries(), run.robot, from_s=from_s, to_s=to_s, known=known)
+    with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
+        bar = progress.add_task("", total=None)
+        entries = _counted(run.entries(), lambda read_s: progress.update(bar, completed=read_s))
+        timeline = timeline_of(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
     console.print(render_timeline(timeline, _of(run), limit))
     if picture is not None:
         # Not at the top: matplotlib is an extra, and a robot does without it.
@@ -118,6 +125,16 @@ def _show_timeline(console: Console, run: Run, from_s: float, to_s: float, limit
 
         draw_timeline(timeline, _of(run), picture)
         _say_where(picture)
+
+
+def _counted(entries: Iterable[TickEntry], report: Callable[[float], None]) -> Iterator[TickEntry]:
+    """The same; `report` gets the seconds of the run that were read."""
+    began_s = None
+    for entry in entries:
+        began_s = entry.now_s if began_s is None else began_s
+        if entry.tick % _REPORT_EVERY == 0:
+            report(entry.now_s - began_s)
+        yield entry
 
 
 def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None) -> None:

@@ -12,7 +12,7 @@ from kurt2rt.explain.tipping import Tip, tips
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.teaching.client import ANSWER_WITHIN_S, TeacherClient
 
 _FIRST_TICK_S = 0.1
 
@@ -25,11 +25,13 @@ class Asked(NamedTuple):
     """Of the RLAs that it told of, the nearest ones; none where its task is not known here."""
 
 
-def ask_why(device: Device, host: str, port: int, robot: RobotSettings) -> Asked:
+def ask_why(
+    device: Device, host: str, port: int, robot: RobotSettings, *, patience_s: float = ANSWER_WITHIN_S
+) -> Asked:
     """Ask over the teacher's channel, as one who does not teach. Raises NoAnswerError, CredentialsError."""
 
     async def ask() -> DecisionFacts:
-        async with TeacherClient(device.folder, host, port) as client:
+        async with TeacherClient(device.folder, host, port, patience_s=patience_s) as client:
             client.watching = False  # who asks does not look at it: it is not told that its teacher is there
             while (facts := await client.why()) is None:  # noqa: ASYNC110 - the first tick tells nobody
                 await anyio.sleep(_FIRST_TICK_S)

@@ -14,6 +14,9 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.entries import DecisionEntry, TickEntry
 from kurt2rt.rla.rla import BASIC, TeachingEvent
 
+MOST_SAMPLES = 5000
+"""A picture is not as wide as twice that."""
+
 
 class Kind(StrEnum):
     """What a stretch is."""
@@ -113,7 +116,8 @@ def timeline_of(
     every: int = 5,
     known: Iterable[TeachingEvent] = (),
 ) -> Timeline:
-    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample.
+    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample,
+    of a long run of fewer: at most twice MOST_SAMPLES.
 
     `known`: what had been taught before.
     """
@@ -174,6 +178,9 @@ class _Reader:
         self._note(entry, told, at_s)
         if self._ticks % self._every == 0:
             self._samples.append(self._sample(entry, at_s))
+            if len(self._samples) == 2 * MOST_SAMPLES:
+                del self._samples[1::2]
+                self._every *= 2
         self._ticks += 1
         return True
 

@@ -20,6 +20,10 @@ _CURVE = "#3b4754"
 _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
 _HIGHEST_SHARE = 1.6
 _MOST_NUMBERED = 24
+_MOST_STRETCHES = 400
+"""Of more nobody sees single ones."""
+_WHILES = 200
+"""In which a long run is told."""
 
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
@@ -88,8 +92,9 @@ def _way(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
                 break
         lines.append([(one.x_m, one.y_m), (other.x_m, other.y_m)])
         shades.append(colour_of(stretch, colours))
-    axes.add_collection(LineCollection(lines, colors="#ffffff", linewidths=7.0, capstyle="round", zorder=2))
-    axes.add_collection(LineCollection(lines, colors=shades, linewidths=3.4, capstyle="round", zorder=3))
+    wide = 3.4 if len(timeline.stretches) <= _MOST_STRETCHES else 1.2
+    axes.add_collection(LineCollection(lines, colors="#ffffff", linewidths=2 * wide, capstyle="round", zorder=2))
+    axes.add_collection(LineCollection(lines, colors=shades, linewidths=wide, capstyle="round", zorder=3))
     first, last = samples[0], samples[-1]
     axes.plot(first.x_m, first.y_m, "o", markersize=9, color="white", markeredgecolor=INK, zorder=5)
     axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
@@ -129,11 +134,10 @@ def _at(samples: Sequence[Sample], at_s: float) -> Sample:
 
 def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """What it did when, with what was taught above."""
-    for colour, group in groupby(
-        sorted(timeline.stretches, key=lambda each: colour_of(each, colours)), key=lambda each: colour_of(each, colours)
-    ):
-        spans = [(stretch.from_s, stretch.lasts_s) for stretch in group]
-        axes.broken_barh(spans, (0.0, 1.0), facecolors=colour, linewidth=0)
+    if len(timeline.stretches) > _MOST_STRETCHES:
+        _shares_over_time(axes, timeline, colours)
+    else:
+        _one_by_one(axes, timeline, colours)
     asked = spells(timeline, Kind.ASKS)
     if len(asked) <= _MOST_NUMBERED:
         for number, (from_s, to_s) in enumerate(asked, start=1):
@@ -145,9 +149,46 @@ def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     axes.set_ylabel("what it did", fontsize=9.5, color=PALE_INK)
 
 
+def _one_by_one(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    for colour, group in groupby(
+        sorted(timeline.stretches, key=lambda each: colour_of(each, colours)), key=lambda each: colour_of(each, colours)
+    ):
+        spans = [(stretch.from_s, stretch.lasts_s) for stretch in group]
+        axes.broken_barh(spans, (0.0, 1.0), facecolors=colour, linewidth=0)
+
+
+def _shares_over_time(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    """Of a long run: how much of each while it did what."""
+    low_s, high_s = timeline.from_s, timeline.to_s
+    width_s = (high_s - low_s) / _WHILES
+    lasts: dict[str, list[float]] = {}
+    for stretch in timeline.stretches:
+        of_colour = lasts.setdefault(colour_of(stretch, colours), [0.0] * _WHILES)
+        first, last = ((each - low_s) / width_s for each in (stretch.from_s, stretch.to_s))
+        for place in range(int(first), min(_WHILES, int(last) + 1)):
+            of_colour[place] += max(0.0, min(place + 1, last) - max(place, first))
+    edges = [low_s + place * width_s for place in range(_WHILES + 1)]
+    below = [0.0] * (_WHILES + 1)
+    order = [*colours.values(), TEACHER, ASKS, STANDS]
+    for colour in sorted(lasts, key=order.index):
+        above = [low + share for low, share in zip(below, [*lasts[colour], lasts[colour][-1]], strict=True)]
+        axes.fill_between(edges, below, above, step="post", color=colour, linewidth=0)
+        below = above
+
+
 def _notes(axes: Axes, notes: Sequence[Note], kind: str, marker: str, colour: str, height: float) -> None:
     times = [note.at_s for note in notes if note.kind == kind]
-    axes.plot(times, [height] * len(times), marker, markersize=6, color=colour, linestyle="none", clip_on=False)
+    many = len(times) > _MOST_STRETCHES
+    axes.plot(
+        times,
+        [height] * len(times),
+        "|" if many else marker,
+        markersize=6,
+        color=colour,
+        alpha=0.3 if many else 1.0,
+        linestyle="none",
+        clip_on=False,
+    )
 
 
 def _familiarity(axes: Axes, timeline: Timeline) -> None:
@@ -156,7 +197,8 @@ def _familiarity(axes: Axes, timeline: Timeline) -> None:
     shown = [min(sample.share, _HIGHEST_SHARE) for sample in timeline.samples]
     axes.axhspan(0, 1, facecolor=_KNOWN, zorder=0)
     axes.axhline(1, color=_LIMIT, linewidth=1.4, linestyle=(0, (4, 2)), zorder=1)
-    axes.plot(times, shown, color=_CURVE, linewidth=1.1, zorder=3)
+    wide = 1.1 if len(timeline.stretches) <= _MOST_STRETCHES else 0.3
+    axes.plot(times, shown, color=_CURVE, linewidth=wide, zorder=3)
     above = [not math.isnan(share) and share > 1 for share in shown]
     axes.fill_between(times, 1, shown, where=above, color=ASKS, alpha=0.75, linewidth=0, zorder=2)
     highest = max((share for share in shown if not math.isnan(share)), default=1.0)
@@ -168,6 +210,8 @@ def _familiarity(axes: Axes, timeline: Timeline) -> None:
 def _drivers(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """Which RLA drives: the older the lower."""
     highest = 1
+    lines: list[list[tuple[float, float]]] = []
+    shades: list[str] = []
     ends = [sample.at_s for sample in timeline.samples[1:]] + [timeline.to_s]
     spans = zip(timeline.samples, ends, strict=False)
     for (rla_id, action), group in groupby(spans, key=lambda span: (span[0].rla_id, span[0].action)):
@@ -175,8 +219,9 @@ def _drivers(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None
             continue
         drives = list(group)
         highest = max(highest, rla_id)
-        ahead = colours.get(action, STANDS)
-        axes.hlines(rla_id, drives[0][0].at_s, drives[-1][1], color=ahead, linewidth=5.0, zorder=3)
+        lines.append([(drives[0][0].at_s, rla_id), (drives[-1][1], rla_id)])
+        shades.append(colours.get(action, STANDS))
+    axes.add_collection(LineCollection(lines, colors=shades, linewidths=5.0, zorder=3))
     axes.set_ylim(0, highest * 1.06 + 0.5)
     axes.grid(axis="y", color="#e4e8ec", linewidth=0.8, zorder=0)
     axes.set_ylabel("RLA that drives", fontsize=9.5, color=PALE_INK)
@@ -191,8 +236,9 @@ def _speeds(axes: Axes, timeline: Timeline) -> None:
     held_back = [sample.held_back for sample in timeline.samples]
     axes.fill_between(times, low, high, where=held_back, step="mid", color=_HELD_BACK, linewidth=0, zorder=0)
     axes.axhline(0, color="#e4e8ec", linewidth=0.8, zorder=1)
-    axes.plot(times, left, color=_LEFT, linewidth=1.2, zorder=2)
-    axes.plot(times, right, color=_RIGHT, linewidth=1.2, zorder=3)
+    wide = 1.2 if len(timeline.stretches) <= _MOST_STRETCHES else 0.25
+    axes.plot(times, left, color=_LEFT, linewidth=wide, zorder=2)
+    axes.plot(times, right, color=_RIGHT, linewidth=wide, zorder=3)
     axes.set_ylim(low, high)
     axes.set_ylabel("wheels, m/s", fontsize=9.5, color=PALE_INK)
 

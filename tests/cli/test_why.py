@@ -5,6 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from hal.robot_settings import load_robot
+from kurt2rt.channel.credentials import ONLOOKER, local_pairing
+from kurt2rt.cli.why_live import ask_why
+from kurt2rt.teaching.answer import NoAnswerError
 from tests.cli.helpers import CommandLine, running
 from tests.replay.stories import STORED
 
@@ -99,11 +103,10 @@ def test_a_robot_that_runs_is_asked_over_the_channel_by_an_onlooker(
     assert "stands and asks" in (tmp_path / "now.svg").read_text(encoding="utf-8")
 
 
-def test_where_no_robot_runs_that_is_said(
-    kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert "no robot answers at 127.0.0.1:9 as onlooker" in kurt2rt.refused("why", "--live", "--port", "9")
+def test_where_no_robot_runs_that_is_said(tmp_path: Path) -> None:
+    device = local_pairing(tmp_path / "teachers", tmp_path / "devices", ONLOOKER).device
+    with pytest.raises(NoAnswerError, match="no robot answers at 127.0.0.1:9 as onlooker; is kurt2rt run running?"):
+        ask_why(device, "127.0.0.1", 9, load_robot(), patience_s=0.1)
 
 
 def test_now_is_no_moment_of_a_run(kurt2rt: CommandLine) -> None:

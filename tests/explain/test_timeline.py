@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.explain.render import render_timeline
-from kurt2rt.explain.timeline import Kind, summary, timeline_of
+from kurt2rt.explain.timeline import MOST_SAMPLES, Kind, summary, timeline_of
 from kurt2rt.explain.timeline_picture import draw_timeline
 from kurt2rt.rla.rla import Phase
 from tests.explain.helpers import ROBOT, Lesson
@@ -107,3 +107,19 @@ def test_the_picture_is_drawn_also_of_nothing(lesson: Lesson, tmp_path: Path) ->
     for name, entries in (("run", lesson.entries), ("nothing", [])):
         draw_timeline(timeline_of(entries, ROBOT), "a run", tmp_path / f"{name}.svg")
         assert b"a run" in (tmp_path / f"{name}.svg").read_bytes()
+
+
+def test_of_a_run_of_many_stretches_shares_are_drawn_and_fewer_samples_kept(lesson: Lesson, tmp_path: Path) -> None:
+    entries = lesson.entries
+    long = (
+        entry._replace(tick=entry.tick + 250 * again, now_s=entry.now_s + 2.5 * again)
+        for again in range(120)
+        for entry in entries
+    )
+    timeline = timeline_of(long, ROBOT, every=1)
+    assert len(timeline.stretches) == 600
+    assert MOST_SAMPLES <= len(timeline.samples) < 2 * MOST_SAMPLES
+    apart = {round(b.at_s - a.at_s, 3) for a, b in pairwise(timeline.samples)}
+    assert apart == {0.04}
+    draw_timeline(timeline, "a long run", tmp_path / "long.png")
+    assert (tmp_path / "long.png").stat().st_size > 10_000
