@@ -74,7 +74,10 @@ class _Reader:
     def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
         vector, system = record.situation.vector, self._system
         # Where the mid level asks, the decision holds that level's match.
-        match = decision.match if decision.asks_at == BASIC else system.match(vector, record.behaviour)
+        asking = not self._runtime.level.nobody_is_asked
+        match = decision.match
+        if decision.asks_at != BASIC:
+            match = system.match(vector, record.behaviour, asking=asking)
         return self._level(
             BASIC, record.behaviour, self._runtime.definition.names, vector, system.weights, match, decision.rla_id
         )
@@ -117,6 +120,8 @@ class _Reader:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
+            if rla.asks and level == BASIC and self._runtime.level.nobody_is_asked:
+                continue  # passed over
             if self._most is not None and len(others) >= self._most:
                 break
             others.append(self._story(rla, self._radius_of(rla), distance))

@@ -42,6 +42,9 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
     if facts.latched or facts.asks_at != BASIC or facts.cause not in (Cause.RLA, Cause.UNKNOWN):
         return ()
     stories = () if level.nearest is None else (level.nearest, *level.others)
+    if level.driver is not None:  # of those on the very same condition the chosen one
+        chosen = level.driver
+        stories = (chosen, *(story for story in stories if story.condition != chosen.condition))
     if not stories or not level.euclidean:
         return ()
     rivals = _Rivals(level, stories)

@@ -1,6 +1,7 @@
 """A simulated robot is taught, and its decisions are looked into."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from kurt2rt.explain.because import headline
 from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.picture import draw_why
 from kurt2rt.explain.sentences import taught
+from kurt2rt.explain.tipping import tips
 from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.features import FeatureExtractor
 from kurt2rt.rla.rla import Phase
@@ -104,6 +106,16 @@ def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_cha
         assert says(tip.sensor, tip.needed_counts - step) == facts.action
     changes = [abs(tip.needed_counts - tip.counts) for tip in taught_lesson.tips]
     assert changes == sorted(changes)
+
+
+def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson: Lesson) -> None:
+    facts = taught_lesson.facts
+    driver = facts.basic.driver
+    assert driver is not None
+    twin = replace(driver, rla_id=3, action="spin_left")
+    crowd = replace(facts, basic=replace(facts.basic, others=(twin, *facts.basic.others)))
+    found = tips(crowd, taught_lesson.runtime.definition, ROBOT.infrared)
+    assert found == taught_lesson.tips
 
 
 def test_where_a_stop_decided_no_reading_would_have_changed_it(taught_lesson: Lesson) -> None:
