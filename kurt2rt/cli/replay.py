@@ -89,7 +89,10 @@ def _verdict_in_words(run: Run, verdict: Verdict) -> Iterator[str]:
         )
     else:
         first = verdict.differences[0]
-        yield f"not the same: {verdict.ticks} ticks were, and after {verdict.lasted_s:.2f} s, came tick {first.tick}:"
+        yield (
+            f"not the same: {verdict.ticks} ticks ({verdict.lasted_s:.1f} s) were decided again as they were; in the "
+            f"next one, tick {first.tick},"
+        )
         for each in verdict.differences[:_DIFFERENCES]:
             yield f"  {each.in_words}"
         if len(verdict.differences) > _DIFFERENCES:
