@@ -71,6 +71,7 @@ class Envelope:
         self._puts: dict[int, _Put] = {}
         self._last_put: _Put | None = None
         self._last_arrived: _Put | None = None
+        self._arrived_number = 0
 
     def put(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
         """The driver hands a frame to its bus; `age_s`: since its decision began."""
@@ -114,8 +115,11 @@ class Envelope:
             elapsed_s = put.at_s - self._last_arrived.at_s
             if self.clock_is_wrong or self._last_arrived.told.brake:
                 elapsed_s = max(elapsed_s, self._limits.longest_step_s)
-            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s)
+            # The rest between two directions may be among frames that were lost on the way. That it was put, `put` saw.
+            follows = number == self._arrived_number + 1
+            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s, rests=follows)
         self._last_arrived = put
+        self._arrived_number = number
         return told
 
     def _require_slow(self, at_s: float, told: Told) -> None:
@@ -123,7 +127,7 @@ class Envelope:
         if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
             self._violate(at_s, f"{fastest_m_s:.2f} m/s")
 
-    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float) -> None:
+    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float, *, rests: bool = True) -> None:
         limits = self._limits
         for side, old_m_s, new_m_s in (
             ("left", before.left_m_s, told.left_m_s),
@@ -132,6 +136,8 @@ class Envelope:
             if new_m_s == 0.0:
                 continue  # to stand is allowed at once
             if old_m_s * new_m_s < 0.0:
+                if not rests:
+                    continue
                 self._violate(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
                 continue
             gained_m_s = abs(new_m_s) - abs(old_m_s)

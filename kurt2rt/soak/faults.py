@@ -83,7 +83,7 @@ class SoakFaults:
         self._suffered = life
         self.expects_the_end = must.ends_by == "restart"
         self._witness.envelope.slew_share = must.slew_share
-        self._witness.envelope.clock_is_wrong = case.target == "clock" and must.slew_share > 1.0
+        self._witness.envelope.clock_is_wrong = case.target == "clock"
         disturbance = self._disturbance = self._place.begin(
             case.target, case.kind, begin_s=begin_s, end_s=end_s, period_s=must.period_s, delay_s=must.delay_s
         )
