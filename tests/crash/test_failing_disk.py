@@ -54,7 +54,9 @@ def test_a_call_that_fails_costs_no_lesson(folder: Path, failure: Failure) -> No
 @pytest.mark.parametrize("lasts", [1, 2, 7, 40])
 @pytest.mark.parametrize("failure", Failure)
 def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(folder: Path, failure: Failure, lasts: int) -> None:
-    assert set(fail_each_call(folder, failure, lasts, every=1)) == set(Call)
+    failed = fail_each_call(folder, failure, lasts, every=1)
+    print(f"{failed.total()} calls: {dict(failed)}")
+    assert set(failed) == set(Call)
 
 
 class StuckJournal(Journal):
