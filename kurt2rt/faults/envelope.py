@@ -115,9 +115,9 @@ class Envelope:
             elapsed_s = put.at_s - self._last_arrived.at_s
             if self.clock_is_wrong or self._last_arrived.told.brake:
                 elapsed_s = max(elapsed_s, self._limits.longest_step_s)
-            # The rest between two directions may be among frames that were lost on the way. That it was put, `put` saw.
+            # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
             follows = number == self._arrived_number + 1
-            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s, rests=follows)
+            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s, follows=follows)
         self._last_arrived = put
         self._arrived_number = number
         return told
@@ -127,7 +127,7 @@ class Envelope:
         if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
             self._violate(at_s, f"{fastest_m_s:.2f} m/s")
 
-    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float, *, rests: bool = True) -> None:
+    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float, *, follows: bool = True) -> None:
         limits = self._limits
         for side, old_m_s, new_m_s in (
             ("left", before.left_m_s, told.left_m_s),
@@ -135,9 +135,9 @@ class Envelope:
         ):
             if new_m_s == 0.0:
                 continue  # to stand is allowed at once
+            if not follows and (old_m_s * new_m_s < 0.0 or abs(new_m_s) < abs(old_m_s)):
+                continue
             if old_m_s * new_m_s < 0.0:
-                if not rests:
-                    continue
                 self._violate(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
                 continue
             gained_m_s = abs(new_m_s) - abs(old_m_s)
