@@ -99,6 +99,25 @@ def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
     assert "left from 0.00 to 0.09" in drive.violations
 
 
+def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
+    slows = Drive().put(set_point(5)).put(set_point(0), late_s=None).put(set_point(1))
+    turns = Drive().put(set_point(1)).put(set_point(0), late_s=None).put(set_point(-1))
+    assert not slows.violations
+    assert not turns.violations
+
+
+def test_what_follows_one_another_at_the_robot_must_rest_in_between() -> None:
+    assert "turns round" in Drive().put(set_point(1)).put(set_point(-1)).violations
+
+
+def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
+    drive = Drive()
+    drive.envelope.clock_is_wrong = True
+    drive.put(set_point(1)).put(set_point(4), after_s=0.003)
+    assert not drive.violations
+    assert "left from 0.04 to 0.09" in drive.put(set_point(9), after_s=0.003).violations
+
+
 def test_it_counts_what_arrives_too_late_and_what_is_garbled() -> None:
     drive = Drive().put(set_point(1), late_s=0.019).put(set_point(2), late_s=0.03).put(set_point(0), late_s=0.5)
     assert drive.envelope.old_frames == 1
