@@ -66,6 +66,7 @@ class Life:
         self._settings = settings
         self._time = place.time
         self._number = number
+        self._presses = 0
         self._lessons_said = self._recorded_at = self._tended_at = 0
         self._chance = random.Random(f"life {number}, seed {seed}")
         self._started_s: float | None = None
@@ -153,7 +154,9 @@ class Life:
     def take_by_hand(self, disturbance: Disturbance) -> None:
         """Somebody takes the robot and drives it by hand, over a link that will fail."""
         link = self._link = HandLink(self._time, disturbance, self.runtime, self._chance)
-        link.press()
+        self._presses += 1
+        for _ in range(self._presses):  # a press has a larger number than that of any press before
+            link.press()
         self._lessons_said += 1
         self._put(Take(f"hand-{self._number}-{self._lessons_said}", TEACHER))
         self._beat(link)
