@@ -48,6 +48,7 @@ class _Put(NamedTuple):
     at_s: float
     age_s: float
     told: Told | None
+    off_a_bumper: bool
 
 
 class Envelope:
@@ -67,6 +68,8 @@ class Envelope:
         self.slew_share = slew_share
         self.clock_is_wrong = False
         """While the driver's clock jumps, every frame may gain or lose what is allowed in the longest step."""
+        self.off_a_bumper = False
+        """While the driver sees one pressed: a wheel that drives against it stops, and may turn round, at once."""
         self._limits = limits
         self._puts: dict[int, _Put] = {}
         self._last_put: _Put | None = None
@@ -77,7 +80,7 @@ class Envelope:
         """The driver hands a frame to its bus; `age_s`: since its decision began."""
         self.frames += 1
         told = told_by(payload)
-        put = self._puts[number] = _Put(at_s, age_s, told)
+        put = self._puts[number] = _Put(at_s, age_s, told, self.off_a_bumper)
         if len(self._puts) > _MOST_UNDER_WAY:
             del self._puts[next(iter(self._puts))]
         if told is None:
@@ -94,7 +97,7 @@ class Envelope:
             longest_s = self._limits.longest_step_s
             by_frame = self.clock_is_wrong or self._last_put.told.brake
             elapsed_s = longest_s if by_frame else at_s - self._last_put.at_s
-            self._require_smooth(at_s, self._last_put.told, told, min(elapsed_s, longest_s))
+            self._require_smooth(at_s, self._last_put.told, put, told, min(elapsed_s, longest_s))
         self._last_put = put
 
     def arrived(self, number: int, at_s: float, payload: bytes) -> Told | None:
@@ -117,7 +120,7 @@ class Envelope:
                 elapsed_s = max(elapsed_s, self._limits.longest_step_s)
             # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
             follows = number == self._arrived_number + 1
-            self._require_smooth(at_s, self._last_arrived.told, told, elapsed_s, follows=follows)
+            self._require_smooth(at_s, self._last_arrived.told, put, told, elapsed_s, follows=follows)
         self._last_arrived = put
         self._arrived_number = number
         return told
@@ -127,7 +130,9 @@ class Envelope:
         if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
             self._violate(at_s, f"{fastest_m_s:.2f} m/s")
 
-    def _require_smooth(self, at_s: float, before: Told, told: Told, elapsed_s: float, *, follows: bool = True) -> None:
+    def _require_smooth(
+        self, at_s: float, before: Told, put: _Put, told: Told, elapsed_s: float, *, follows: bool = True
+    ) -> None:
         limits = self._limits
         for side, old_m_s, new_m_s in (
             ("left", before.left_m_s, told.left_m_s),
@@ -137,6 +142,8 @@ class Envelope:
                 continue  # to stand is allowed at once
             if not follows and (old_m_s * new_m_s < 0.0 or abs(new_m_s) < abs(old_m_s)):
                 continue
+            if old_m_s * new_m_s < 0.0 and put.off_a_bumper:
+                old_m_s = 0.0
             if old_m_s * new_m_s < 0.0:
                 self._violate(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
                 continue

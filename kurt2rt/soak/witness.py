@@ -119,7 +119,9 @@ class SoakWitness:
         """A tick begins: from here on its decision ages."""
         self._sensed_at_s = self._place.time.now_s()
         assert self._robot is not None
-        return self._robot.sense(now_s)
+        senses = self._robot.sense(now_s)
+        self.envelope.off_a_bumper = senses.bumpers != 0
+        return senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         """As the robot does."""

@@ -110,6 +110,13 @@ def test_what_follows_one_another_at_the_robot_must_rest_in_between() -> None:
     assert "turns round" in Drive().put(set_point(1)).put(set_point(-1)).violations
 
 
+def test_off_a_bumper_a_wheel_may_turn_round_at_once_but_not_jump() -> None:
+    drive = Drive().put(set_point(1)).put(set_point(2)).put(set_point(3))
+    drive.envelope.off_a_bumper = True
+    assert not drive.put(set_point(-1)).violations
+    assert "left from 0.00 to 0.09" in drive.put(set_point(9)).violations
+
+
 def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
     drive = Drive()
     drive.envelope.clock_is_wrong = True
