@@ -45,6 +45,11 @@ class Watchdog:
         """True while the thread watches."""
         return self._thread is not None and self._thread.is_alive()
 
+    @property
+    def thread(self) -> threading.Thread | None:
+        """Who watches; None before the start and after the end."""
+        return self._thread
+
     def start(self) -> None:
         """Start the thread; it waits for the first beat. Raises RuntimeError when it runs already."""
         if self.running:

@@ -55,6 +55,11 @@ class Ending:
         """What the program is busy with, for the last word when the time is over."""
 
     @property
+    def thread(self) -> threading.Thread:
+        """Who hears."""
+        return self._thread
+
+    @property
     def asked(self) -> bool:
         """Whether the program was told to end."""
         return self._deadline_s < math.inf

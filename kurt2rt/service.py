@@ -142,7 +142,7 @@ async def serve(
 
                 tasks.start_soon(status.serve)
                 if upkeep.reloading is not None:
-                    tasks.start_soon(upkeep.reloading.serve, _Taking(rounds, service, upkeep.tell))
+                    tasks.start_soon(upkeep.reloading.serve, _Taking(rounds, service, upkeep))
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 # The wheels first, also where the loop hangs.
                 acts = (lambda: robot.emergency_stop(_ENDS), runtime.scheduler.end, upkeep.notifier.stopping)
@@ -232,13 +232,13 @@ def _recording(
 class _Taking:
     """Takes settings that were read anew."""
 
-    def __init__(self, rounds: Rounds, service: ServiceSettings, tell: Callable[[str], None]) -> None:
+    def __init__(self, rounds: Rounds, service: ServiceSettings, upkeep: Upkeep) -> None:
         self._rounds = rounds
         self._priority = service.real_time_priority
-        self._tell = tell
+        self._upkeep = upkeep
 
     def __call__(self, service: ServiceSettings) -> None:
         self._rounds.take(service)
         if service.real_time_priority != self._priority:
             self._priority = service.real_time_priority
-            self._tell(take_real_time_priority(self._priority))
+            self._upkeep.tell(take_real_time_priority(self._priority, self._upkeep.guards()))

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Thread
 
 import anyio
 from rich.console import Console
@@ -112,14 +113,12 @@ class RobotProgram:
         service, orders = self._service, self._orders
         end = "" if orders.as_service else "; Ctrl-C ends"
         self._tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
-        if service.real_time_priority:
-            self._tell(take_real_time_priority(service.real_time_priority))
         with self._around as around:
             notifier = around.enter_context(Notifier())
             reloading = Reloading(self._read, service, notifier, self._say) if orders.as_service else None
             others = {} if reloading is None else {signal.SIGHUP: reloading.ask}
             ending = around.enter_context(Ending(others=others, give_up=self._give_up))
-            self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._say)
+            self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._guards, self._say)
             self._companions = around.enter_context(Companions(orders.settings, ending.patience_s))
             self._printer = around.enter_context(Printer(ending.patience_s))
             last = anyio.run(self._serve)
@@ -147,6 +146,8 @@ class RobotProgram:
         opened = self._opened
         assert opened is not None
         ending.waits_for = "its runtime"
+        if self._service.real_time_priority:  # not before the second guard is there
+            self._say(take_real_time_priority(self._service.real_time_priority, self._guards()))
         self._upkeep.notifier.ping()  # the next one comes from the first tick
         openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening)
         return await serve(
@@ -239,6 +240,11 @@ class RobotProgram:
             "second guard": lambda: self._opened is None or self._opened.robot.watchdog.running,
             "simulator": lambda: self._opened is None or self._opened.lives(),
         }
+
+    def _guards(self) -> tuple[Thread, ...]:
+        """Who brakes the robot when the loop hangs, and who ends it."""
+        watchdog = None if self._opened is None else self._opened.robot.watchdog.thread
+        return (self._upkeep.ending.thread, *(() if watchdog is None else (watchdog,)))
 
     def _instruments(self, opened: OpenedRobot) -> Instruments:
         log = self._log

@@ -1,21 +1,33 @@
-"""Real-time priority for the loop."""
+"""Real-time priority for the loop, and above it for those that must overtake a loop that hangs."""
 
 import os
+import threading
+from collections.abc import Iterable
 
 
-def take_real_time_priority(priority: int) -> str:
+def take_real_time_priority(priority: int, guards: Iterable[threading.Thread] = ()) -> str:
     """Run this thread under SCHED_FIFO, with 0 as any other; says what came of it.
 
-    A robot also runs without, only less punctual.
+    `guards`: threads that get one more than this one. All others of the program, those too that it starts later, and
+    all programs that it starts, are as any other. A robot also runs without, only less punctual.
     """
-    if priority == 0:
-        os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
-        return "no real-time priority"
+    threads = [(each.native_id, priority and priority + 1) for each in guards if each.native_id is not None]
     try:
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+        for native_id, its in (*threads, (0, priority)):
+            _schedule(native_id, its)
     except PermissionError:
         return (
             f"no real-time priority {priority}: not permitted; the loop runs without it. "
             "Give the service CAP_SYS_NICE, or set real_time_priority: 0"
         )
-    return f"real-time priority {priority} (SCHED_FIFO)"
+    return f"real-time priority {priority} (SCHED_FIFO)" if priority else "no real-time priority"
+
+
+def _schedule(native_id: int, priority: int) -> None:
+    # The flag: what a thread starts is as any other. Without it every thread would get the loop's own priority, and
+    # keep it when the loop gives it up.
+    policy = (os.SCHED_FIFO if priority else os.SCHED_OTHER) | os.SCHED_RESET_ON_FORK
+    try:
+        os.sched_setscheduler(native_id, policy, os.sched_param(priority))
+    except ProcessLookupError:  # it has ended: the heartbeat looks after that
+        return

@@ -4,7 +4,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -20,6 +20,28 @@ from tests.systemd.manager import Manager, manager
 def systemd(tmp_path: Path) -> Iterator[Manager]:
     with manager(tmp_path) as opened:
         yield opened
+
+
+@pytest.fixture
+def kurt2rt_process(tmp_path: Path) -> Iterator[Callable[..., Running]]:
+    """Starts `kurt2rt ...` in the test's folder; what is left of it is killed."""
+    with ExitStack() as around:
+
+        def start(*words: str) -> Running:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "kurt2rt.cli.main", *words],
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                cwd=tmp_path,
+                env={**os.environ, "PYTHONUNBUFFERED": "1"},
+            )
+            around.enter_context(process)
+            around.callback(process.kill)
+            return Running(process)
+
+        yield start
 
 
 def settings_in(folder: Path, **changes: object) -> str:
@@ -64,6 +86,34 @@ def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
         systemd.wait_for("STOPPING=1")
         assert not set(said.out) & {"\r", "\x1b", "\b"}
         assert sum("missed" in line for line in said.out.splitlines()) == 0
+
+
+def priorities_of(pid: int) -> list[int]:
+    """Real-time priorities of all threads of a process, those of the ones that have none left out; the highest first."""
+    threads = [int(each.name) for each in Path(f"/proc/{pid}/task").iterdir()]
+    return sorted((os.sched_getparam(each).sched_priority for each in threads if _is_real_time(each)), reverse=True)
+
+
+def _is_real_time(thread: int) -> bool:
+    return os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO
+
+
+def test_a_reload_never_leaves_others_before_the_loop_nor_the_loop_before_its_guards(
+    tmp_path: Path, kurt2rt_process: Callable[..., Running]
+) -> None:
+    words = ("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path, real_time_priority=5))
+    program = kurt2rt_process(*words)
+    if "not permitted" in program.wait_for("real-time priority 5"):
+        pytest.skip("SCHED_FIFO is not permitted here: no CAP_SYS_NICE")
+    program.wait_for("stands until Go: the robot program was started")
+    pid = program.process.pid
+    assert priorities_of(pid) == [6, 6, 5]  # the second guard, the one that hears signals, the loop
+    for priority, expected in ((0, []), (20, [21, 21, 20]), (3, [4, 4, 3])):
+        settings_in(tmp_path, real_time_priority=priority)
+        program.process.send_signal(signal.SIGHUP)
+        program.wait_for("settings taken: real_time_priority")
+        assert priorities_of(pid) == expected
+    assert program.end(signal.SIGTERM).exit_code == 0
 
 
 def test_a_terminal_that_hangs_up_ends_a_program_that_was_run_by_hand(tmp_path: Path) -> None:
