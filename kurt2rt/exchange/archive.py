@@ -4,6 +4,7 @@ import base64
 import hashlib
 import io
 import json
+import stat
 import zipfile
 import zlib
 from collections.abc import Mapping
@@ -15,6 +16,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from kurt2rt.exchange.signing import is_signed, signature_of
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.recording.kept_files import LARGEST_BYTES, trouble_of
 
 FORMAT = 1
 """Raise it when the manifest or the files below change, and keep reading older ones."""
@@ -23,8 +25,8 @@ MANIFEST, SIGNATURE = "manifest.json", "signature.json"
 _FILES, _FORMAT = "files", "format"
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 """The same knowledge is the same file, whenever it is written."""
-_LARGEST_BYTES = 1_000_000_000
-"""Of all that is in it, unpacked: a small archive must not fill the memory."""
+_SMALL_ENOUGH_TO_UNPACK = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+"""Of others a few bytes may unpack to any number, whatever the archive says of their size."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,11 @@ def pack(about: Mapping[str, Any], files: Mapping[str, bytes], key: Ed25519Priva
 def unpack(path: Path) -> Archive:
     """Read an archive whole. Raises KnowledgeError that says what is wrong with it: torn, changed, of another kind."""
     try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise KnowledgeError(f"{path}: is a folder or device; give a file of kurt2rt knowledge export")
+        if status.st_size > LARGEST_BYTES:
+            raise KnowledgeError(f"{path}: is larger than {LARGEST_BYTES // 10**6} MB, which no knowledge is")
         with zipfile.ZipFile(path) as archive:
             content = _content(archive, path)
     except OSError as error:
@@ -81,17 +88,21 @@ def unpack(path: Path) -> Archive:
 
 def _content(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     entries = archive.infolist()
-    if len({entry.filename for entry in entries}) < len(entries):
+    sizes = {entry.orig_filename: entry.file_size for entry in entries}  # before anything in it was cut off
+    if len(sizes) < len(entries) or len({name.casefold() for name in sizes}) < len(entries):
         raise KnowledgeError(f"{path}: holds a file twice; get it anew")
-    if sum(entry.file_size for entry in entries) > _LARGEST_BYTES:
-        raise KnowledgeError(f"{path}: would unpack to more than {_LARGEST_BYTES // 10**6} MB, which no knowledge is")
-    return {entry.filename: archive.read(entry) for entry in entries}
+    trouble = trouble_of(sizes)
+    if trouble:
+        raise KnowledgeError(f"{path}: {trouble}; nothing of it was read: get it anew from whom you trust")
+    if not all(entry.compress_type in _SMALL_ENOUGH_TO_UNPACK for entry in entries):
+        raise KnowledgeError(f"{path}: is packed in a way that kurt2rt knowledge export does not use; get it anew")
+    return {entry.orig_filename: archive.read(entry) for entry in entries}
 
 
 def _manifest(data: bytes, path: Path) -> dict[str, Any]:
     try:
         manifest = json.loads(data)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise KnowledgeError(f"{path}: its {MANIFEST} is damaged ({error}); get it anew") from error
     if not isinstance(manifest, dict) or not isinstance(manifest.get(_FORMAT), int):
         raise KnowledgeError(f"{path}: its {MANIFEST} is none of kurt2rt; give a file of kurt2rt knowledge export")
@@ -110,7 +121,7 @@ def _signer(content: Mapping[str, bytes], path: Path) -> bytes | None:
     try:
         signed = json.loads(content[SIGNATURE])
         public, signature = (base64.b64decode(signed[each], validate=True) for each in ("public_key", "signature"))
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise KnowledgeError(f"{path}: its {SIGNATURE} is damaged ({error!r}); get it anew") from error
     if not is_signed(content[MANIFEST], public, signature):
         raise KnowledgeError(f"{path}: its signature does not fit: it was changed after it was signed; get it anew")

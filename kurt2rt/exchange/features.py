@@ -1,15 +1,14 @@
 """Which features differ between what knowledge was taught with and what is here, by their names."""
 
 from collections.abc import Iterator, Mapping
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from pydantic import ValidationError
 
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, kept_settings
+from hal.settings import SettingsError
 from kurt2rt.perception.definition import AVERAGED, SituationDefinition, load_situation
 from kurt2rt.recording.attachments import ROBOT, TASK
+from kurt2rt.recording.kept_files import laid_out
 from kurt2rt.tasks.settings import TaskSettings
 
 _MOST = 6
@@ -23,14 +22,9 @@ def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task
     try:
         there_robot = RobotSettings.model_validate_json(settings[ROBOT])
         there_task = TaskSettings.model_validate_json(settings[TASK])
-        with TemporaryDirectory(prefix="kurt2rt-import-") as folder:
-            for name, data in settings.items():
-                path = Path(folder, name)
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(data)
-            with kept_settings(Path(folder, "settings")):
-                there = load_situation(there_task.situation, there_robot.infrared.names)
-    except (KeyError, ValidationError, SettingsError) as error:
+        with laid_out(settings):
+            there = load_situation(there_task.situation, there_robot.infrared.names)
+    except (KeyError, ValidationError, SettingsError, OSError) as error:
         return f"its settings cannot be used here ({' '.join(str(error).split())})"
     here = load_situation(task.situation, robot.infrared.names)
     found = list(_differences(there, here))

@@ -23,6 +23,7 @@ from kurt2rt.knowledge.saved_copy import save_new
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.attachments import (
     KNOWLEDGE,
+    SETTINGS,
     STATISTICS,
     KnownLesson,
     attachments_of,
@@ -30,9 +31,9 @@ from kurt2rt.recording.attachments import (
     read_lessons_of,
 )
 from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.kept_files import trouble_of
 from kurt2rt.tasks.settings import TaskSettings
 
-_SETTINGS = "settings/"
 COME_FROM = "imported from"
 """Name of the note in a knowledge file that was imported."""
 
@@ -93,7 +94,11 @@ def export_knowledge(
         "rlas": len(system),
         "lessons": system.standing_lessons,
     }
-    content = pack(about, attachments_of(robot, task, entries, statistics), key)
+    files = attachments_of(robot, task, entries, statistics)
+    trouble = trouble_of({name: len(data) for name, data in files.items()})
+    if trouble:  # nobody could take it
+        raise KnowledgeError(f"{path}: cannot be exported: it {trouble}; name its settings otherwise")
+    content = pack(about, files, key)
     save_new(content, out)
     return len(content)
 
@@ -161,7 +166,7 @@ def _given(path: Path, archive: Archive) -> Given:
         str(manifest["task"]),
         str(manifest["exported_at"]),
         archive.signed_by,
-        {name: content for name, content in archive.files.items() if name.startswith(_SETTINGS)},
+        {name: content for name, content in archive.files.items() if name.startswith(SETTINGS)},
     )
 
 

@@ -24,7 +24,8 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 ROBOT, TASK = "settings/robot.json", "settings/task.json"
 """As they were in force, whatever file or option said so."""
 KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
-_SETTINGS = "settings"
+SETTINGS = "settings/"
+"""All that a loader of settings looks for begins so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,7 @@ def attachments_of(
     if saved is not None:
         attached[STATISTICS] = encode_statistics(saved)
     for kind, name, data in _used_by(task, set()):
-        attached[f"{_SETTINGS}/{kind}/{kept_name(name)}"] = data
+        attached[f"{SETTINGS}{kind}/{kept_name(name)}"] = data
     return attached
 
 

@@ -1,19 +1,17 @@
 """A recorded run, as it is read."""
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cached_property
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from pydantic import ValidationError
 
 from hal.robot_settings import RobotSettings
-from hal.settings import kept_settings
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.attachments import (
     KNOWLEDGE,
     ROBOT,
+    SETTINGS,
     STATISTICS,
     TASK,
     KnownLesson,
@@ -23,6 +21,7 @@ from kurt2rt.recording.attachments import (
 )
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.kept_files import laid_out, trouble_of
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -99,14 +98,16 @@ class Run:
 
     @contextmanager
     def settings(self) -> Iterator[None]:
-        """While it lasts all settings are those that were kept with the run."""
-        with TemporaryDirectory(prefix="kurt2rt-replay-") as folder:
-            for name, data in self._attachments.items():
-                path = Path(folder, name)
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_bytes(data)
-            with kept_settings(Path(folder, "settings")):
-                yield
+        """While it lasts all settings are those that were kept with the run. Raises RecordingError."""
+        kept = {name: data for name, data in self._attachments.items() if name.startswith(SETTINGS)}
+        with ExitStack() as stack:
+            try:
+                stack.enter_context(laid_out(kept))
+            except OSError as error:
+                raise RecordingError(
+                    f"{self.name}: its settings cannot be laid out ({error}); make room where temporary files go"
+                ) from error
+            yield
 
     def entries(self) -> Iterator[TickEntry]:
         """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
@@ -130,6 +131,9 @@ class Run:
                 f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
                 "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
             )
+        trouble = trouble_of({name: len(data) for name, data in self._attachments.items()})
+        if trouble:
+            raise RecordingError(f"{self.name}: {trouble}; give a run as kurt2rt run recorded it")
         found = fingerprints_of(self._attachments)
         for name, fingerprint in self.head.fingerprints.items():
             if name in found and found[name] != fingerprint:

@@ -3,6 +3,7 @@
 import json
 import shutil
 import zipfile
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -140,6 +141,46 @@ def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Pat
     (tmp_path / "empty.zip").write_bytes(pack({}, {}, None))
     with pytest.raises(KnowledgeError, match="cannot be understood"):
         read_given(tmp_path / "empty.zip")
+
+
+def made_over(exported: Path, out: Path, about: Mapping[str, object] | None = None, **files: bytes) -> Path:
+    """An archive of somebody who means ill, or whose program is another: all its sums are in order."""
+    whole = unpack(exported)
+    manifest = {name: value for name, value in whole.manifest.items() if name not in ("format", "files")}
+    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **files}, None))
+    return out
+
+
+@pytest.mark.parametrize(
+    "name", ["settings/../../escaped", "/escaped", "settings\\..\\escaped", "settings/task.json/x"]
+)
+def test_what_would_be_written_elsewhere_is_not_even_read(exported: Path, tmp_path: Path, name: str) -> None:
+    other = {"features": {**unpack(exported).manifest["features"], "hash": "another"}}
+    evil = made_over(exported, tmp_path / "evil.zip", other, **{name: b"!"})
+    with pytest.raises(KnowledgeError, match=r"evil\.zip: holds "):
+        take(evil, tmp_path / "k")
+    assert [each.name for each in tmp_path.iterdir()] == ["evil.zip"]
+
+
+def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -> None:
+    bomb = tmp_path / "bomb.zip"
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("manifest.json", "w") as part:
+        for _ in range(257):
+            part.write(bytes(10**6))
+    assert bomb.stat().st_size < 10**6
+    with pytest.raises(KnowledgeError, match="holds more than 256 MB"):
+        read_given(bomb)
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("manifest.json", b"{}")
+    with pytest.raises(KnowledgeError, match="is packed in a way"):
+        read_given(bomb)
+    with zipfile.ZipFile(bomb, "w") as archive:
+        archive.writestr("settings/a", b"")
+        archive.writestr("settings/A", b"")
+    with pytest.raises(KnowledgeError, match="holds a file twice"):
+        read_given(bomb)
+    with pytest.raises(KnowledgeError, match="is a folder or device"):
+        read_given(tmp_path)
 
 
 def test_only_whom_one_trusts_is_believed(exported: Path, taught: Path, tmp_path: Path) -> None:

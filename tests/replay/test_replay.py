@@ -172,6 +172,13 @@ def test_settings_of_another_version_are_refused_with_its_name() -> None:
         Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._read)
 
 
+@pytest.mark.parametrize("name", ["settings/../../escaped", "/escaped", "settings/task.json/escaped"])
+def test_a_run_that_would_write_elsewhere_is_refused(name: str) -> None:
+    run = stored("walls")
+    with pytest.raises(RecordingError, match=r"evil: holds .*escaped|evil: holds 'settings/task\.json' as a file and"):
+        Run("evil", run.head, {**run._attachments, name: b"!"}, run._read)
+
+
 def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="no recorded run"):
         read_run(tmp_path)

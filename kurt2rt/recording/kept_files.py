@@ -1,0 +1,68 @@
+"""Files that came with something from elsewhere: which names they may have, and how they are laid out in a folder."""
+
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from hal.settings import kept_settings
+
+MOST_FILES = 1000
+LARGEST_BYTES = 256_000_000
+"""All of them together: ten times what some 10 000 lessons and their counts take."""
+
+_LONGEST_NAME, _LONGEST_PART = 1000, 255
+_DRIVE = re.compile(r"[A-Za-z]:")
+_DEVICE = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9])(\..*)?", re.IGNORECASE)
+
+
+def trouble_of(sizes: Mapping[str, int]) -> str:
+    """Why files of these names and sizes in bytes are not taken, in a few words; empty where they are.
+
+    Whoever made them may mean ill: no name may lead out of the folder that they are laid out in.
+    """
+    if len(sizes) > MOST_FILES:
+        return f"holds {len(sizes)} files, {MOST_FILES} are taken at most"
+    if sum(sizes.values()) > LARGEST_BYTES:
+        return f"holds more than {LARGEST_BYTES // 10**6} MB, which no knowledge is"
+    for name in sizes:
+        if not _is_plain(name):
+            return f"holds a file of the name {_shortened(name)}, which is none that kurt2rt gives"
+    folders = {"/".join(name.split("/")[:count]) for name in sizes for count in range(1, name.count("/") + 1)}
+    for name in sorted(folders & sizes.keys()):
+        return f"holds {_shortened(name)} as a file and as a folder"
+    return ""
+
+
+@contextmanager
+def laid_out(files: Mapping[str, bytes]) -> Iterator[None]:
+    """While it lasts all settings are those among these files, by name, and no others.
+
+    Of files that `trouble_of` has nothing against. Raises OSError where there is no room for them.
+    """
+    with TemporaryDirectory(prefix="kurt2rt-kept-") as folder:
+        for name, data in files.items():
+            path = Path(folder, name)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with path.open("xb") as file:  # never another one's content
+                file.write(data)
+        with kept_settings(Path(folder, "settings")):
+            yield
+
+
+def _is_plain(name: str) -> bool:
+    parts = name.split("/")
+    return (
+        name.isprintable()  # neither control characters nor half a surrogate pair
+        and len(name) <= _LONGEST_NAME
+        and "\\" not in name
+        and not _DRIVE.match(name)
+        and all(part.strip(". ") and len(part.encode()) <= _LONGEST_PART for part in parts)
+        and not any(_DEVICE.fullmatch(part) for part in parts)
+    )
+
+
+def _shortened(name: str) -> str:
+    text = repr(name)
+    return text if len(text) <= 80 else f"{text[:77]}..."
