@@ -47,12 +47,35 @@ class Counted:
         return self._now.get(name, 0) - self._past[0].get(name, 0)
 
 
+class _Writes:
+    """The slowest write of lessons in the last minute."""
+
+    def __init__(self) -> None:
+        self._newest_s: float | None = None
+        self._slow: deque[tuple[float, float]] = deque()
+
+    def see(self, now_s: float, last_write_s: float | None) -> None:
+        """What the newest one took; a value that is there still is of the same write."""
+        if last_write_s != self._newest_s:
+            self._newest_s = last_write_s
+            if last_write_s is not None and last_write_s > SLOW_WRITE_S:
+                self._slow.append((now_s, last_write_s))
+        while self._slow and now_s - self._slow[0][0] > LATELY_S:
+            self._slow.popleft()
+
+    @property
+    def slowest_s(self) -> float | None:
+        """None when all were quick."""
+        return max((took_s for _, took_s in self._slow), default=None)
+
+
 class TroubleBook:
     """Finds what is wrong in each report, and remembers since when."""
 
     def __init__(self, settings: RobotSettings) -> None:
         self._settings = settings
         self._since_s: dict[str, float] = {}
+        self._writes = _Writes()
 
     def judge(
         self,
@@ -63,10 +86,11 @@ class TroubleBook:
         counted: Counted,
     ) -> tuple[Trouble, ...]:
         """The troubles of one report: the urgent ones first, then those that have lasted longest."""
+        self._writes.see(snapshot.now_s, snapshot.last_write_s)
         found = [
             *self._of_senses(snapshot),
             *_of_bus(snapshot, counted),
-            *_of_keeping(snapshot, disks),
+            *_of_keeping(snapshot, self._writes.slowest_s, disks),
             *self._of_ticks(punctuality),
             *_of_machine(machine),
             *_of_drops(snapshot, counted),
@@ -122,11 +146,11 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
             yield _Found("bus", name, f"{lately} {what} in the last minute", to_do, False)
 
 
-def _of_keeping(snapshot: Snapshot, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
+def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
     if snapshot.keeper_trouble:
         yield _told("lessons", "keeper", snapshot.keeper_trouble, urgent=True)
-    if snapshot.last_write_s is not None and snapshot.last_write_s > SLOW_WRITE_S:
-        what = f"the disk took {snapshot.last_write_s:.1f} s to keep the last lessons"
+    if slowest_write_s is not None:
+        what = f"in the last minute the disk took up to {slowest_write_s:.1f} s to keep a lesson"
         yield _Found("lessons", "slow disk", what, "end what else writes to it; kurt2rt doctor measures it", False)
     for disk in disks:
         if disk.free_bytes is None:

@@ -89,7 +89,7 @@ def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
 
 
 def priorities_of(pid: int) -> list[int]:
-    """Real-time priorities of all threads of a process, those of the ones that have none left out; the highest first."""
+    """Of the threads of a process that have a real-time priority; the highest first."""
     threads = [int(each.name) for each in Path(f"/proc/{pid}/task").iterdir()]
     return sorted((os.sched_getparam(each).sched_priority for each in threads if _is_real_time(each)), reverse=True)
 

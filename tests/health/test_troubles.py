@@ -132,7 +132,16 @@ def test_a_disk_that_fails_fills_up_hangs_or_takes_its_time(ward: Ward) -> None:
     assert ward.one(disks=(DiskSpace("recordings", 49_000_000),)).urgent
     assert ward.one(disks=(DiskSpace("knowledge", None),)).what == "the disk of knowledge does not answer"
     slow = ward.one(replace(CALM, last_write_s=0.84))
-    assert slow.what == "the disk took 0.8 s to keep the last lessons"
+    assert slow.what == "in the last minute the disk took up to 0.8 s to keep a lesson"
+
+
+def test_a_slow_write_is_a_trouble_for_a_minute_whatever_was_or_was_not_written_since(ward: Ward) -> None:
+    for _ in range(LATELY_S):
+        assert ward.one(replace(CALM, last_write_s=0.84)).about == "lessons"
+    ward.one(replace(CALM, last_write_s=0.84))
+    assert ward.look(replace(CALM, last_write_s=0.84)) == ()
+    ward.one(replace(CALM, last_write_s=0.6))
+    assert ward.one().what == "in the last minute the disk took up to 0.6 s to keep a lesson"
 
 
 def test_a_battery_counts_while_it_is_used_up(ward: Ward) -> None:
