@@ -14,7 +14,7 @@ from tests.cli.helpers import CommandLine
 NOT_OURS = "to whom it may concern\n"
 
 EVERY_WRITER = [("lesson", "--knowledge"), ("run", "--seconds", "0.1", "--knowledge")]
-EVERY_READER = [("exam",), *(("knowledge", name) for name in ("show", "lessons", "check", "export", "undo"))]
+EVERY_READER = [("exam",), *(("knowledge", name) for name in ("show", "lessons", "check", "table", "undo"))]
 
 
 def changed(kind: str, name: str, folder: Path, change: Callable[[dict[str, object]], None]) -> Path:
@@ -248,7 +248,8 @@ def test_knowledge_that_somebody_writes_is_refused_to_a_second_writer_and_shown_
         assert "another kurt2rt is writing it" in kurt2rt.refused("knowledge", "undo", mine)
         assert kurt2rt("knowledge", "check", mine).exit_code == 0
         assert kurt2rt("knowledge", "lessons", mine).exit_code == 0
-        assert kurt2rt("knowledge", "export", mine).exit_code == 0
+        assert kurt2rt("knowledge", "table", mine).exit_code == 0
+        assert kurt2rt("knowledge", "export", mine, tmp_path / "mine.zip").exit_code == 0
         assert kurt2rt("knowledge", "show", mine).exit_code == 0
         refusal = kurt2rt.refused("exam", mine, "--world", "nope")
         assert "nope: no such file in worlds" in refusal
