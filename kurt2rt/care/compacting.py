@@ -57,7 +57,8 @@ def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compac
     now = Known(tuple(entry.event for entry in taught.entries), journal.statistics())
     needed, behaviours, ticks = _needed(taught, runs, now, report)
     rlas = taught.system.rlas_at(BASIC)
-    unneeded = tuple(rla for rla in rlas if rla.behaviour in behaviours and rla.rla_id not in needed)
+    # A run in which nobody could be asked passes over those that ask: it does not tell whether one is needed.
+    unneeded = tuple(rla for rla in rlas if rla.behaviour in behaviours and rla.rla_id not in needed and not rla.asks)
     deletions = [RlaDeleted(rla.rla_id, new_origin("compact", TEACHER)) for rla in unneeded]
     if deletions:
         after = worths_after(now.events, deletions, now.statistics, len(journal.binding.feature_names))

@@ -128,7 +128,7 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
         told.add_column("at s", justify="right")
         told.add_column("what happened", overflow="fold")
         for note in notes:
-            told.add_row(f"{note.at_s:.2f}", plain(note.text if note.kind == "lesson" else f"{note.kind}: {note.text}"))
+            told.add_row(f"{note.at_s:.2f}", plain(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text))
         parts.append(told)
         if len(timeline.notes) > most:
             parts.append(Text(f"and {len(timeline.notes) - most} more"))

@@ -12,7 +12,7 @@ from kurt2rt.explain.lesson_words import LessonWords
 from kurt2rt.explain.sentences import times
 from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.entries import DecisionEntry, TickEntry
-from kurt2rt.rla.rla import BASIC, TeachingEvent
+from kurt2rt.rla.rla import BASIC, Lesson, TeachingEvent
 
 MOST_SAMPLES = 5000
 """A picture is not as wide as twice that."""
@@ -61,7 +61,7 @@ class Note:
 
     at_s: float
     kind: str
-    """lesson, alarm."""
+    """lesson, saying (a session, an opinion, what was taken back), alarm."""
     text: str
 
 
@@ -158,7 +158,7 @@ class _Reader:
             self._began_s = entry.now_s
         at_s = entry.now_s - self._began_s
         self._reckon(entry)
-        told = [self.lessons.tell(event) for event in entry.events]
+        told = [(_kind(event), self.lessons.tell(event)) for event in entry.events]
         if at_s > self._to_s:
             return False
         if at_s < self._from_s:
@@ -205,8 +205,8 @@ class _Reader:
         for reason in _out_of_the_ordinary(entry):
             stretch.guarded[reason] = stretch.guarded.get(reason, 0) + 1
 
-    def _note(self, entry: TickEntry, told: Iterable[str], at_s: float) -> None:
-        self._notes += [Note(at_s, "lesson", text) for text in told]
+    def _note(self, entry: TickEntry, told: Iterable[tuple[str, str]], at_s: float) -> None:
+        self._notes += [Note(at_s, kind, text) for kind, text in told]
         if entry.grant.latched and not self._latched:
             self._notes.append(Note(at_s, "alarm", ", ".join(entry.grant.reasons)))
         self._latched = entry.grant.latched
@@ -249,6 +249,10 @@ def summary(timeline: Timeline) -> str:
     parts += [_counted(alarms, "alarm")] if alarms else []
     parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
     return f"{whole_s:.1f} s: {', '.join(parts)}"
+
+
+def _kind(event: TeachingEvent) -> str:
+    return "lesson" if isinstance(event, Lesson) else "saying"
 
 
 def _counted(count: int, what: str) -> str:

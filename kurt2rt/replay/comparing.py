@@ -32,7 +32,7 @@ def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
     if entry.knowledge is not None and record.knowledge is not None:
         knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))
     again = tick_entry_of(record, saved=entry.saved, knowledge=knowledge)
-    if again == entry:
+    if repr(again) == repr(entry):  # `==` takes 0.0 for -0.0 and True for 1, and NaN for another one
         return []
     return [Difference(entry.tick, *each) for each in _differences("", entry, again)]
 
@@ -42,7 +42,7 @@ def _differences(place: str, recorded: object, replayed: object) -> Iterator[tup
         for name in recorded._fields:
             below = f"{place}.{name}" if place else name
             yield from _differences(below, getattr(recorded, name), getattr(replayed, name))
-    elif recorded != replayed and repr(recorded) != repr(replayed):  # NaN is not equal to itself
+    elif repr(recorded) != repr(replayed):
         yield place, recorded, replayed
 
 

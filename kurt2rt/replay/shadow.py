@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.recording.error import RecordingError
@@ -20,7 +22,7 @@ from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import BASIC, MID, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import Match, RlaSystem, UnfitEventError
 from kurt2rt.runtime import Runtime, empty_system
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.tick import TickRecord
@@ -79,14 +81,22 @@ class Shadow:
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> Answer:
         """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""
-        return _answer(self._system, self._worths.choice, situation, behaviour, level)
+        match = self._system.match(situation, behaviour, level)
+        return _answer(match, self._system, self._worths.choice) if level == BASIC else _way(match)
 
     def look(self, record: TickRecord, runtime: Runtime) -> Answers:
         """What it says to the situations of a tick that was just replayed in `runtime`.
 
-        The basic level answers for the behaviour that was wanted then.
+        The basic level answers for the behaviour that was wanted then, and passes over RLAs whose action was withdrawn
+        where the robot did: nobody was there to be asked.
         """
-        return _answers(self._system, self._worths.choice, record, runtime)
+        system, choice = self._system, self._worths.choice
+        asking = not runtime.level.nobody_is_asked
+        basic = system.match(record.situation.vector, record.behaviour, asking=asking)
+        mid = None
+        if runtime.mid is not None:
+            mid = _way(system.match(runtime.mid.vector, level=MID))
+        return Answers(_answer(basic, system, choice), mid)
 
 
 def shadow_of(run: Run, knowledge: Path) -> Shadow:
@@ -99,22 +109,35 @@ def shadow_of(run: Run, knowledge: Path) -> Shadow:
 
 
 def answers_then(record: TickRecord, runtime: Runtime) -> Answers:
-    """What the run's own knowledge says, as it is after a tick that was just replayed in `runtime`."""
-    return _answers(runtime.level.system, runtime.reinforcement.choice, record, runtime)
+    """What the run's own knowledge said in a tick that was just replayed in `runtime`.
+
+    It is what was decided: by now the robot may have been taught otherwise, by itself in that very tick. Where the mid
+    level asked, the basic level was not heard, and is not here.
+    """
+    decision = record.decision
+    mid = None if decision.mid is None else _way(decision.mid.match)
+    match = decision.match if decision.asks_at == BASIC else None
+    answer = _answer(match, runtime.level.system, runtime.reinforcement.choice)
+    if match is not None and decision.cause is Cause.RLA and decision.action is not None:
+        drove = match.rla
+        if drove.rla_id != decision.rla_id:  # of those on the very same condition another one was chosen
+            drove = (None if decision.rla_id is None else runtime.level.system.get(decision.rla_id)) or drove
+        answer = answer._replace(rla=replace(drove, action=decision.action))
+    return Answers(answer, mid)
 
 
-def _answers(system: RlaSystem, choice: Choice, record: TickRecord, runtime: Runtime) -> Answers:
-    basic = _answer(system, choice, record.situation.vector, record.behaviour, BASIC)
-    mid = None if runtime.mid is None else _answer(system, choice, runtime.mid.vector, "", MID)
-    return Answers(basic, mid)
+def _answer(match: Match | None, system: RlaSystem, choice: Choice) -> Answer:
+    """Of the basic level: of competitors the one of most worth drives."""
+    if match is None or not match.known:
+        return _way(match)
+    group = system.competitors(match.rla)
+    # One that was deleted since, or told something else, has nobody to be compared with.
+    rla = choice.best(group) if len(group) > 1 and match.rla in group else match.rla
+    return Answer(rla, match.rla, match.distance, match.radius)
 
 
-def _answer(system: RlaSystem, choice: Choice, situation: NDArray[np.float64], behaviour: str, level: str) -> Answer:
-    match = system.match(situation, behaviour, level)
+def _way(match: Match | None) -> Answer:
+    """Of ways from one place a plan chooses, or the oldest leads."""
     if match is None:
         return Answer(None, None, math.inf, 0.0)
-    rla = None
-    if match.known:
-        # Of ways from one place a plan chooses, or the oldest leads; of competitors the one of most worth drives.
-        rla = choice.best(system.competitors(match.rla)) if level == BASIC else match.rla
-    return Answer(rla, match.rla, match.distance, match.radius)
+    return Answer(match.rla if match.known else None, match.rla, match.distance, match.radius)

@@ -12,7 +12,7 @@ from rich.console import Console
 from kurt2rt.explain.render import render_timeline
 from kurt2rt.explain.timeline import MOST_SAMPLES, Kind, summary, timeline_of
 from kurt2rt.explain.timeline_picture import draw_timeline
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import Origin, Phase, SessionBegun
 from tests.explain.helpers import ROBOT, Lesson
 from tests.teaching.helpers import correct, resume, set_phase, stop, teach
 
@@ -123,3 +123,12 @@ def test_of_a_run_of_many_stretches_shares_are_drawn_and_fewer_samples_kept(less
     assert apart == {0.04}
     draw_timeline(timeline, "a long run", tmp_path / "long.png")
     assert (tmp_path / "long.png").stat().st_size > 10_000
+
+
+def test_sessions_and_opinions_are_told_and_are_no_lessons(lesson: Lesson) -> None:
+    entries = lesson.entries
+    begun = SessionBegun("afternoon", Origin("s", "Ann", Phase.SUPERVISED, 1))
+    entries[0] = entries[0]._replace(events=(begun,))
+    timeline = timeline_of(entries, ROBOT)
+    assert (timeline.notes[0].kind, timeline.notes[0].text) == ("saying", "session afternoon begun by Ann")
+    assert "2 lessons" in summary(timeline)

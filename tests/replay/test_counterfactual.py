@@ -1,19 +1,21 @@
 """Other knowledge looks on at a run, and it is told where it would have decided otherwise."""
 
 import math
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.replay import ReplayedTick
+from kurt2rt.replay.replay import Replay, ReplayedTick
 from kurt2rt.replay.run import Run
-from kurt2rt.replay.shadow import Shadow, shadow_of
-from kurt2rt.rla.rla import BASIC, MID, ActionReplaced, Origin, Phase, Rla, RlaCreated, TeachingEvent
+from kurt2rt.replay.shadow import Shadow, answers_then, shadow_of
+from kurt2rt.rla.rla import BASIC, MID, ActionReplaced, ActionWithdrawn, Origin, Phase, Rla, RlaCreated, TeachingEvent
 from tests.replay.stories import STORED, STORIES
 
 ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
@@ -109,6 +111,59 @@ def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEv
     assert found.mid_otherwise > 100
     assert (found.other_action, found.would_ask, found.would_drive) == (0, 0, 0)
     assert {each.level for each in found.stretches} == {MID}
+
+
+def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(name: str) -> None:
+    run = stored(name)
+    replay = Replay(run)
+    heard: Counter[str] = Counter()
+    taught_now = 0
+    for entry, record in replay:
+        answer = answers_then(record, replay.runtime).basic
+        decision = record.decision
+        if decision.cause is Cause.RLA:
+            assert answer.rla is not None
+            assert (answer.rla.rla_id, answer.action) == (decision.rla_id, decision.action), entry.tick
+            taught_now += bool(entry.events)
+        elif decision.cause is Cause.UNKNOWN:
+            assert answer.action is None, entry.tick
+        heard[decision.cause.value] += 1
+    assert heard["rla"] > 1000
+    assert heard["unknown"] > 100
+    assert taught_now > 2
+
+
+def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
+    """As a critic does it: the action drives, is found bad, and is gone behind the same tick."""
+    run = stored("walls")
+    replay = Replay(run)
+    for _entry, record in replay:
+        if record.decision.cause is Cause.RLA and record.tick > 3000:
+            break
+    rla_id = record.decision.rla_id
+    assert rla_id is not None
+    replay.runtime.level.apply(ActionWithdrawn(rla_id, "", ORIGIN))
+    assert answers_then(record, replay.runtime).basic.action == record.decision.action
+
+
+def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
+    lessons: dict[str, list[TeachingEvent]],
+) -> None:
+    run = stored("walls")
+    events = [event for event in lessons["walls"] if isinstance(event, RlaCreated) and event.rla.level == BASIC]
+    known = Shadow(run, events)
+    replay = Replay(run)
+    for _entry, record in replay:
+        if record.decision.cause is Cause.RLA and record.tick > 3000:
+            break
+    asked = known.look(record, replay.runtime).basic
+    assert asked.rla is not None
+    withdrawn = Shadow(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
+    assert withdrawn.look(record, replay.runtime).basic.rla is None
+    replay.runtime.level.nobody_is_asked = True
+    passed_over = withdrawn.look(record, replay.runtime).basic
+    assert passed_over.nearest is not None
+    assert passed_over.nearest.rla_id != asked.rla.rla_id
 
 
 def test_each_tick_is_told_of() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from hal.robot import WheelSpeeds
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import segments_in
@@ -99,6 +100,16 @@ def test_what_was_not_taught_then_is_told_as_the_first_difference() -> None:
     first = compare(entry, replay.step(entry))
     assert any(each.field == "events" for each in first)
     assert f"tick {entry.tick}" in str(first[0])
+
+
+def test_a_zero_of_another_sign_is_a_difference_and_so_is_a_truth_for_a_number() -> None:
+    """Both are equal for Python, and not what was recorded."""
+    entry, record = next(iter(Replay(stored("walls"))))
+    still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
+    (found,) = compare(entry._replace(decision=still), record)
+    assert found.in_words == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
+    (found,) = compare(entry._replace(senses=entry.senses._replace(bumpers=False)), record)
+    assert found.field == "senses.bumpers"
 
 
 def test_the_runtime_is_as_it_was_at_a_time() -> None:
