@@ -8,11 +8,14 @@ from rich.console import Console
 
 from hal.settings import find_config
 from kurt2rt.service_settings import load_service
+from kurt2rt.systemd.access import Wanted, closed_to_others, to_hand_over
 from kurt2rt.systemd.error import UnitError
 from kurt2rt.systemd.examination import MOST_EXPOSURE, examine
+from kurt2rt.systemd.installation import program
 from kurt2rt.systemd.installing import install as install_unit
+from kurt2rt.systemd.installing import require_free
 from kurt2rt.systemd.installing import uninstall as uninstall_unit
-from kurt2rt.systemd.unit import Unit, closed_to_others, program, unit_of
+from kurt2rt.systemd.unit import STATE, Unit, require_name, unit_of
 
 service = typer.Typer(
     help="Run the robot's program as a unit of systemd, which starts it with the machine and again whenever it fell.",
@@ -32,7 +35,8 @@ def show(
     robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
 ) -> None:
     """Print the unit as install would write it."""
-    typer.echo(_unit(robot, settings, name, page=page).service, nl=False)
+    unit, _ = _unit(robot, settings, name, page=page)
+    typer.echo(unit.service, nl=False)
 
 
 @service.command()
@@ -42,17 +46,18 @@ def check(
     """Let systemd's own tools look at the unit: does it load, what may it do.
 
     Changes nothing. Ends with code 1 if it does not load, its user could not
-    read this installation, or its exposure (systemd-analyze security, 0 to 10,
-    less is safer) is above 2.
+    read this installation or the settings, or write where they say, or its
+    exposure (systemd-analyze security, 0 to 10, less is safer) is above 2;
+    with 2 if its name is another program's.
     """
-    unit = _unit(robot, settings, name, page=page)
+    require_free(name)
+    unit, wanted = _unit(robot, settings, name, page=page)
     found = examine(unit)
     console = Console()
     for line in found.open:
         console.print(f"open: {line}", markup=False, highlight=False, soft_wrap=True)
     console.print(f"exposure {found.exposure} of 10, at most {MOST_EXPOSURE} is well", markup=False, highlight=False)
-    closed = closed_to_others()
-    wrong = (*found.complaints, *([closed] if closed else []))
+    wrong = (*found.complaints, *closed_to_others(wanted), *to_hand_over(name, wanted))
     for line in wrong:
         console.print(line, style="red", markup=False, highlight=False, soft_wrap=True)
     if wrong or not found.passed:
@@ -69,12 +74,13 @@ def install(
     Needs root. The unit keeps what it is taught in /var/lib/NAME. After any
     start the robot stands until its teacher says Go.
     """
-    closed = closed_to_others()
-    if closed:
-        raise UnitError(closed)
-    files = install_unit(_unit(robot, settings, name, page=page))
-    for path in files:
+    unit, wanted = _unit(robot, settings, name, page=page)
+    for line in closed_to_others(wanted):
+        raise UnitError(line)
+    for path in install_unit(unit):
         typer.echo(f"{path} is written")
+    for line in to_hand_over(name, wanted):
+        typer.echo(f"first of all: {line}")
     typer.echo(f"start it, now and with the machine: systemctl enable --now {name}")
 
 
@@ -83,13 +89,32 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
     """End the unit and remove it; what was taught in /var/lib/NAME stays."""
     for path in uninstall_unit(name):
         typer.echo(f"{path} is removed")
-    typer.echo(f"what was taught stays in /var/lib/{name}")
+    typer.echo(f"what was taught stays in {STATE / name}")
 
 
-def _unit(robot: str, settings: str, name: str, *, page: bool) -> Unit:
+def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Wanted]:
+    """The unit, and what it needs to get at. Raises SettingsError, UnitError."""
+    require_name(name)
     found = find_config("runtime", settings)
     loaded = load_service(settings)
     named = settings if found.stem == settings else str(found.absolute())
     command = (*program(), "run", "--service", "--robot", robot, "--settings", named, *(("--page",) if page else ()))
+    state = STATE / name
+    files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
+    files.append(_as_the_service_finds("task", loaded.task, state))
     folders = (Path(loaded.knowledge).parent, *map(Path, (loaded.teachers, loaded.devices, loaded.recordings)))
-    return unit_of(name, robot, command, [each for each in folders if each.is_absolute()])
+    wanted = Wanted(
+        tuple(each for each in files if not each.is_relative_to(state)),
+        tuple(each for each in sorted(set(folders)) if each.is_absolute() and not each.is_relative_to(state)),
+    )
+    return unit_of(name, robot, command, wanted.folders), wanted
+
+
+def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
+    """The file of a setting that names one. Raises SettingsError; UnitError where the service would find another."""
+    found = find_config(key + "s", given)
+    if found == Path(given) and not found.is_absolute():
+        raise UnitError(
+            f"{key}: {given}: the service would look for it in {state}; give its whole path in the settings"
+        )
+    return found.absolute()

@@ -1,17 +1,33 @@
 """The unit is put in its place and taken away again."""
 
+import pwd
 import subprocess
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.durable import write_durably
 from kurt2rt.systemd.error import UnitError
-from kurt2rt.systemd.unit import Unit
-
-UNITS, USERS = Path("/etc/systemd/system"), Path("/etc/sysusers.d")
+from kurt2rt.systemd.unit import MARK, USER, Unit, require_name
 
 Do = Callable[[Sequence[str]], None]
 """Runs one of systemd's commands. Raises UnitError."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where systemd looks for its files."""
+
+    units: Path = Path("/etc/systemd/system")
+    users: Path = Path("/etc/sysusers.d")
+    others: tuple[Path, ...] = tuple(
+        map(Path, ("/run/systemd/system", "/usr/local/lib/systemd/system", "/usr/lib/systemd/system"))
+    )
+    """Of units of other programs, which one of ours must not hide."""
+
+    def files(self, name: str) -> tuple[Path, Path]:
+        """Of a unit and its user."""
+        return self.units / f"{name}.service", self.users / f"{name}.conf"
 
 
 def do(command: Sequence[str]) -> None:
@@ -24,9 +40,27 @@ def do(command: Sequence[str]) -> None:
         raise UnitError(f"{' '.join(command)}: {' '.join(done.stderr.split()) or f'exit code {done.returncode}'}")
 
 
-def install(unit: Unit, run: Do = do, units: Path = UNITS, users: Path = USERS) -> tuple[Path, ...]:
+def require_free(name: str, places: Places | None = None) -> None:
+    """Raises UnitError for a name that a unit, or a user, of another program has."""
+    require_name(name)
+    places = places or Places()
+    to_do = "give another --name"
+    for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
+        if _is_there(path) and not (path.parent in (places.units, places.users) and _is_ours(path)):
+            raise UnitError(f"{path}: is another program's; {to_do}")
+    try:
+        user = pwd.getpwnam(name)
+    except KeyError:
+        return
+    if user.pw_gecos != USER:
+        raise UnitError(f"{name}: is a user of this machine already; {to_do}")
+
+
+def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
     """Write the unit and make its user; starts nothing. Returns the files. Raises UnitError."""
-    files = _files(unit.name, units, users)
+    places = places or Places()
+    require_free(unit.name, places)
+    files = places.files(unit.name)
     for path, text in zip(files, (unit.service, unit.sysusers), strict=True):
         try:
             write_durably(path, text)
@@ -37,11 +71,16 @@ def install(unit: Unit, run: Do = do, units: Path = UNITS, users: Path = USERS) 
     return files
 
 
-def uninstall(name: str, run: Do = do, units: Path = UNITS, users: Path = USERS) -> tuple[Path, ...]:
+def uninstall(name: str, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
     """End and disable the unit and remove its files; what was taught and its user stay. Raises UnitError."""
-    files = tuple(each for each in _files(name, units, users) if each.exists())
+    require_name(name)
+    places = places or Places()
+    files = tuple(each for each in places.files(name) if _is_there(each))
     if not files:
-        raise UnitError(f"{units / f'{name}.service'}: there is no such unit; kurt2rt service install makes one")
+        raise UnitError(f"{places.files(name)[0]}: there is no such unit; kurt2rt service install makes one")
+    for path in files:
+        if not _is_ours(path):
+            raise UnitError(f"{path}: is another program's and stays; give the --name that you installed with")
     run(("systemctl", "disable", "--now", f"{name}.service"))
     for path in files:
         try:
@@ -52,5 +91,12 @@ def uninstall(name: str, run: Do = do, units: Path = UNITS, users: Path = USERS)
     return files
 
 
-def _files(name: str, units: Path, users: Path) -> tuple[Path, Path]:
-    return units / f"{name}.service", users / f"{name}.conf"
+def _is_there(path: Path) -> bool:
+    return path.is_symlink() or path.exists()  # a link to nowhere is somebody's as well
+
+
+def _is_ours(path: Path) -> bool:
+    try:
+        return not path.is_symlink() and path.read_text(encoding="utf-8", errors="replace").startswith(MARK)
+    except OSError as error:
+        raise UnitError(f"{path}: cannot be read ({error}); say it with sudo") from error

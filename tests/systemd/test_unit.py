@@ -9,9 +9,8 @@ import pytest
 from config import CONFIG_DIR
 from kurt2rt.systemd.error import UnitError
 from kurt2rt.systemd.examination import MOST_EXPOSURE, examine, has_tool
-from kurt2rt.systemd.installing import install, uninstall
-from kurt2rt.systemd.unit import Unit, program, quoted, unit_of
-from tests.cli.helpers import CommandLine
+from kurt2rt.systemd.installation import program
+from kurt2rt.systemd.unit import Unit, quoted, unit_of
 
 needs_systemd = pytest.mark.skipif(
     not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"
@@ -83,35 +82,6 @@ def test_a_misspelt_setting_is_found() -> None:
     found = examine(broken)
     assert any("alwys" in line for line in found.complaints)
     assert not found.passed
-
-
-def test_it_is_installed_and_taken_away_again(tmp_path: Path) -> None:
-    done: list[tuple[str, ...]] = []
-
-    def note(command: object) -> None:
-        assert isinstance(command, tuple)
-        done.append(command)
-
-    units, users = tmp_path / "system", tmp_path / "sysusers.d"
-    service, sysusers = install(unit(), note, units, users)
-    assert service.read_text(encoding="utf-8") == unit().service
-    assert 'u kurt2rt - "KURT2 robot" /var/lib/kurt2rt' in sysusers.read_text(encoding="utf-8")
-    assert done == [("systemd-sysusers", str(sysusers)), ("systemctl", "daemon-reload")]
-    done.clear()
-    assert uninstall("kurt2rt", note, units, users) == (service, sysusers)
-    assert done == [("systemctl", "disable", "--now", "kurt2rt.service"), ("systemctl", "daemon-reload")]
-    assert [*units.iterdir(), *users.iterdir()] == []
-    with pytest.raises(UnitError, match="there is no such unit"):
-        uninstall("kurt2rt", note, units, users)
-
-
-def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    mine = tmp_path / "mine.yaml"
-    mine.write_text("name: mine\n", encoding="utf-8")
-    said = kurt2rt("service", "show", "--robot", "can1", "--page")
-    assert f"ExecStart={program()[0]} " in said.out
-    assert " run --service --robot can1 --settings default --page\n" in said.out
-    assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")
 
 
 def test_it_comes_with_pip() -> None:

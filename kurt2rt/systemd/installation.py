@@ -1,0 +1,20 @@
+"""This very installation of kurt2rt: what starts it, and where it is."""
+
+import sys
+from pathlib import Path
+
+from config import CONFIG_DIR
+
+
+def program() -> tuple[str, ...]:
+    """The words that start it, absolute."""
+    script = Path(sys.executable).with_name("kurt2rt")
+    if script.is_file():
+        return (str(script),)
+    # Without -P the present folder, which may be the service's own state, would be searched for modules.
+    return (sys.executable, "-P", "-m", "kurt2rt.cli.main")
+
+
+def places() -> tuple[Path, ...]:
+    """Files and folders that it does not run without."""
+    return (Path(program()[0]), Path(sys.prefix), Path(sys.base_prefix), CONFIG_DIR)
