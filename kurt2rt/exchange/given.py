@@ -11,7 +11,9 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from hal.robot_settings import RobotSettings
 from kurt2rt.exchange.archive import Archive, pack, unpack
 from kurt2rt.exchange.features import differing_features
+from kurt2rt.exchange.manifest import read_manifest
 from kurt2rt.exchange.signing import fingerprint
+from kurt2rt.exchange.sound import require_fitting, require_times
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures, require_same
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
@@ -81,7 +83,7 @@ def export_knowledge(
     with Journal.read_only(path) as journal:
         binding = journal.binding
         require_same(binding, binding_of(robot, task), path, journal.has_lessons_at)
-        entries, statistics = journal.entries(), journal.statistics()
+        entries, statistics = journal.read_all()
         system = fold_entries(journal, entries, radius=0.0)
     about: dict[str, Any] = {
         "kurt2rt": version("kurt2rt"),
@@ -108,8 +110,12 @@ def read_given(path: Path) -> Given:
     archive = unpack(path)
     try:
         return _given(path, archive)
-    except (KeyError, TypeError, ValueError, RecordingError) as error:
-        raise KnowledgeError(f"{path}: cannot be understood ({error}); export it anew") from error
+    except KeyError as error:
+        raise KnowledgeError(f"{path}: has no {error}; export it anew") from error
+    except (ValueError, RecordingError) as error:
+        raise KnowledgeError(
+            f"{path}: cannot be understood ({' '.join(str(error).split())}); export it anew"
+        ) from error
 
 
 def import_knowledge(
@@ -135,7 +141,7 @@ def import_knowledge(
     require_same(given.binding, here, path, lambda level: level in levels)
     entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
     note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
-    bear(into, given.binding, entries, given.statistics, {COME_FROM: note})
+    bear(into, given.binding, entries, given.statistics, {COME_FROM: note}, source=path)
     return Taken(given, _otherwise_here(given, robot, task))
 
 
@@ -149,26 +155,12 @@ def _features(features: LevelFeatures) -> dict[str, Any]:
 
 
 def _given(path: Path, archive: Archive) -> Given:
-    manifest = archive.manifest
-    basic = _read_features(manifest["features"])
-    binding = KnowledgeBinding(
-        basic.feature_hash,
-        basic.feature_names,
-        str(manifest["system"]),
-        str(manifest["robot"]),
-        {str(level): _read_features(features) for level, features in manifest["levels"].items()},
-    )
-    return Given(
-        path,
-        binding,
-        tuple(read_lessons_of(archive.files[KNOWLEDGE])),
-        decode_statistics(archive.files[STATISTICS]),
-        str(manifest["task"]),
-        str(manifest["exported_at"]),
-        archive.signed_by,
-        {name: content for name, content in archive.files.items() if name.startswith(SETTINGS)},
-    )
-
-
-def _read_features(features: Mapping[str, Any]) -> LevelFeatures:
-    return LevelFeatures(str(features["hash"]), tuple(map(str, features["names"])))
+    """Raises KeyError for a file that is not in it, ValueError, RecordingError."""
+    manifest = read_manifest(archive.manifest)
+    binding = manifest.binding
+    lessons = tuple(read_lessons_of(archive.files[KNOWLEDGE]))
+    statistics = decode_statistics(archive.files[STATISTICS])
+    require_times(lessons)
+    require_fitting(statistics, lessons, binding)
+    settings = {name: content for name, content in archive.files.items() if name.startswith(SETTINGS)}
+    return Given(path, binding, lessons, statistics, manifest.task, manifest.exported_at, archive.signed_by, settings)

@@ -32,15 +32,27 @@ class Whence:
     """UTC, ISO 8601."""
 
 
-def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> Whence:
+@dataclass(frozen=True, slots=True)
+class Branched:
+    """A branch that was made."""
+
+    whence: Whence
+    left_earlier: int
+    """Rows that were left out though they are stamped by the time that was asked for: the clock was set back there."""
+
+
+def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> Branched:
     """Make `new` from the rows of `path` up to `at`: a lesson's command id, or a time (ISO 8601); None: all of them.
+
+    Up to a time: up to the first row with a later stamp. Where the clock was set back, rows behind that one may bear
+    earlier stamps; they stay out, for a branch is a beginning of the file, and nothing later may be in it.
 
     What was counted goes with all of them; up to an earlier row only what is about RLAs that are still the same, and
     worths begin anew from the rewards. Raises KnowledgeError.
     """
     with Journal.read_only(path) as journal:
-        entries, statistics = journal.entries(), journal.statistics()
-        rows = len(entries) if at is None else _rows_up_to(entries, at, path)
+        entries, statistics = journal.read_all()
+        rows, left_earlier = (len(entries), 0) if at is None else _rows_up_to(entries, at, path)
         binding = journal.binding
         if rows < len(entries):
             then = fold_entries(journal, entries[:rows], radius=0.0)
@@ -50,8 +62,8 @@ def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> Whence:
     whence = Whence(path.name, rows, last, stamp)
     kept = [JournalEntry(entry.event, entry.stamped_at) for entry in entries[:rows]]
     note = json.dumps([whence.file, whence.rows, whence.lesson, whence.branched_at])
-    bear(new, binding, kept, statistics, {_NOTE: note})
-    return whence
+    bear(new, binding, kept, statistics, {_NOTE: note}, source=path)
+    return Branched(whence, left_earlier)
 
 
 def whence_of(journal: Journal) -> Whence | None:
@@ -68,22 +80,32 @@ def whence_of(journal: Journal) -> Whence | None:
     return Whence(str(file), int(rows), str(lesson), str(branched_at))
 
 
-def _rows_up_to(entries: Sequence[StoredEntry], at: str, path: Path) -> int:
+def _rows_up_to(entries: Sequence[StoredEntry], at: str, path: Path) -> tuple[int, int]:
+    """How many rows there are up to a lesson or time, and how many behind them are stamped by that time."""
     for entry in entries:
         if entry.event.origin.command_id == at:
-            return entry.sequence
+            return entry.sequence, 0
     try:
-        time = datetime.fromisoformat(at)
-        time = time.astimezone() if time.tzinfo is None else time
+        time = _time(at)
     except ValueError:
         raise KnowledgeError(
             f"{path}: holds no lesson {at!r}, and that is no time either; give an id as kurt2rt knowledge lessons "
             "shows it, or a time such as 2026-11-22T03:10"
         ) from None
-    for entry in entries:
-        if datetime.fromisoformat(entry.stamped_at) > time:
-            return entry.sequence - 1
-    return len(entries)
+    try:
+        by_then = [_time(entry.stamped_at) <= time for entry in entries]
+    except ValueError as error:
+        raise KnowledgeError(
+            f"{path}: the stamp of a lesson is no time ({error}); give the id of a lesson instead"
+        ) from error
+    rows = by_then.index(False) if False in by_then else len(by_then)
+    return rows, sum(by_then[rows:])
+
+
+def _time(text: str) -> datetime:
+    """With its time zone, the local one where it does not say. Raises ValueError."""
+    time = datetime.fromisoformat(text)
+    return time.astimezone() if time.tzinfo is None else time
 
 
 def _of_the_same(statistics: Statistics, then: RlaSystem, now: RlaSystem, levels: Sequence[str]) -> Statistics:

@@ -147,6 +147,16 @@ class Journal:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
         return list(self.each_entry())
 
+    def read_all(self) -> tuple[list[StoredEntry], Statistics]:
+        """Lessons and statistics of one and the same moment, also while a robot writes both. Raises as `entries`."""
+        with self._reading():
+            self._connection.execute("BEGIN")
+            try:
+                return self.entries(), self.statistics()
+            finally:
+                if self._connection.in_transaction:
+                    self._connection.execute("COMMIT")
+
     def each_entry(self) -> Iterator[StoredEntry]:
         """The same one by one, all of one moment. Raises as `entries`."""
         with self._reading():

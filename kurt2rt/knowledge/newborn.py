@@ -1,13 +1,16 @@
 """A new knowledge file that begins with lessons: whole on the disk, or not there at all."""
 
+import math
+import os
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.saved_copy import save_new
 from kurt2rt.knowledge.statistics import Statistics
@@ -19,22 +22,62 @@ def bear(
     entries: Iterable[JournalEntry],
     statistics: Statistics,
     notes: Mapping[str, str],
+    *,
+    source: Path,
 ) -> None:
-    """Make a knowledge file at `path`, where nothing may be. Raises KnowledgeError."""
+    """Make a knowledge file at `path`, where nothing may be, of what stands in the file `source`.
+
+    Raises KnowledgeError that names `source` where its lessons do not fit, or one is in it twice.
+    """
     log = journal_file.log_of(path)
     if log.exists() and log.stat().st_size > 0:  # SQLite would mix its lessons into the new file
         raise KnowledgeError(f"{path}: a log {log.name} of another file is beside it; give another path")
-    with tempfile.TemporaryDirectory() as folder:
-        cradle = Path(folder) / path.name
-        with Journal.open(cradle, binding) as journal:
-            journal.append_and_checkpoint(tuple(entries), statistics)
-            for name, text in notes.items():
-                journal.note(name, text)
-        with Journal.read_only(cradle) as journal:
-            image = journal.image()
+    image = _image_of(source, binding, tuple(entries), statistics, notes)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
     with journal_file.lock_for_writing(path):  # a robot may begin a file there at this very moment
         save_new(image, path)
+
+
+def _image_of(
+    source: Path,
+    binding: KnowledgeBinding,
+    entries: Sequence[JournalEntry],
+    statistics: Statistics,
+    notes: Mapping[str, str],
+) -> bytes:
+    """The whole file, made and read again in a cradle of which nobody needs to hear."""
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            cradle = Path(os.path.realpath(folder), "knowledge")
+            try:
+                _fill(cradle, binding, entries, statistics, notes)
+                with Journal.read_only(cradle) as journal:
+                    fold_journal(journal, radius=math.inf)
+                    return journal.image()
+            except KnowledgeError as error:
+                problem = str(error).removeprefix(f"{cradle}: ")
+                raise KnowledgeError(f"{source}: no knowledge file can be made of it: {problem}") from error
+    except OSError as error:
+        raise KnowledgeError(f"{source}: cannot be unpacked ({error}); make room where temporary files go") from error
+
+
+def _fill(
+    cradle: Path,
+    binding: KnowledgeBinding,
+    entries: Sequence[JournalEntry],
+    statistics: Statistics,
+    notes: Mapping[str, str],
+) -> None:
+    with Journal.open(cradle, binding) as journal:
+        receipts = journal.append_and_checkpoint(entries, statistics)
+        for number, receipt in enumerate(receipts, start=1):
+            if not receipt.new:
+                raise KnowledgeError(
+                    f"{cradle}: row {number}: has the command id {receipt.command_id!r} of row {receipt.sequence}; "
+                    "keep the file, and get another copy"
+                )
+        for name, text in notes.items():
+            journal.note(name, text)

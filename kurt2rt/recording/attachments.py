@@ -17,6 +17,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.recording.checked import number_of, text_of, whole_of
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -71,9 +72,9 @@ def read_lessons_of(data: bytes) -> list[KnownLesson]:
         for number, line in enumerate(data.decode().splitlines(), start=1):
             content = json.loads(line)
             event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
-            lessons.append(KnownLesson(event, content["stamped_at"]))
-    except (KnowledgeError, ValueError, KeyError, TypeError) as error:
-        raise RecordingError(f"{KNOWLEDGE} of the run cannot be read: {error}") from error
+            lessons.append(KnownLesson(event, text_of(content["stamped_at"])))
+    except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise RecordingError(f"{KNOWLEDGE} cannot be read: {error}") from error
     return lessons
 
 
@@ -99,18 +100,23 @@ def decode_statistics(data: bytes) -> Statistics:
     try:
         content: dict[str, Any] = json.loads(data)
         return Statistics(
-            dict(content["uses"]),
-            {(before, after): count for before, after, count in content["transitions"]},
-            dict(content["values"]),
-            {(before, after): weight for before, after, weight in content["edge_weights"]},
-            dict(content["numbers"]),
+            {whole_of(rla_id): whole_of(count) for rla_id, count in content["uses"]},
+            {(whole_of(before), whole_of(after)): whole_of(count) for before, after, count in content["transitions"]},
+            {whole_of(rla_id): number_of(value) for rla_id, value in content["values"]},
             {
-                rla_id: Expectation(lesson, count, ticks, base64.b64decode(mean), base64.b64decode(squares))
+                (whole_of(before), whole_of(after)): number_of(weight)
+                for before, after, weight in content["edge_weights"]
+            },
+            {text_of(name): number_of(value) for name, value in content["numbers"].items()},
+            {
+                whole_of(rla_id): Expectation(
+                    text_of(lesson), whole_of(count, 1), number_of(ticks), _packed(mean), _packed(squares)
+                )
                 for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
             },
         )
-    except (ValueError, KeyError, TypeError) as error:
-        raise RecordingError(f"{STATISTICS} of the run cannot be read: {type(error).__name__}: {error}") from error
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise RecordingError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
 
 
 def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
@@ -139,3 +145,7 @@ def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[t
 
 def _text(packed: bytes) -> str:
     return base64.b64encode(packed).decode()
+
+
+def _packed(text: object) -> bytes:
+    return base64.b64decode(text_of(text), validate=True)

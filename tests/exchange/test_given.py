@@ -3,7 +3,7 @@
 import json
 import shutil
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,15 +17,16 @@ from hal.robot_settings import load_robot
 from kurt2rt.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
 from kurt2rt.exchange.given import Taken, export_knowledge, import_knowledge, read_given
 from kurt2rt.exchange.signing import make_key, read_private_key, read_public_key
-from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Credit, RlaCreated, RlaRewarded
 from kurt2rt.tasks.settings import TaskSettings, load_task
-from tests.knowledge.lessons import STAMP, created, origin, replaced, undone
+from tests.knowledge.lessons import STAMP, created, deleted, origin, replaced, undone
 from tests.knowledge.test_writer import largest_file
 
 ROBOT = load_robot()
@@ -143,11 +144,13 @@ def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Pat
         read_given(tmp_path / "empty.zip")
 
 
-def made_over(exported: Path, out: Path, about: Mapping[str, object] | None = None, **files: bytes) -> Path:
+def made_over(
+    exported: Path, out: Path, files: Mapping[str, bytes] | None = None, about: Mapping[str, object] | None = None
+) -> Path:
     """An archive of somebody who means ill, or whose program is another: all its sums are in order."""
     whole = unpack(exported)
     manifest = {name: value for name, value in whole.manifest.items() if name not in ("format", "files")}
-    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **files}, None))
+    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **(files or {})}, None))
     return out
 
 
@@ -156,7 +159,7 @@ def made_over(exported: Path, out: Path, about: Mapping[str, object] | None = No
 )
 def test_what_would_be_written_elsewhere_is_not_even_read(exported: Path, tmp_path: Path, name: str) -> None:
     other = {"features": {**unpack(exported).manifest["features"], "hash": "another"}}
-    evil = made_over(exported, tmp_path / "evil.zip", other, **{name: b"!"})
+    evil = made_over(exported, tmp_path / "evil.zip", {name: b"!"}, other)
     with pytest.raises(KnowledgeError, match=r"evil\.zip: holds "):
         take(evil, tmp_path / "k")
     assert [each.name for each in tmp_path.iterdir()] == ["evil.zip"]
@@ -181,6 +184,111 @@ def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -
         read_given(bomb)
     with pytest.raises(KnowledgeError, match="is a folder or device"):
         read_given(tmp_path)
+
+
+def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -> None:
+    lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
+    stranger = json.dumps({"stamped_at": STAMP, "event": json.loads(encode_event(deleted(77)))})
+    short = json.loads(lines[0])
+    short["event"]["condition"] = [1.0]
+    cases = (
+        ([*lines, stranger], r"knowledge file can be made of it: row 6: does not fit .* there is no RLA 77"),
+        ([json.dumps(short), *lines[1:]], r"row 1: does not fit the lessons before it: RLA 1: condition has 1 values"),
+        ([*lines, lines[0]], r"row 6: has the command id 'create-1' of row 1"),
+    )
+    for rows, why in cases:
+        unfit = made_over(exported, tmp_path / "unfit.zip", {"knowledge.jsonl": "\n".join(rows).encode()})
+        with pytest.raises(KnowledgeError, match=rf"unfit\.zip: .*{why}") as refused:
+            take(unfit, tmp_path / "k")
+        assert "/tmp/tmp" not in str(refused.value)
+    assert [each.name for each in tmp_path.iterdir()] == ["unfit.zip"]
+
+
+NOTHING: dict[str, object] = {
+    "uses": [], "transitions": [], "values": [], "edge_weights": [], "numbers": {}, "expectations": []
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "counts",
+    [
+        [1],
+        {"uses": []},
+        {**NOTHING, "uses": [["x", 2]]},
+        {**NOTHING, "uses": [[1, -2.5]]},
+        {**NOTHING, "uses": [[1, 2**70]]},
+        {**NOTHING, "uses": [[1, True]]},
+        {**NOTHING, "transitions": [[1, 2]]},
+        {**NOTHING, "values": [[1, "a"]]},
+        {**NOTHING, "values": [[1, float("nan")]]},
+        {**NOTHING, "edge_weights": [[1, 2, 10**400]]},
+        {**NOTHING, "numbers": []},
+        {**NOTHING, "numbers": {"\ud800": 1.0}},
+        {**NOTHING, "expectations": [[1, "create-1", 1, 0.5, "AAAA", ""]]},
+    ],
+)
+def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:
+    odd = made_over(exported, tmp_path / "odd.zip", {"statistics.json": json.dumps(counts).encode()})
+    with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood .*statistics\.json"):
+        read_given(odd)
+
+
+@pytest.mark.parametrize(
+    "about",
+    [
+        {"features": 5},
+        {"levels": []},
+        {"levels": {"mid": {}}},
+        {"exported_at": None},
+        {"task": 1},
+        {"system": "\ud800"},
+    ],
+)
+def test_a_manifest_of_a_wrong_type_is_refused(exported: Path, tmp_path: Path, about: Mapping[str, object]) -> None:
+    (key,) = about
+    with pytest.raises(KnowledgeError, match=rf"odd\.zip: cannot be understood \(its manifest: {key}"):
+        read_given(made_over(exported, tmp_path / "odd.zip", None, about))
+
+
+@pytest.mark.parametrize("stamp", [5, None, "", "yesterday", "2026-11-22T03:10:05"])
+def test_a_lesson_without_a_time_is_refused(exported: Path, tmp_path: Path, stamp: object) -> None:
+    lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
+    lesson = json.dumps({**json.loads(lines[0]), "stamped_at": stamp})
+    with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood \(knowledge\.jsonl"):
+        read_given(made_over(exported, tmp_path / "odd.zip", {"knowledge.jsonl": lesson.encode()}))
+
+
+def test_json_that_nests_without_end_is_refused(exported: Path, tmp_path: Path) -> None:
+    deep = b"[" * 100_000
+    for name in (MANIFEST, SIGNATURE):
+        with pytest.raises(KnowledgeError, match="is damaged"):
+            read_given(rewritten(exported, tmp_path / "deep.zip", **{name: deep}))
+    for name in ("knowledge.jsonl", "statistics.json"):
+        with pytest.raises(KnowledgeError, match="cannot be understood"):
+            read_given(made_over(exported, tmp_path / "deep.zip", {name: deep}))
+
+
+def test_lessons_and_counts_of_an_export_are_of_one_moment(
+    taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = Path(shutil.copy(taught, tmp_path / "mine.knowledge"))
+    with Journal.read_only(path) as look:
+        before = look.read_all()
+    with open_knowledge(path, ROBOT, TASK) as robot:
+
+        def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
+            yield from each_entry(journal)
+            praise = RlaRewarded(1, 1, 390, origin("praise"), (Credit(1, 0.1),))
+            robot.append_and_checkpoint([JournalEntry(praise, STAMP)], Statistics({1: 6}))
+
+        each_entry = Journal.each_entry
+        monkeypatch.setattr(Journal, "each_entry", taught_meanwhile)
+        export(path, tmp_path / "out.zip")
+    found = read_given(tmp_path / "out.zip")
+    assert ([lesson.event for lesson in found.lessons], found.statistics) == (
+        [entry.event for entry in before[0]],
+        before[1],
+    )
 
 
 def test_only_whom_one_trusts_is_believed(exported: Path, taught: Path, tmp_path: Path) -> None:

@@ -1,17 +1,18 @@
 """A branch begins as another file was, and knows whence it came."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.branching import Whence, branch, whence_of
-from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.branching import Branched, Whence, branch, whence_of
+from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, replaced
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
 
 LATER = "2004-04-26T11:00:00.000+00:00"
 NOW = "2026-11-22T03:10:05.000+00:00"
@@ -34,7 +35,7 @@ def taught(path: Path) -> Path:
 
 
 def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
-    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW)
+    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).whence
     with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
         assert new.entries() == old.entries()
         assert new.statistics() == old.statistics()
@@ -56,8 +57,53 @@ def test_a_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, 
     assert counted == replace(Statistics(), uses=uses, numbers={FIRST_VALUE: 0.5})
 
 
+def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_and_tells_of_the_others(
+    taught: Path, tmp_path: Path
+) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(created(4), "2004-04-26T10:01:00.000+00:00"), JournalEntry(created(5), LATER)])
+    made = branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
+    assert (made.whence.rows, made.left_earlier) == (3, 1)
+    assert branch(taught, tmp_path / "c", "2004-04-26T11:00+00:00", stamp=NOW).left_earlier == 0
+    assert branch(taught, tmp_path / "d", "create-4", stamp=NOW) == Branched(Whence(taught.name, 5, "create-4", NOW), 0)
+
+
+def test_a_date_that_is_none_is_told(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(created(4), "yesterday")])
+    with pytest.raises(KnowledgeError, match="the stamp of a lesson is no time"):
+        branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
+
+
+def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
+    taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Journal.open(taught, BINDING) as robot:
+
+        def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
+            yield from each_entry(journal)
+            robot.append_and_checkpoint([JournalEntry(created(4), LATER)], replace(COUNTED, uses={4: 1}))
+
+        each_entry = Journal.each_entry
+        with monkeypatch.context() as meanwhile:
+            meanwhile.setattr(Journal, "each_entry", taught_meanwhile)
+            branch(taught, tmp_path / "b", None, stamp=NOW)
+    with Journal.read_only(tmp_path / "b") as new:
+        assert (len(new.entries()), new.statistics()) == (4, COUNTED)
+
+
+def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(deleted(77), LATER)])
+    with pytest.raises(
+        KnowledgeError, match=r"knowledge\.db: no knowledge file can be made of it: row 5: does not fit"
+    ):
+        branch(taught, tmp_path / "b", None, stamp=NOW)
+    assert not (tmp_path / "b").exists()
+
+
 def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) -> None:
-    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).rows == 0
+    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).whence.rows == 0
 
 
 def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:

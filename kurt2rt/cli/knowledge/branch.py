@@ -19,5 +19,10 @@ def branch(
     ] = None,
 ) -> None:
     """Make a new file that begins as this one was; what is taught there can be merged in again."""
-    whence = make_branch(file, new, at, stamp=utc_now())
-    say(f"branch  {new}: the first {whence.rows} rows of {whence.file}")
+    made = make_branch(file, new, at, stamp=utc_now())
+    say(f"branch  {new}: the first {made.whence.rows} rows of {made.whence.file}")
+    if made.left_earlier:
+        say(
+            f"{made.left_earlier} later rows bear dates before that, too: the clock was set back meanwhile. They are "
+            "not in it; --at with the id of a lesson says how far to go"
+        )
