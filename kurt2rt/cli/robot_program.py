@@ -119,7 +119,7 @@ class RobotProgram:
             others = {} if reloading is None else {signal.SIGHUP: reloading.ask}
             ending = around.enter_context(Ending(others=others, give_up=self._give_up))
             self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._guards, self._say)
-            self._companions = around.enter_context(Companions(orders.settings, ending.patience_s))
+            self._companions = around.enter_context(Companions(orders.settings, ending.patience_s, self._say))
             self._printer = around.enter_context(Printer(ending.patience_s))
             last = anyio.run(self._serve)
             ending.waits_for = "the robot's bus and its logs"
@@ -230,9 +230,10 @@ class RobotProgram:
         at = () if orders.page_port is None else ("--page-port", str(orders.page_port))
         self._say(f"teachers are listened to on UDP port {port}", "cyan")
         if orders.page:
-            self._companions.start("teach", "--port", port, *at)
+            self._companions.start("the teacher's page", "teach", "--port", port, *at, lasts=True)
         if orders.auto:
-            self._companions.start("teach", "--auto", "--port", port, "--task", self._service.task)
+            words = ("teach", "--auto", "--port", port, "--task", self._service.task)
+            self._companions.start("the scripted teacher", *words, lasts=False)
 
     def _parts(self) -> dict[str, Callable[[], bool]]:
         """What has to be alive, beside what the service looks after."""
@@ -248,7 +249,8 @@ class RobotProgram:
 
     def _instruments(self, opened: OpenedRobot) -> Instruments:
         log = self._log
-        drops, says = {"lines for the terminal": lambda: self._printer.dropped}, {}
+        drops = {"lines for the terminal": lambda: self._printer.dropped}
+        says = {"companions": lambda: self._companions.trouble}
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}

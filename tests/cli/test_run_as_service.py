@@ -88,6 +88,24 @@ def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
         assert sum("missed" in line for line in said.out.splitlines()) == 0
 
 
+def test_a_page_that_died_is_told_and_comes_back(tmp_path: Path, kurt2rt_process: Callable[..., Running]) -> None:
+    settings = settings_in(tmp_path, page_port=0)
+    program = kurt2rt_process("run", "--service", "--robot", "sim", "--settings", settings, "--page")
+    program.wait_for("/pair?token=")
+    (page,) = children_of(program.process.pid)
+    os.kill(page, signal.SIGKILL)
+    assert "the teacher's page ended (signal 9); it is started anew" in program.wait_for("the teacher's page ended")
+    program.wait_for("/pair?token=")
+    assert children_of(program.process.pid) != [page]
+    assert program.end(signal.SIGTERM).exit_code == 0
+
+
+def children_of(pid: int) -> list[int]:
+    """Processes that a process started and that are there still."""
+    threads = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for each in threads for child in (each / "children").read_text(encoding="ascii").split()]
+
+
 def priorities_of(pid: int) -> list[int]:
     """Of the threads of a process that have a real-time priority; the highest first."""
     threads = [int(each.name) for each in Path(f"/proc/{pid}/task").iterdir()]

@@ -1,0 +1,106 @@
+"""Programs beside the robot's: one that dies is told and started anew, and all of them end with it."""
+
+import os
+import queue
+import select
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.cli.companions import Companions
+
+LONGEST_S = 60.0
+LOOK_S = 0.01
+SAYS_ITS_ID = """
+import os, sys
+with open("births", "w") as births:
+    print(os.getpid(), file=births)
+sys.stdin.read()
+"""
+
+
+class Births:
+    """A pipe with a name, into which each companion that is born says its process id."""
+
+    def __init__(self, path: Path) -> None:
+        os.mkfifo(path)
+        self._file = os.fdopen(os.open(path, os.O_RDWR))
+
+    def next(self) -> int:
+        ready, _, _ = select.select([self._file], [], [], LONGEST_S)
+        assert ready, "nobody was born"
+        return int(self._file.readline())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+class Told(queue.SimpleQueue[str]):
+    """What the companions' keeper tells."""
+
+    def next(self) -> str:
+        return self.get(timeout=LONGEST_S)
+
+
+@pytest.fixture
+def births(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Births]:
+    monkeypatch.chdir(tmp_path)
+    opened = Births(tmp_path / "births")
+    yield opened
+    opened.close()
+
+
+def companions(told: Told, script: str) -> Companions:
+    return Companions("default", tell=told.put, start=(sys.executable, "-c", script), look_s=LOOK_S)
+
+
+def is_there(process: int) -> bool:
+    return Path(f"/proc/{process}").exists()
+
+
+def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Births) -> None:
+    told = Told()
+    with companions(told, SAYS_ITS_ID) as beside:
+        beside.start("the page", "teach", lasts=True)
+        for pause_s in ("0.01", "0.02", "0.04"):
+            os.kill(births.next(), signal.SIGKILL)
+            assert told.next() == f"the page ended (signal 9); it is started anew in {pause_s} s"
+        last = births.next()
+        assert is_there(last)
+    assert not is_there(last)
+    assert told.empty()
+
+
+def test_it_is_a_trouble_while_it_is_not_there() -> None:
+    told = Told()
+    with companions(told, "raise SystemExit(3)") as beside:
+        assert beside.trouble == ""
+        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        line = told.next()
+        assert line == "the scripted teacher ended (exit code 3); start it again by hand"
+        assert beside.trouble == line
+    assert told.empty()
+
+
+def test_one_that_is_done_is_no_trouble(births: Births) -> None:
+    told = Told()
+    with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as beside:
+        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        births.next()
+        beside.start("the page", "teach", lasts=True)
+        births.next()
+        assert told.next().startswith("the page ended (exit code 0); ")
+        assert "scripted teacher" not in beside.trouble
+
+
+def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "kurt2rt").mkdir()
+    (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    told = Told()
+    with Companions("default", tell=told.put, look_s=LOOK_S) as beside:
+        beside.start("help", "teach", "--help", lasts=True)
+        assert told.next().startswith("help ended (exit code 0)")
