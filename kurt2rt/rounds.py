@@ -88,14 +88,15 @@ class Rounds:
             self._channel.after_tick(record)
         if self._health is not None:
             self._health.after_tick(record)
+        saves = ticks % self._checkpoint_ticks == 0
+        if self._recorder is not None:
+            # Before all that is noted at its time: the question that comes of it, and what became of lessons.
+            self._recorder.note(record, saved=saves)
         self._ask(record)
         for acknowledgement in writer.acknowledged():
             self.settled(acknowledgement)
-        saves = ticks % self._checkpoint_ticks == 0
         if saves:
             self.save_statistics()
-        if self._recorder is not None:
-            self._recorder.note(record, saved=saves)
         if ticks % self._status_ticks == 0:
             channel_trouble = "" if self._channel is None else self._channel.trouble
             recording_trouble = "" if self._recorder is None else self._recorder.trouble

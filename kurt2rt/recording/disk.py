@@ -1,9 +1,14 @@
 """The disk under a recording: the few calls that can fail, in one place, so that tests can have them fail."""
 
+import contextlib
+import errno
 import fcntl
 import os
 from pathlib import Path
 from typing import Protocol
+
+_NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS})
+"""What a disk answers that knows no locks: of a folder, NFS says EBADF."""
 
 
 class WritableFile(Protocol):
@@ -34,7 +39,7 @@ class Disk(Protocol):
         ...
 
     def free_bytes(self, path: Path) -> int:
-        """That may still be written where `path` is. Raises OSError."""
+        """That may still be written where `path` is, or is going to be. Raises OSError."""
         ...
 
 
@@ -43,8 +48,6 @@ class RealFile:
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
-        # Tells other programs, until this one ends however it ends, that the file is still being written.
-        fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
     def write_at(self, offset: int, data: bytes | bytearray) -> None:
         """Write all of `data` from `offset` bytes on. Raises OSError."""
@@ -67,37 +70,75 @@ class RealDisk:
     """The disk of this machine (Disk)."""
 
     def make_folder(self, path: Path) -> None:
-        """Make a folder, with those above it. Raises OSError."""
+        """Make a folder, with those above it. Raises OSError; then it is not there."""
         path.parent.mkdir(parents=True, exist_ok=True)
         path.mkdir()
-        _keep_names_in(path.parent)
+        try:
+            _keep_names_in(path.parent)
+        except OSError:
+            with contextlib.suppress(OSError):  # the first error is the one to tell
+                path.rmdir()
+            raise
 
     def create(self, path: Path) -> WritableFile:
         """Make a file whose name outlives a power cut. Raises OSError."""
         file = RealFile(path)
-        _keep_names_in(path.parent)
+        try:
+            _keep_names_in(path.parent)
+        except OSError:
+            file.close()
+            raise
         return file
 
     def free_bytes(self, path: Path) -> int:
-        """That may still be written where `path` is. Raises OSError."""
-        room = os.statvfs(path)
+        """That may still be written where `path` is, or is going to be. Raises OSError."""
+        there = next((each for each in (path, *path.absolute().parents) if each.exists()), path)
+        room = os.statvfs(there)
         return room.f_bavail * room.f_frsize
 
 
-def is_being_written(path: Path) -> bool:
-    """Whether some program has the file open to record on. Raises OSError."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
+class HeldFolder:
+    """A run's folder, held as one's own, so that no other program deletes it to make room.
+
+    The kernel lets it go when this program ends, however it ends. A disk that knows no locks does without.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Raises OSError, also where another program looks at this very moment whether it is held."""
+        self._descriptor = _open_folder(path)
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            if error.errno not in _NO_LOCKS:
+                os.close(self._descriptor)
+                raise
+
+    def close(self) -> None:
+        """Let it go."""
+        os.close(self._descriptor)
+
+
+def is_held(folder: Path) -> bool:
+    """Whether some program records to this folder. Raises OSError."""
+    descriptor = _open_folder(folder)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
     finally:
         os.close(descriptor)
     return False
 
 
+def _open_folder(folder: Path) -> int:
+    return os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+
+
 def _keep_names_in(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    descriptor = _open_folder(folder)
     try:
         os.fsync(descriptor)
     finally:

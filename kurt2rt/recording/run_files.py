@@ -7,12 +7,15 @@ from pathlib import Path
 
 from foxglove import Context
 
-from kurt2rt.recording.disk import Disk, RealDisk
+from kurt2rt.recording.attachments import ROBOT, TASK
+from kurt2rt.recording.disk import Disk, HeldFolder, RealDisk
 from kurt2rt.recording.run_folder import later_name, make_room, segment_name, used_bytes
 from kurt2rt.recording.segment import Segment
 
 _MEGA = 1_000_000
 _MOST_OF_A_NAME = 1000
+_IN_EACH = (ROBOT, TASK)
+"""Attachments of every segment, so that one can be understood whose elders had to make room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,11 @@ class RunFiles:
         now_ns: Callable[[], int],
         disk: Disk | None = None,
     ) -> None:
-        """`name`: of the run's folder. `describe`: metadata of the n-th segment; `attachments`: of the first one."""
+        """`name`: of the run's folder.
+
+        `describe`: metadata of the n-th segment; `attachments`: of the first one, the settings among them
+        of each.
+        """
         self._context = context
         self._recordings = recordings
         self._name = name
@@ -59,6 +66,7 @@ class RunFiles:
         self._attachments = attachments
         self._now_ns = now_ns
         self._disk = disk or RealDisk()
+        self._held: HeldFolder | None = None
         self._segment: Segment | None = None
         self._number = 0
         self._attached = False
@@ -66,6 +74,8 @@ class RunFiles:
         """The run's folder; None until it could be made."""
         self.trouble = ""
         """Why nothing is kept at the moment, in a line; empty while all is."""
+        self.folders = 0
+        """That were begun: more than one where somebody has deleted the run meanwhile."""
         self.given_up = 0
         """Segments whose last messages were lost, because the disk failed for too long, or somebody deleted them."""
 
@@ -98,19 +108,29 @@ class RunFiles:
                 self._give_up()
             return False
 
-    def close(self) -> None:
-        """End the last file."""
-        if self._segment is not None:
-            try:
-                self._end()
-            except OSError as error:
-                self.trouble = f"the end of the recording is missing ({error}); look at the disk of {self._recordings}"
+    def close(self) -> bool:
+        """End the last file; whether the disk has all of it."""
+        try:
+            self._end()
+        except OSError as error:
+            self.trouble = f"the end of the recording is missing ({error}); look at the disk of {self._recordings}"
+            return False
+        finally:
+            self._let_go()
+            if self.run is not None:
+                with contextlib.suppress(OSError):  # it holds files, or else it is no run
+                    self.run.rmdir()
+                    self.run = None
+        return True
 
     def _begin(self) -> bool:
-        if self.run is None or not self.run.is_dir():
-            self.run = self._make_folder()
+        if self.run is not None and not self.run.is_dir():  # somebody has deleted it
+            self._let_go()
+            self.run, self._attached = None, False
         if not self._has_room():
             return False
+        if self.run is None:
+            self.run = self._make_folder()
         path = self.run / segment_name(self._number + 1)
         try:
             segment = Segment(path, self._context, self._disk)
@@ -125,8 +145,8 @@ class RunFiles:
         self._segment = segment
         for name, metadata in self._describe(self._number).items():
             segment.describe(name, dict(metadata))
-        if not self._attached:
-            for attached, data in self._attachments.items():
+        for attached, data in self._attachments.items():
+            if not self._attached or attached in _IN_EACH:
                 segment.attach(attached, data, self._now_ns())
         segment.save()
         self._attached = True
@@ -170,6 +190,11 @@ class RunFiles:
         )
         return False
 
+    def _let_go(self) -> None:
+        held, self._held = self._held, None
+        if held is not None:
+            held.close()
+
     def _make_folder(self) -> Path:
         name = later_name(self._name, self._recordings)
         for number in range(1, _MOST_OF_A_NAME):
@@ -178,5 +203,12 @@ class RunFiles:
                 self._disk.make_folder(path)
             except FileExistsError:  # started twice in a second
                 continue
+            try:
+                self._held = HeldFolder(path)
+            except OSError:
+                with contextlib.suppress(OSError):  # an empty folder is no run
+                    path.rmdir()
+                raise
+            self.folders += 1
             return path
         raise FileExistsError(f"{self._recordings / name}: so many runs of this name are there already")

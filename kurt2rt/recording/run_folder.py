@@ -1,11 +1,13 @@
 """Folders of recorded runs: what they are called, which is the newest, and which go when there is no more room."""
 
+import contextlib
 import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from kurt2rt.recording.disk import is_being_written
+from kurt2rt.recording.disk import is_held
 from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.segment_reader import TICK_TOPIC, SegmentReader
 
 SEGMENT_ENDING = ".mcap"
 _RUN_NAME = re.compile(r"\d{8}T\d{6}Z-.+")
@@ -60,48 +62,56 @@ def number_of(segment: Path) -> int:
 def find_run(given: Path | None, recordings: Path) -> Path:
     """The run folder or segment that a command line means: `given`, by path or by its name in `recordings`.
 
-    None: the newest run of `recordings`. Raises RecordingError in a sentence.
+    None: the newest run of `recordings` in which there was a tick. Raises RecordingError in a sentence.
     """
     if given is None:
-        runs = [each for each in runs_in(recordings) if segments_in(each)]
-        if not runs:
+        newest = next((each for each in reversed(runs_in(recordings)) if _holds_ticks(each)), None)
+        if newest is None:
             raise RecordingError(f"{recordings}: no recorded run is there; kurt2rt run makes one, or give its folder")
-        return runs[-1]
+        return newest
     for path in (given, recordings / given):
         if path.is_file() or (path.is_dir() and segments_in(path)):
             return path
     raise RecordingError(f"{given}: no recorded run; give a folder of {recordings}, or a file {segment_name(1)} in one")
 
 
+def _holds_ticks(run: Path) -> bool:
+    return any(True for segment in segments_in(run) for _ in SegmentReader(segment).messages({TICK_TOPIC}))
+
+
 def used_bytes(recordings: Path) -> int:
-    """That all runs take together. Raises OSError."""
-    return sum(segment.stat().st_size for run in runs_in(recordings) for segment in segments_in(run))
+    """That all runs take together; not what is elsewhere, and only has a link here. Raises OSError."""
+    return sum(_size(segment) for run in _own_runs_in(recordings) for segment in segments_in(run))
 
 
 def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> int:
     """Delete the oldest runs, then the oldest segments of `current`, until all together fit in the budget.
 
-    The newest segment of `current` stays, whatever it takes, and so does a run that another program records. Returns
-    the bytes that are left in use. Raises OSError.
+    The newest segment of `current` stays, whatever it takes, and so do a run that another program records, what cannot
+    be deleted, and what a link leads to. Folders of runs that hold nothing go. Returns the bytes that are left in use.
+    Raises OSError.
     """
     used = used_bytes(recordings)
-    for segment in _may_go(recordings, current):
+    others = [run for run in _own_runs_in(recordings) if run != current and not is_held(run)]
+    may_go = [segment for run in others for segment in segments_in(run)]
+    if current is not None and current.is_dir():
+        may_go += segments_in(current)[:-1]
+    for segment in may_go:
         if used <= budget_bytes:
             break
-        size = segment.stat().st_size
-        segment.unlink()
-        used -= size
-        if segment.parent != current and not any(segment.parent.iterdir()):
-            segment.parent.rmdir()
+        size = _size(segment)
+        with contextlib.suppress(OSError):  # somebody else's: the next one goes in its place
+            segment.unlink()
+            used -= size
+    for run in others:
+        with contextlib.suppress(OSError):  # it holds something, if only a note that somebody put there
+            run.rmdir()
     return used
 
 
-def _may_go(recordings: Path, current: Path | None) -> list[Path]:
-    segments = []
-    for run in runs_in(recordings):
-        of_run = segments_in(run)
-        if run != current and of_run and not is_being_written(of_run[-1]):
-            segments += of_run
-    if current is not None and current.is_dir():
-        segments += segments_in(current)[:-1]
-    return segments
+def _own_runs_in(recordings: Path) -> list[Path]:
+    return [run for run in runs_in(recordings) if not run.is_symlink()]
+
+
+def _size(segment: Path) -> int:
+    return segment.lstat().st_size

@@ -3,22 +3,23 @@
 import queue
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Self
 
 from foxglove import Context
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import Ground, WorldView
-from kurt2rt.channel.state import SimulatedPlace
+from kurt2rt.channel.ground import Ground
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.disk import Disk
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.live_view import LiveView
+from kurt2rt.recording.notes import Asked, Note, NoteLog, Ticked
 from kurt2rt.recording.run_files import Budget, RunFiles
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead, encode_head
 from kurt2rt.recording.topics import Topics
@@ -35,20 +36,6 @@ _WORLD_EVERY_TICKS = 100
 _NS_PER_S = 1_000_000_000
 
 
-class _Ticked(NamedTuple):
-    record: TickRecord
-    saved: bool
-    truth: SimulatedPlace | None
-    world: WorldView | None
-
-
-class _Asked(NamedTuple):
-    question: object
-
-
-_Noted = _Ticked | _Asked | HealthReport | Acknowledgement
-
-
 class RunRecorder:
     """Takes notes between two ticks, and writes them in a thread of its own, ten times a second.
 
@@ -59,29 +46,32 @@ class RunRecorder:
 
     def __init__(
         self,
-        topics: Topics,
         files: RunFiles | None,
-        live: LiveView | None = None,
+        kept: NoteLog | None,
+        live: LiveView | None,
+        shown: NoteLog | None,
         *,
         ground: Ground | None = None,
         began_at_ns: int | None = None,
         capacity: int = CAPACITY,
     ) -> None:
-        """`files`: None: nothing is kept. `began_at_ns`: time since 1970 of the runtime's clock at 0; else measured."""
-        self._topics = topics
-        self._files = files
-        self._live = live
+        """`kept` goes to `files`, `shown` to those who look on: each None where there is none.
+
+        `began_at_ns`: time since 1970 of the runtime's clock at 0; None: measured at the first tick.
+        """
+        self._files, self._kept = files, kept
+        self._live, self._shown = live, shown
         self._ground = ground
         self._capacity = capacity
         # A SimpleQueue's put never waits for the thread at its other end, and a signal handler may interrupt it.
-        self._waiting: queue.SimpleQueue[_Noted] = queue.SimpleQueue()
+        self._waiting: queue.SimpleQueue[Note] = queue.SimpleQueue()
+        self._held: deque[Note] = deque()
+        """Was shown already, and waits for a file."""
         self._began_at_ns = began_at_ns
-        self._time_ns = began_at_ns or 0
         # Counted apart, for two threads count.
         self._without_room = self._not_written = 0
         self._failure = ""
-        self._unsaved = self._notes = 0
-        self._world: WorldView | None = None
+        self._unsaved = self._ticks = 0
         self.written = 0
         """Ticks that the disk has."""
         self._ending = threading.Event()
@@ -116,12 +106,13 @@ class RunRecorder:
             # The wall clock may be set meanwhile; the stamps go on evenly.
             self._began_at_ns = time.time_ns() - round(record.now_s * _NS_PER_S)
         truth = world = None
-        if self._ground is not None and self._notes % _PLACE_EVERY_TICKS == 0:
+        if self._ground is not None and self._ticks % _PLACE_EVERY_TICKS == 0:
             truth = self._ground.place()
-            if self._notes % _WORLD_EVERY_TICKS == 0:
+            if self._ticks % _WORLD_EVERY_TICKS == 0:
                 world = self._ground.world()
-        self._notes += 1
-        self._note(_Ticked(record, saved, truth, world))
+        self._ticks += 1
+        time_ns = self._began_at_ns + round(record.now_s * _NS_PER_S)
+        self._note(Ticked(record, time_ns, saved, truth, world))
 
     def acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never will be."""
@@ -129,7 +120,7 @@ class RunRecorder:
 
     def asked(self, question: object) -> None:
         """The robot begins to ask; `str` of it is the question."""
-        self._note(_Asked(question))
+        self._note(Asked(question))
 
     def healthy(self, report: HealthReport) -> None:
         """How the program is."""
@@ -146,33 +137,24 @@ class RunRecorder:
         self._thread.start()
 
     def write_waiting(self) -> None:
-        """Log all that waits; while there is no file to log it to, it goes on waiting."""
-        if not self._is_taken and self._files is not None:
+        """Show all that waits, and log it to a file; while there is none, it goes on waiting."""
+        for note in politely(self._waiting.get_nowait() for _ in range(self._waiting.qsize())):
+            if self._shown is not None and self._live is not None and self._live.is_open:
+                self._log(self._shown, note)
+            if self._files is not None:
+                self._held.append(note)
+        if self._kept is None or self._files is None or not self._files.takes:
             return
-        waiting = (self._waiting.get_nowait() for _ in range(self._waiting.qsize()))
-        for noted in politely(waiting):
-            try:
-                self._log(noted)
-            except RecordingError as error:
-                self._failure = str(error)
+        for note in politely(self._held.popleft() for _ in range(len(self._held))):
+            if not self._log(self._kept, note):
                 self._not_written += 1
+            elif isinstance(note, Ticked):
+                self._unsaved += 1
 
     def tend(self) -> None:
         """Once a second: have the disk keep what was logged, and go on in another file where that is due."""
-        if self._live is not None:
-            self._live.tend()
-        if self._files is None:
-            return
-        took, given_up = self._files.takes, self._files.given_up
-        kept = self._files.tend()
-        if self._files.given_up > given_up:
-            self._not_written += self._unsaved
-            self._unsaved = 0
-        elif kept:
-            self.written += self._unsaved
-            self._unsaved = 0
-        if self._files.takes and (not took or self._files.given_up > given_up):
-            self._topics.begin_anew()
+        self._tend_live()
+        self._tend_files()
 
     def close(self, patience_s: float = 2.0) -> None:
         """Write the rest and end the files; gives a disk that hangs up after a while. `trouble` tells what came."""
@@ -183,6 +165,7 @@ class RunRecorder:
         self._thread.join(patience_s)
         if self._thread.is_alive():
             self._failure = "the disk does not answer; the end is missing"
+            self._without_room += self._waiting.qsize() + len(self._held) + self._unsaved
 
     def __enter__(self) -> Self:
         self.start()
@@ -193,62 +176,86 @@ class RunRecorder:
     ) -> None:
         self.close()
 
-    @property
-    def _is_taken(self) -> bool:
-        kept = self._files is not None and self._files.takes
-        return kept or (self._live is not None and self._live.is_open)
-
-    def _note(self, noted: _Noted) -> None:
-        if self._waiting.qsize() < self._capacity:
-            self._waiting.put(noted)
+    def _note(self, note: Note) -> None:
+        if self._waiting.qsize() + len(self._held) < self._capacity:
+            self._waiting.put(note)
         else:
             self._without_room += 1
 
-    def _log(self, noted: _Noted) -> None:
-        topics = self._topics
-        match noted:
-            case _Ticked(record, saved, truth, world):
-                self._time_ns = (self._began_at_ns or 0) + round(record.now_s * _NS_PER_S)
-                topics.tick(record, saved=saved, truth=truth, time_ns=self._time_ns)
-                self._world = world or self._world
-                if self._world is not None:
-                    topics.ground(self._world, record.tick, self._time_ns)
-                self._count()
-            case _Asked(question):
-                topics.asked(str(question), self._time_ns)
-            case HealthReport():
-                topics.healthy(noted, self._time_ns)
-            case Acknowledgement():
-                topics.acknowledged(noted, self._time_ns)
+    def _log(self, log: NoteLog, note: Note) -> bool:
+        """Whether it could be logged."""
+        try:
+            log.log(note)
+        except Exception as error:  # noqa: BLE001  # of whatever kind: it is told, and all other notes are kept
+            reason = str(error) if isinstance(error, RecordingError) else f"{error!r}; please report this"
+            self._failure = f"a note cannot be written: {reason}"
+            return False
+        return True
 
-    def _count(self) -> None:
-        if self._files is None:
+    def _tend_live(self) -> None:
+        if self._live is not None:
+            self._live.tend()
+
+    def _tend_files(self) -> None:
+        files = self._files
+        if files is None or self._kept is None:
             return
-        if self._files.takes:
-            self._unsaved += 1
-        else:
-            self._not_written += 1
+        took, given_up, folders = files.takes, files.given_up, files.folders
+        kept = files.tend()
+        if files.given_up > given_up:
+            self._not_written += self._unsaved
+            self._unsaved = 0
+        elif kept:
+            self._is_saved()
+        if files.folders > max(folders, 1):  # somebody has deleted all that was written
+            self._not_written += self.written
+            self.written = 0
+        if files.takes and (not took or files.given_up > given_up):
+            self._kept.topics.begin_anew()
+
+    def _is_saved(self) -> None:
+        self.written += self._unsaved
+        self._unsaved = 0
 
     def _run(self) -> None:
-        rounds, ended = 0, False
+        rounds = rounds_of_files = 0
+        ended = False
         try:
             while not ended:
                 if rounds % _ROUNDS_PER_SECOND == 0:
-                    self.tend()
+                    self._safely(self._tend_live)
+                # Not before the first tick: a start that fails leaves no run.
+                if self._ticks:
+                    if rounds_of_files % _ROUNDS_PER_SECOND == 0:
+                        self._safely(self._tend_files)
+                    rounds_of_files += 1
                 ended = self._ending.wait(_PERIOD_S)
-                self.write_waiting()
+                self._safely(self.write_waiting)
                 rounds += 1
-            self._end()
-        except Exception as error:  # noqa: BLE001  # of whatever kind: it is told, and the robot goes on
-            self._failure = f"its thread ended by {error!r}; please report this"
+        finally:
+            self._safely(self._end)
+
+    def _safely(self, part: Callable[[], None]) -> None:
+        try:
+            part()
+        except Exception as error:  # noqa: BLE001  # of whatever kind: it is told, tried again, and the robot goes on
+            self._failure = f"its thread failed with {error!r}; please report this"
 
     def _end(self) -> None:
         self.write_waiting()
-        if self._files is not None:
-            self.tend()
-            self._files.close()
-        if self._live is not None:
-            self._live.close()
+        try:
+            if self._files is not None and (self._ticks or self._files.run is not None):
+                self._tend_files()
+                self.write_waiting()
+                if self._files.close():
+                    self._is_saved()
+        finally:
+            if self._ticks:
+                self._not_written += self._waiting.qsize() + len(self._held) + self._unsaved
+            self._held.clear()
+            self._unsaved = 0
+            if self._live is not None:
+                self._live.close()
 
 
 def open_run_recorder(
@@ -274,11 +281,12 @@ def open_run_recorder(
     `opened` hears, in the recorder's thread, when it is open. `ground`: of a simulated robot.
     `began_at_ns`: where the run has a clock of its own: time since 1970 of its 0.
     """
-    context = Context()
-    # Before the files, so that each of them knows all topics.
-    topics = Topics(context, settings, features)
-    files = None
+    began_ns = time.time_ns() if began_at_ns is None else began_at_ns
+    files = kept = view = shown = None
     if recordings is not None:
+        context = Context()
+        # Before the files, so that each of them knows all topics.
+        kept = NoteLog(Topics(context, settings, features), began_ns)
 
         def describe(number: int) -> dict[str, dict[str, str]]:
             return {RUN_METADATA: encode_head(head), SEGMENT_METADATA: {"number": str(number), "run": name}}
@@ -287,5 +295,9 @@ def open_run_recorder(
         files = RunFiles(
             context, recordings, name, budget, describe=describe, attachments=attachments, now_ns=now_ns, disk=disk
         )
-    view = None if live is None else LiveView(context, *live, name=name, opened=opened)
-    return RunRecorder(topics, files, view, ground=ground, began_at_ns=began_at_ns, capacity=capacity)
+    if live is not None:
+        # A context of its own: what waits for the disk is shown now, and logged to the file later.
+        context = Context()
+        shown = NoteLog(Topics(context, settings, features), began_ns)
+        view = LiveView(context, *live, name=name, opened=opened)
+    return RunRecorder(files, kept, view, shown, ground=ground, began_at_ns=began_at_ns, capacity=capacity)

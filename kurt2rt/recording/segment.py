@@ -57,18 +57,22 @@ class Segment:
         self._collected = Collected()
         self._unsaved = bytearray()
         self._saved_bytes = 0
-        self._writer = open_mcap(
-            self._collected,
-            context=context,
-            writer_options=MCAPWriteOptions(
-                compression=MCAPCompression.Zstd,
-                # A chunk ends when it is saved; no thread pool of zstd's beside a robot.
-                chunk_size=None,
-                compression_threads=0,
-                disable_seeking=True,
-                profile=PROFILE,
-            ),
-        )
+        try:
+            self._writer = open_mcap(
+                self._collected,
+                context=context,
+                writer_options=MCAPWriteOptions(
+                    compression=MCAPCompression.Zstd,
+                    # A chunk ends when it is saved; no thread pool of zstd's beside a robot.
+                    chunk_size=None,
+                    compression_threads=0,
+                    disable_seeking=True,
+                    profile=PROFILE,
+                ),
+            )
+        except Exception:
+            self._file.close()
+            raise
 
     @property
     def size_bytes(self) -> int:

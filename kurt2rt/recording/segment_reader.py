@@ -13,6 +13,9 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 
 from kurt2rt.recording.error import RecordingError
 
+TICK_TOPIC = "/tick"
+"""Topic of the ticks, of which a run is made."""
+
 # What mcap raises over bytes that are none of its own, beside its own errors; a wrong checksum is a ValueError.
 _TORN = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 

@@ -36,11 +36,12 @@ from kurt2rt.recording.pictures import (
     world_scene,
 )
 from kurt2rt.recording.schemas import HEALTH_SCHEMA, LESSON_SCHEMA, TICK_SCHEMA, situation_schema
+from kurt2rt.recording.segment_reader import TICK_TOPIC
 from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tick import TickRecord
 
-TICK, LESSON, SITUATION, HEALTH, LOG = "/tick", "/lesson", "/situation", "/health", "/log"
+TICK, LESSON, SITUATION, HEALTH, LOG = TICK_TOPIC, "/lesson", "/situation", "/health", "/log"
 SCAN, POSE, TF, TRUTH, SCENE, GROUND = "/scan", "/pose", "/tf", "/truth", "/scene", "/world"
 
 SCANS_HZ, SCENES_HZ = 20, 10
@@ -81,10 +82,11 @@ class Topics:
         """One tick. Raises RecordingError for one that cannot be written."""
         senses = record.senses
         self._odometry.drive(senses.encoder_left_ticks, senses.encoder_right_ticks)
-        knowledge = None
-        if record.knowledge is not None:
-            knowledge = knowledge_hash_of(politely(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
-        self._tick.log(encode_tick(tick_entry_of(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
+        if self._tick.has_sinks():  # the most work of all, for which a live view seldom asks
+            knowledge = None
+            if record.knowledge is not None:
+                knowledge = knowledge_hash_of(politely(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
+            self._tick.log(encode_tick(tick_entry_of(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
         for event in record.events:
             self._taught(event, time_ns)
         self._tell(record, time_ns)
@@ -155,7 +157,8 @@ class Topics:
             self.say(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
 
     def _where(self, record: TickRecord, time_ns: int) -> None:
-        self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
+        if self._scan.has_sinks():
+            self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
         pose = self._odometry.pose
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
         self._tf.log(transform(START, ROBOT, pose, time_ns), log_time=time_ns)
@@ -169,10 +172,12 @@ class Topics:
         self._tf.log(transform(WORLD, START, self._begins, time_ns), log_time=time_ns)
 
     def _look(self, record: TickRecord, time_ns: int) -> None:
-        values: list[float] = record.situation.vector.tolist()
-        self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)
-        scene = self._pictures.scene(record.senses.infrared_counts, record.decision, record.behaviour, time_ns)
-        self._scene.log(scene, log_time=time_ns)
+        if self._situation.has_sinks():
+            values: list[float] = record.situation.vector.tolist()
+            self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)
+        if self._scene.has_sinks():
+            scene = self._pictures.scene(record.senses.infrared_counts, record.decision, record.behaviour, time_ns)
+            self._scene.log(scene, log_time=time_ns)
 
 
 def _json(content: Mapping[str, Any]) -> bytes:

@@ -1,5 +1,6 @@
 """What `kurt2rt run` leaves behind of its run."""
 
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,9 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     (segment,) = segments_in(run)
     topics = {each.topic for each in SegmentReader(segment).messages()}
     assert {TICK, SCENE, TRUTH, GROUND} <= topics
+    # Also of what a robot that knows nothing asks in its first tick.
+    times = [each.time_ns for each in SegmentReader(segment).messages()]
+    assert min(times) >= datetime.strptime(run.name[:16], "%Y%m%dT%H%M%S%z").timestamp() * 1e9
 
 
 def test_to_another_folder_where_one_is_given(kurt2rt: CommandLine, folder: Path) -> None:

@@ -46,6 +46,7 @@ class RecordedDesk:
         name: str = NAME,
         live: tuple[str, int] | None = None,
         opened: Callable[[LiveView], None] = lambda _: None,
+        began_at_ns: int | None = BEGAN_AT_NS,
     ) -> None:
         self.desk = Desk()
         self.recorder: RunRecorder = open_run_recorder(
@@ -59,7 +60,7 @@ class RecordedDesk:
             live=live,
             opened=opened,
             ground=ground,
-            began_at_ns=BEGAN_AT_NS,
+            began_at_ns=began_at_ns,
             disk=disk,
             capacity=capacity,
         )

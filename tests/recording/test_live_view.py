@@ -11,7 +11,8 @@ from websockets.asyncio.client import ClientConnection, connect
 
 from kurt2rt.recording.live_view import LOOPBACK, LiveView, parse_address
 from kurt2rt.recording.topics import LOG, SCENE, TICK
-from tests.recording.desk_recording import RecordedDesk
+from tests.recording.desk_recording import NAME, RecordedDesk
+from tests.recording.test_run_recorder import AbsentDisk, entries_of
 
 SUBPROTOCOL = "foxglove.sdk.v1"
 MESSAGE_DATA = 1
@@ -91,3 +92,16 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
     assert desk.recorder.trouble == ""
     desk.recorder.close()
     assert desk.recorder.written == 200
+
+
+def test_who_looks_on_costs_a_late_disk_no_tick(tmp_path: Path) -> None:
+    disk = AbsentDisk()
+    desk = RecordedDesk(tmp_path, disk=disk, live=(LOOPBACK, 0))
+    desk.recorder.tend()
+    desk.second()
+    disk.there = True
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert len(entries_of(tmp_path / NAME)) == 300

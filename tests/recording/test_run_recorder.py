@@ -4,6 +4,7 @@ import errno
 import json
 import shutil
 import threading
+import time
 from pathlib import Path
 
 from mcap.reader import make_reader
@@ -12,7 +13,7 @@ from kurt2rt.channel.ground import Post, Wall, WorldView
 from kurt2rt.channel.state import SimulatedPlace
 from kurt2rt.health.plain import report_of
 from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.recording.attachments import KNOWLEDGE
+from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.recording.disk import RealDisk, WritableFile
 from kurt2rt.recording.entries import TickEntry, decode_tick, tick_entry_of
 from kurt2rt.recording.run_files import Budget
@@ -103,7 +104,8 @@ def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tm
         assert summary.chunk_indexes
         assert {channel.topic for channel in summary.channels.values()} >= {TICK, SCAN, SCENE}
         assert decode_head(SegmentReader(segment).head().metadata[RUN_METADATA]) == HEAD
-    assert SegmentReader(segments[1]).head().attachments == {}
+    settings = {name: ATTACHMENTS[name] for name in (ROBOT, TASK)}  # with which a later one can be understood alone
+    assert SegmentReader(segments[1]).head().attachments == settings
     assert [each.tick for each in entries_of(tmp_path / NAME)] == [record.tick for record in desk.records]
 
 
@@ -251,10 +253,12 @@ def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
     disk = HangingDisk()
     desk = RecordedDesk(tmp_path, disk=disk, capacity=120)
     desk.recorder.start()
+    desk.run(1)
     assert disk.hangs.wait(10.0)
-    desk.run(130)
+    desk.run(129)
     assert desk.recorder.dropped == 10
     desk.recorder.close(patience_s=0.01)
+    assert desk.recorder.dropped == 130
     assert "the disk does not answer" in desk.recorder.trouble
     disk.free.set()
 
@@ -286,7 +290,123 @@ def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) 
     assert [each.tick for each in entries_of(tmp_path / "runs" / NAME)] == [each.tick for each in desk.records[200:]]
     (segment,) = segments_in(tmp_path / "runs" / NAME)
     assert SegmentReader(segment).head().attachments == ATTACHMENTS
+    assert "200 of its ticks and notes lost" in desk.recorder.trouble
+
+
+def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    disk.free = 100_000_000
+    desk.recorder.tend()
+    shutil.rmtree(tmp_path / NAME)
+    disk.free = 1_000_000_000
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records[100:]]
+    (segment,) = segments_in(tmp_path / NAME)
+    assert SegmentReader(segment).head().attachments == ATTACHMENTS
     assert "100 of its ticks and notes lost" in desk.recorder.trouble
+
+
+def test_a_run_that_rests_is_left_alone_too(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    other = RecordedDesk(tmp_path, disk=disk, name="20251231T235959Z-wall_following")
+    other.recorder.tend()
+    other.second()
+    disk.free = 100_000_000
+    other.second()
+    assert "100 MB are free" in other.recorder.trouble
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.recorder.close()
+    disk.free = 1_000_000_000
+    other.second()
+    other.recorder.close()
+    assert other.recorder.trouble == ""
+    assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 300
+
+
+def test_where_there_is_no_room_no_folder_is_left(tmp_path: Path) -> None:
+    empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
+    empty.mkdir(parents=True)
+    desk = RecordedDesk(tmp_path / "runs", disk=FullDisk(100))
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert "0 MB are free" in desk.recorder.trouble
+    assert desk.recorder.dropped == 100
+    assert runs_in(tmp_path / "runs") == []
+
+
+class WithoutNames(RealDisk):
+    """A disk that cannot keep the names of new files."""
+
+    def create(self, path: Path) -> WritableFile:
+        super().create(path).close()
+        raise OSError(errno.EIO, f"input/output error: {path.name}")
+
+
+def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, disk=WithoutNames())
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert "input/output error" in desk.recorder.trouble
+    assert desk.recorder.run is None
+    assert runs_in(tmp_path) == []
+
+
+def test_a_start_that_fails_leaves_no_run(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path / "runs")
+    with desk.recorder:
+        desk.recorder.asked("is anybody there?")
+    assert desk.recorder.trouble == ""
+    assert desk.recorder.run is None
+    assert not (tmp_path / "runs").exists()
+
+
+def test_the_end_that_the_disk_does_not_take_is_counted(tmp_path: Path) -> None:
+    failures = iter([None, None, *[OSError(errno.ENOSPC, "no space left on device")] * 9])
+    desk = RecordedDesk(tmp_path, disk=FailingDisk(failures))
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert (desk.recorder.written, desk.recorder.dropped) == (0, 100)
+    assert "the end of the recording is missing" in desk.recorder.trouble
+    assert "100 of its ticks and notes lost" in desk.recorder.trouble
+
+
+class Unsayable:
+    """A question that cannot be said."""
+
+    def __str__(self) -> str:
+        raise ZeroDivisionError("unsayable")
+
+
+def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    with desk.recorder:
+        desk.run(50)
+        desk.recorder.asked(Unsayable())
+        desk.run(50)
+    assert len(entries_of(tmp_path / NAME)) == 100
+    assert (desk.recorder.written, desk.recorder.dropped) == (100, 1)
+    assert "a note cannot be written: ZeroDivisionError('unsayable')" in desk.recorder.trouble
+
+
+def test_what_is_noted_before_the_first_tick_has_the_time_of_the_start(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, began_at_ns=None)
+    started_ns = time.time_ns()
+    desk.recorder.asked("I know nothing yet, teach me")
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    times = [each.time_ns for each in messages_of(tmp_path / NAME)]
+    assert min(times) >= started_ns - 60_000_000_000  # the wall clock may be set
+    assert times == sorted(times)
 
 
 def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:

@@ -1,0 +1,59 @@
+"""What is noted of a run beside the loop, and how it is logged."""
+
+from typing import NamedTuple
+
+from kurt2rt.channel.ground import WorldView
+from kurt2rt.channel.state import SimulatedPlace
+from kurt2rt.health.report import HealthReport
+from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.recording.topics import Topics
+from kurt2rt.tick import TickRecord
+
+
+class Ticked(NamedTuple):
+    """A tick has been."""
+
+    record: TickRecord
+    time_ns: int
+    """Since 1970."""
+    saved: bool
+    """Statistics were saved after it."""
+    truth: SimulatedPlace | None
+    world: WorldView | None
+
+
+class Asked(NamedTuple):
+    """The robot begins to ask."""
+
+    question: object
+    """`str` of it is the question."""
+
+
+Note = Ticked | Asked | HealthReport | Acknowledgement
+
+
+class NoteLog:
+    """Logs notes to the topics of one place, each at the time of the newest tick."""
+
+    def __init__(self, topics: Topics, began_ns: int) -> None:
+        """`began_ns`: time since 1970 of what is noted before the first tick."""
+        self.topics = topics
+        self._time_ns = began_ns
+        self._world: WorldView | None = None
+
+    def log(self, note: Note) -> None:
+        """One note. Raises RecordingError for one that cannot be written."""
+        topics = self.topics
+        match note:
+            case Ticked(record, time_ns, saved, truth, world):
+                self._time_ns = time_ns
+                topics.tick(record, saved=saved, truth=truth, time_ns=time_ns)
+                self._world = world or self._world
+                if self._world is not None:
+                    topics.ground(self._world, record.tick, time_ns)
+            case Asked(question):
+                topics.asked(str(question), self._time_ns)
+            case HealthReport():
+                topics.healthy(note, self._time_ns)
+            case Acknowledgement():
+                topics.acknowledged(note, self._time_ns)
