@@ -2,7 +2,7 @@
 
 import signal
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,6 +35,8 @@ class Stopped:
     """Between two CONTROL frames."""
     drove_on: int
     """CONTROL frames after it that told the wheels to turn."""
+    most_at_once: int
+    """Of those, within the time that a command may be old."""
     cycles_to_rest: int | None
     """Of the controller, from the last CONTROL frame; None where the stop was over before it rested."""
     state: State
@@ -78,6 +80,7 @@ class StopStory:
         return Stopped(
             gap_s=first.timestamp - controls[-1],
             drove_on=sum(map(drives, after)),
+            most_at_once=_most_within(ROBOT.guard.command_age_s, filter(drives, after)),
             cycles_to_rest=_cycles_to_rest([*before, *meanwhile]),
             state=self._we.state,
         )
@@ -100,6 +103,11 @@ class StopStory:
     async def _seen_after_it(self, seen: State) -> None:
         """Wait for some pictures more."""
         await state_where(self._we, lambda state: state.tick > seen.tick + 10)
+
+
+def _most_within(span_s: float, frames: Iterable[can.Message]) -> int:
+    times = sorted(frame.timestamp for frame in frames)
+    return max((sum(begun_s <= each < begun_s + span_s for each in times) for begun_s in times), default=0)
 
 
 def _cycles_to_rest(frames: list[can.Message]) -> int | None:
