@@ -1,13 +1,14 @@
 """What an undo would have changed in recorded runs."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.care.trial import REPORT_EVERY, Known, Report, runs_to_try
 from kurt2rt.knowledge.changing import worths_after
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.kinship import read_taught
 from kurt2rt.knowledge.undo import lesson_to_undo, lessons_to_undo, undos_of
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.replay.replay import ReplayedTick
@@ -41,16 +42,17 @@ def preview_undo(path: Path, lesson: str | None, of: str | None, recordings: Pat
     Raises KnowledgeError as the undo would, and where there are no runs to try it on.
     """
     with Journal.read_only(path) as journal:
-        taught, statistics = read_taught(journal), journal.statistics()
-    system = taught.system
+        binding = journal.binding
+        entries, statistics = journal.read_all()
+        system = fold_entries(journal, entries, radius=math.inf)
     lessons = [lesson_to_undo(system, lesson, path)] if of is None else lessons_to_undo(system, of, path)
     undos = undos_of(system, lessons, "preview", lambda problem: KnowledgeError(f"{path}: {problem}"))
-    runs = runs_to_try(recordings, taught.journal.binding)
-    events = tuple(entry.event for entry in taught.entries)
-    dimensions = len(taught.journal.binding.feature_names)
+    runs = runs_to_try(recordings, binding)
+    events = tuple(entry.event for entry in entries)
+    dimensions = len(binding.feature_names)
     before = Known(events, statistics)
     after = Known((*events, *undos), worths_after(events, undos, statistics, dimensions))
-    records = taught.records
+    records = {record.event.origin.command_id: record for record in system.lessons}
     tried = tuple(_tried(run, before, after, report) for run in runs.runs)
     return Preview(tuple(records[name] for name in lessons), tried, runs.notes)
 

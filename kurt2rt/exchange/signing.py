@@ -15,6 +15,7 @@ from cryptography.hazmat.primitives.serialization import (
     load_pem_public_key,
 )
 
+from kurt2rt.durable import sync_folder
 from kurt2rt.knowledge.error import KnowledgeError
 
 PUBLIC_KEY_BYTES = 32
@@ -23,19 +24,25 @@ PUBLIC_KEY_BYTES = 32
 def make_key(path: Path) -> Path:
     """Make a key at `path`, for its owner alone, and its public half beside it; returns where that is.
 
-    Raises KnowledgeError, also where a file is there already: a lost key cannot be made again.
+    Raises KnowledgeError, also where one of both is there already, and leaves nothing: a lost key cannot be made again.
     """
     key, public = Ed25519PrivateKey.generate(), path.with_name(path.name + ".pub")
     secret = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
     open_half = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
+    written = list[Path]()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        for place, content, mode in ((path, secret, 0o600), (public, open_half, 0o644)):
+        # The public half first: where one is there already, nothing secret is left lying about.
+        for place, content, mode in ((public, open_half, 0o644), (path, secret, 0o600)):
             with os.fdopen(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+                written.append(place)
                 file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
+        sync_folder(path.parent)
     except OSError as error:
+        for place in written:
+            place.unlink(missing_ok=True)
         raise KnowledgeError(f"{path}: no key can be made there ({error}); give the path of a new file") from error
     return public
 

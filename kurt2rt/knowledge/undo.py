@@ -82,6 +82,47 @@ def redo_lesson(path: Path, lesson: str | None, *, teacher: str, stamp: str) -> 
         return _record(system, command_id)
 
 
+def redo_lessons_of(
+    path: Path, taught_by: str, *, teacher: str, stamp: str
+) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
+    """Let all undone lessons of the teacher `taught_by` stand again, the one undone last first, in one transaction.
+
+    Returns them in that order, and why others stay undone, a sentence each: something else stands in their place.
+    As `redo_lesson`; raises KnowledgeError where none can stand again.
+    """
+    with open_again(path) as journal:
+        system = fold_journal(journal, radius=math.inf)
+        events, reasons = list[LessonRedone](), list[str]()
+        for command_id in _undone_by_time(journal, system, taught_by):
+            problem = system.why_not_redo(command_id)
+            if problem is not None:
+                reasons.append(problem)
+                continue
+            event = LessonRedone(command_id, new_origin("redo", teacher))
+            system.apply(event)
+            events.append(event)
+        if not events:
+            why = f": {reasons[0]}" if reasons else ""
+            raise KnowledgeError(f"{path}: holds no undone lesson by {taught_by} that can stand again{why}")
+        write(journal, [JournalEntry(event, stamp) for event in events])
+        return tuple(_record(system, event.lesson) for event in events), tuple(reasons)
+
+
+def _undone_by_time(journal: Journal, system: RlaSystem, taught_by: str) -> list[str]:
+    """Command ids of a teacher's lessons that do not stand, the one undone last first: as they came off, they go on."""
+    undone = dict[str, None]()
+    for event in journal.events():
+        if isinstance(event, LessonUndone):
+            undone.pop(event.lesson, None)
+            undone[event.lesson] = None
+    records = ((command_id, system.lesson(command_id)) for command_id in reversed(undone))
+    return [
+        command_id
+        for command_id, record in records
+        if record is not None and record.undone and record.event.origin.teacher == taught_by
+    ]
+
+
 def undos_of(
     system: RlaSystem, command_ids: Iterable[str], teacher: str, refuse: Callable[[str], KnowledgeError]
 ) -> list[LessonUndone]:

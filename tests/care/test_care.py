@@ -1,5 +1,6 @@
 """Changes of knowledge are tried on a recorded run before anything is changed."""
 
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -22,11 +23,16 @@ from kurt2rt.replay.replay import Replay
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import TickRecord
 from tests.cli.helpers import CommandLine
-from tests.replay.stories import record_story
+from tests.replay.stories import Scene, record_story
 
 STAMP = "2026-11-22T03:10:05.000+00:00"
 FAR = (-5000.0,) * 72
+
+
+def nobody(scene: Scene, record: TickRecord) -> None:
+    """Says nothing to the robot."""
 
 
 def quietly(run: str, ticks: int) -> None:
@@ -90,6 +96,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
     assert len(after) == done.kept == len(before) - len(done.deleted)
     assert done.kept > 0
     assert (done.runs, done.ticks, done.notes, done.other_behaviours) == (1, 1000, (), ())
+    assert 100 < done.driven_ticks < done.ticks
 
     again = compacted(knowledge, recordings)
     assert (again.deleted, again.kept) == ((), done.kept)
@@ -104,6 +111,22 @@ def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> N
         (run,) = runs_to_try(recordings, journal.binding).runs
     nearest = {answered.basic.nearest for _, (answered,) in answers(run, (known,), quietly)}
     assert {rla.rla_id for rla in nearest if rla is not None} == {rla.rla_id for rla in folded(knowledge).rlas}
+
+
+def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
+    before = folded(knowledge)
+    folder = tmp_path / "runs"
+    stood = record_story("walls", folder, seconds=1, other=nobody)
+    stood.rename(folder / "20260320T084640Z-wall_following")
+    with pytest.raises(KnowledgeError, match=r"in none of its 1 runs .* anything drove \(0 s\).* nothing was deleted"):
+        compacted(knowledge, folder)
+    assert folded(knowledge).rlas == before.rlas
+
+    shutil.copytree(recordings, folder, dirs_exist_ok=True)
+    done = compacted(knowledge, folder, dry_run=True)
+    assert done.runs == 1
+    (note,) = done.notes
+    assert note.endswith("20260320T084640Z-wall_following: nothing drove in it, so it proves nothing")
 
 
 def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
@@ -168,6 +191,6 @@ def test_on_the_command_line(
     dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
     assert "would delete: RLA " in dry
     done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out
-    assert "tried on 1000 ticks (10 s) of 1 runs" in done
+    assert re.search(r"tried on 1000 ticks \(10 s, [1-9] s of them driven\) of 1 runs", done)
     assert f"to take all of that back: kurt2rt knowledge undo {knowledge} --of compact" in done
     assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")

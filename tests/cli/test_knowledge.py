@@ -9,7 +9,7 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Credit, Origin, Phase, RlaRewarded
+from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Credit, Origin, Phase, RlaRewarded, SessionBegun
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.cli.helpers import CommandLine
 
@@ -74,6 +74,12 @@ def test_all_that_the_critic_did_is_listed_and_taken_back(kurt2rt: CommandLine, 
     assert folded(mine).rlas == before.rlas
     assert kurt2rt("knowledge", "check", mine).exit_code == 0
     assert kurt2rt("knowledge", "undo", mine, "--of", "critic", "--lesson", "blame").exit_code == 2
+    assert kurt2rt("knowledge", "redo", mine, "--of", "critic", "--lesson", "blame").exit_code == 2
+    assert kurt2rt("knowledge", "redo", mine, "--of", "critic").out.splitlines() == [
+        f"{mine}: stands again: RLA {first.rla_id} punished (lesson blame by critic)",
+        f"{mine}: stands again: RLA {second.rla_id} withdrawn: it asks again (lesson withdraw by critic)",
+        f"{mine}: 2 lessons of critic stand again",
+    ]
 
 
 def _by_critic(command_id: str) -> Origin:
@@ -137,6 +143,21 @@ def test_a_branch_is_listed_taught_on_compared_and_merged(kurt2rt: CommandLine, 
     assert "know the same" in kurt2rt("knowledge", "diff", mine, "late.knowledge").out
 
 
+def test_a_branch_tells_of_lessons_that_a_clock_set_back_put_behind_later_ones(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
+) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    with Journal.read_only(mine) as look:
+        binding, entries = look.binding, look.entries()
+    newest = entries[-1].stamped_at
+    with Journal.open(mine, binding) as journal:
+        for number, stamp in enumerate(("2099-01-01T00:00:00.000+00:00", newest)):
+            begun = SessionBegun("evening", Origin(f"late-{number}", "Ann", Phase.CORRECTIONS, 9))
+            journal.append([JournalEntry(begun, stamp)])
+    said = kurt2rt("knowledge", "branch", mine, "then.knowledge", "--at", newest).out
+    assert f"the first {len(entries)} rows of mine.knowledge\n1 later rows bear dates before that, too" in said
+
+
 def test_a_conflict_is_told_and_settled_by_whom_one_prefers(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path
 ) -> None:
@@ -164,6 +185,17 @@ def test_in_an_empty_folder_nothing_is_listed(kurt2rt: CommandLine, tmp_path: Pa
     assert "holds no knowledge file" in kurt2rt("knowledge", "list", tmp_path).out
     (tmp_path / "broken.knowledge").write_text("nonsense", encoding="utf-8")
     assert "cannot be read" in " ".join(kurt2rt("knowledge", "list", tmp_path).out.split())
+
+
+def test_one_file_is_listed_by_itself_and_a_place_that_is_not_there_is_refused(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
+) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.db"))
+    listed = " ".join(kurt2rt("knowledge", "list", mine).out.split())
+    assert f"wall_following {len(folded(mine))} " in listed
+    assert "nowhere: is not there" in kurt2rt.refused("knowledge", "list", tmp_path / "nowhere")
+    (tmp_path / "nonsense").write_text("nonsense", encoding="utf-8")
+    assert "nonsense: is not a knowledge file" in kurt2rt.refused("knowledge", "list", tmp_path / "nonsense")
 
 
 def test_knowledge_is_given_away_signed_and_taken(kurt2rt: CommandLine, lessons: Path) -> None:

@@ -307,6 +307,15 @@ def test_a_key_is_for_its_owner_alone_and_is_never_overwritten(tmp_path: Path) -
     assert (tmp_path / "keys" / "ann").stat().st_mode & 0o777 == 0o600
     with pytest.raises(KnowledgeError, match="no key can be made there"):
         make_key(tmp_path / "keys" / "ann")
+    (tmp_path / "keys" / "bob.pub").write_bytes(b"another's")
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "bob")
+    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob.pub"]
+    (tmp_path / "keys" / "bob.pub").rename(tmp_path / "keys" / "bob")
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "bob")
+    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob"]
+    assert (tmp_path / "keys" / "bob").read_bytes() == b"another's"
     with pytest.raises(KnowledgeError, match="is no key that can sign"):
         read_private_key(tmp_path / "keys" / "ann.pub")
     with pytest.raises(KnowledgeError, match="is no public key"):

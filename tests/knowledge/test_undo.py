@@ -11,7 +11,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
-from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
+from kurt2rt.knowledge.undo import redo_lesson, redo_lessons_of, undo_lesson, undo_lessons_of
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
@@ -82,6 +82,46 @@ def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
             redo(path, lesson)
     with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
         redo(path)
+
+
+def redo_all_of(path: Path, of: str) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
+    return redo_lessons_of(path, of, teacher="command line", stamp=STAMP)
+
+
+def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
+    with Journal.open(begun(path), BINDING) as journal:
+        taught = (
+            replaced(1, "left", "forward"),
+            deleted(1),
+            rewarded(2, command_id="praise"),
+            replaced(2, "left", "forward"),
+        )
+        journal.append([JournalEntry(event, STAMP) for event in taught])
+    before = rlas(path)
+    undo_lessons_of(path, "Hertha", teacher="command line", stamp=STAMP)
+    assert rlas(path) == ()
+    redone, reasons = redo_all_of(path, "Hertha")
+    assert [record.event for record in redone] == [*(created(number) for number in (1, 2, 3)), *taught]
+    assert reasons == ()
+    assert rlas(path) == before
+    with pytest.raises(KnowledgeError, match=r"holds no undone lesson by Hertha that can stand again$"):
+        redo_all_of(path, "Hertha")
+
+
+def test_what_came_in_the_place_of_an_undone_lesson_stays_there(path: Path) -> None:
+    begun(path, lessons=2)
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        instead = replace(replaced(1, "right", "forward"), origin=replace(origin("instead"), teacher="Joachim"))
+        journal.append([JournalEntry(instead, STAMP)])
+    redone, (reason,) = redo_all_of(path, "Hertha")
+    assert [record.event for record in redone] == [created(2)]
+    assert reason.startswith("lesson 'instead' came in the place of 'replace-1-left'")
+    with pytest.raises(KnowledgeError, match="holds no undone lesson by Hertha that can stand again: lesson 'instead'"):
+        redo_all_of(path, "Hertha")
 
 
 @pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])

@@ -19,18 +19,21 @@ def compact(
 ) -> None:
     """Delete the RLAs that no recorded decision needs, when a replay has proved it.
 
-    All decisions of all runs must come out the same without them. Deletions are
-    lessons that can be undone.
+    All decisions of all runs must come out the same without them. It proves what
+    was driven there, no more: an RLA for a place where the robot has not driven
+    since recording began looks as if nobody needed it. Deletions are lessons that
+    can be undone.
     """
     with replaying() as report:
         done = delete_unneeded(file, recordings, stamp=utc_now(), dry_run=dry_run, report=report)
     for rla in done.deleted:
         say(f"{'would delete' if dry_run else 'deleted'}: {rla.title}: {rla.action}")
     for behaviour in done.other_behaviours:
-        say(f"{behaviour or 'what is taught'} was wanted in no run: its RLAs stay")
+        say(f"{behaviour or 'what is taught'} was driven in no run: its RLAs stay")
     for note in done.notes:
         say(f"not tried: {note}")
-    tried = f"tried on {done.ticks} ticks ({done.ticks * TICK_S:.0f} s) of {done.runs} runs"
+    driven = f"{done.ticks * TICK_S:.0f} s, {done.driven_ticks * TICK_S:.0f} s of them driven"
+    tried = f"tried on {done.ticks} ticks ({driven}) of {done.runs} runs"
     say(f"{file}: {len(done.deleted)} RLAs not needed, {done.kept} kept; {tried}")
     if done.deleted and not dry_run:
         say(f"to take all of that back: kurt2rt knowledge undo {file} --of {TEACHER}")

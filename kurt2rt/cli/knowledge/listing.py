@@ -18,19 +18,24 @@ from kurt2rt.knowledge.shown import plain
 
 
 def list_files(
-    folder: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it.")] = Path("var"),
+    place: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it; or one file.")] = Path("var"),
 ) -> None:
     """List the knowledge files of a folder: task, how much they know, and where it came from."""
+    if not place.exists():
+        raise KnowledgeError(f"{place}: is not there; give the folder that your knowledge files are in, or one of them")
     table = Table(box=SIMPLE_HEAD)
     for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
         table.add_column(heading, justify="right" if heading in ("RLAs", "lessons") else "left", overflow="fold")
-    for path in sorted(folder.rglob("*.knowledge")):
-        try:
-            table.add_row(plain(str(path)), *map(plain, _row(path)))
-        except KnowledgeError as error:
-            table.add_row(plain(str(path)), plain(f"cannot be read: {error}"))
+    if place.is_dir():
+        for path in sorted(place.rglob("*.knowledge")):
+            try:
+                table.add_row(plain(str(path)), *map(plain, _row(path)))
+            except KnowledgeError as error:
+                table.add_row(plain(str(path)), plain(f"cannot be read: {error}"))
+    else:
+        table.add_row(plain(str(place)), *map(plain, _row(place)))
     if not table.row_count:
-        say(f"{folder}: holds no knowledge file (*.knowledge)")
+        say(f"{place}: holds no knowledge file (*.knowledge)")
         return
     console_of(WIDE).print(table)
 

@@ -9,7 +9,7 @@ import typer
 from kurt2rt.care.preview import Tried, preview_undo
 from kurt2rt.care.trial import said
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, Recordings, replaying, say
-from kurt2rt.knowledge.undo import redo_lesson, undo_lesson, undo_lessons_of
+from kurt2rt.knowledge.undo import redo_lesson, redo_lessons_of, undo_lesson, undo_lessons_of
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.rla.lesson_book import LessonRecord
 
@@ -54,9 +54,22 @@ def redo(
         str | None,
         typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the one undone last."),
     ] = None,
+    of: Annotated[
+        str | None, typer.Option(help="All lessons of this teacher that were undone, the one undone last first.")
+    ] = None,
 ) -> None:
-    """Let a lesson stand again that was undone, where its RLA is still as the lesson found it."""
-    say(f"{file}: stands again: {_told(redo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()))}")
+    """Let a lesson stand again that was undone, or all of one teacher, where its RLA is as the lesson found it."""
+    if of is not None and lesson is not None:
+        raise typer.BadParameter("give --lesson or --of, not both")
+    if of is None:
+        say(f"{file}: stands again: {_told(redo_lesson(file, lesson, teacher=TEACHER, stamp=utc_now()))}")
+        return
+    redone, reasons = redo_lessons_of(file, of, teacher=TEACHER, stamp=utc_now())
+    for record in redone:
+        say(f"{file}: stands again: {_told(record)}")
+    for reason in reasons:
+        say(f"stays undone: {reason}")
+    say(f"{file}: {len(redone)} lessons of {of} stand again" + (f", {len(reasons)} do not" if reasons else ""))
 
 
 def _preview(file: Path, lesson: str | None, of: str | None, recordings: Path) -> None:
