@@ -11,11 +11,21 @@ from kurt2rt.cli.main import main
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.recording.run_files import RunFiles
 from kurt2rt.rounds import Rounds
+from kurt2rt.tick import TickRecord
+
+_ROUND = Rounds.__call__
+_DRIVES_M_S = 0.1
 
 
 def _hang(*_: Any, **__: Any) -> Never:
     while True:
         threading.Event().wait()
+
+
+def _hang_while_it_drives(rounds: Rounds, record: TickRecord) -> None:
+    if max(map(abs, record.grant.wheel_speeds)) > _DRIVES_M_S:
+        _hang()
+    _ROUND(rounds, record)
 
 
 async def _hang_in_the_loop(*_: Any) -> None:
@@ -30,6 +40,7 @@ def _let_hang(thing: str) -> None:
         "keys": (Teachers, "close", _hang),
         "network": (Endpoint, "close", _hang_in_the_loop),
         "loop": (Rounds, "save_statistics", _hang),
+        "drive": (Rounds, "__call__", _hang_while_it_drives),
     }
     owner, name, replacement = hangs[thing]
     setattr(owner, name, replacement)

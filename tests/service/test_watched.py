@@ -1,28 +1,46 @@
 """A service manager kills what falls silent and starts it anew: the robot then stands until Go."""
 
+import math
 import os
 import signal
 import subprocess
 import sys
 import uuid
+from contextlib import ExitStack
 from pathlib import Path
 
+import anyio
+import anyio.to_thread
 import pytest
 
 from config import CONFIG_DIR
-from tests.cli.helpers import Running
-from tests.cli.three_programs import drives, onlooker
+from kurt2rt.teaching import TeacherClient
+from tests.cli.helpers import Running, running
+from tests.cli.three_programs import (
+    STARTED,
+    Onlooker,
+    drives,
+    is_control,
+    onlooker,
+    stands,
+    state_where,
+    teacher_of,
+    turns,
+    until_it_drives,
+)
 from tests.systemd.manager import Manager, manager
 
 WATCHDOG_S = 1.0
+LOOKED_ON_TICKS = 50
 
 
 def start(systemd: Manager, folder: Path, bus: str, *command: str) -> "subprocess.Popen[str]":
     environment = {**os.environ, "PYTHONPATH": str(CONFIG_DIR.parent), "PYTHONUNBUFFERED": "1"}
     environment |= systemd.environment(WATCHDOG_S)
     del environment["WATCHDOG_PID"]
+    words = ("run", "--service", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge")
     return subprocess.Popen(
-        [sys.executable, "-m", *command, "run", "--service", "--robot", bus, "--knowledge", "mine.knowledge"],
+        [sys.executable, "-m", *command, *words],
         cwd=folder,
         env=environment,
         stdin=subprocess.DEVNULL,
@@ -33,22 +51,47 @@ def start(systemd: Manager, folder: Path, bus: str, *command: str) -> "subproces
 
 
 @pytest.mark.deep
-def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_path: Path) -> None:
+async def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_path: Path) -> None:
     bus = f"shared:watched-{uuid.uuid4().hex[:8]}"
-    with manager(tmp_path) as systemd, onlooker(bus) as ear:
-        with start(systemd, tmp_path, bus, "tests.service.hanging_program", "loop") as hangs:
-            systemd.wait_for("READY=1")
-            systemd.wait_for("WATCHDOG=1")
-            while systemd.hears("WATCHDOG=1", within_s=WATCHDOG_S):
-                pass
-            hangs.send_signal(signal.SIGABRT)
-            assert hangs.wait() == -signal.SIGABRT
+    with ExitStack() as around:
+        systemd = around.enter_context(manager(tmp_path))
+        sim = around.enter_context(running("sim", "--bus", bus, "--start", "1", folder=tmp_path))
+        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
+        ear = around.enter_context(onlooker(bus))
+        with start(systemd, tmp_path, bus, "tests.service.hanging_program", "drive") as hangs:
+            async with teacher_of(Running(hangs), tmp_path) as we:
+                assert (await we.take()).accepted
+                await until_it_turns(we, ear)
+                await anyio.to_thread.run_sync(wait_for_silence, systemd)
+                hangs.send_signal(signal.SIGABRT)
+                assert await anyio.to_thread.run_sync(hangs.wait) == -signal.SIGABRT
+        await ear.until(stands)
+        ear.forget()
         with start(systemd, tmp_path, bus, "kurt2rt.cli.main") as next_one:
             program = Running(next_one)
-            systemd.wait_for("READY=1")
-            program.wait_for("stands until Go: the robot program was started")
-            while not systemd.hears("WATCHDOG=1", within_s=60.0):
-                pass
-            assert program.end(signal.SIGTERM).exit_code == 0
-        ear.look()
-        assert not any(map(drives, ear.frames))
+            async with teacher_of(program, tmp_path) as we:
+                back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
+                assert (back.action, back.stopped_because) == (None, STARTED)
+                assert back.lessons > 0
+                await anyio.to_thread.run_sync(systemd.wait_for, "WATCHDOG=1")
+                await state_where(we, lambda state: state.tick > back.tick + LOOKED_ON_TICKS)
+                ear.look()
+                assert any(map(is_control, ear.frames))
+                assert not any(map(drives, ear.frames))
+                assert (await we.take()).accepted
+                await until_it_drives(we)  # it could all the time
+            assert (await anyio.to_thread.run_sync(program.end, signal.SIGTERM)).exit_code == 0
+
+
+async def until_it_turns(we: TeacherClient, ear: Onlooker) -> None:
+    """Teach it to drive; the program hangs as soon as it does."""
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(until_it_drives, we)
+        await ear.until(turns)
+        tasks.cancel_scope.cancel()
+
+
+def wait_for_silence(systemd: Manager) -> None:
+    """Until no ping comes any more."""
+    while systemd.hears("WATCHDOG=1", within_s=WATCHDOG_S):
+        pass
