@@ -87,10 +87,22 @@ def read_lessons(
     `beside_its_writer`: it may be this very process that writes it.
     """
     with Journal.beside_its_writer(path) if beside_its_writer else Journal.read_only(path) as journal:
-        require_same(journal.binding, binding_of(settings, task), path, journal.has_lessons_at)
-        entries = journal.entries()
-        fold_entries(journal, entries, radius=math.inf)
-        return [entry.event for entry in entries]
+        return _read_fitting(journal, path, settings, task)[0]
+
+
+def read_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> tuple[list[TeachingEvent], Statistics]:
+    """The same with the statistics of the same moment. Raises KnowledgeError."""
+    with Journal.read_only(path) as journal:
+        return _read_fitting(journal, path, settings, task)
+
+
+def _read_fitting(
+    journal: Journal, path: Path, settings: RobotSettings, task: TaskSettings
+) -> tuple[list[TeachingEvent], Statistics]:
+    require_same(journal.binding, binding_of(settings, task), path, journal.has_lessons_at)
+    entries, statistics = journal.read_all()
+    fold_entries(journal, entries, radius=math.inf)
+    return [entry.event for entry in entries], statistics
 
 
 def binding_of(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:

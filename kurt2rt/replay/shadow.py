@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from hal.settings import SettingsError
 from kurt2rt.critic.settings import load_critic
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.knowledge.opening import read_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.settings import load_mid
@@ -102,9 +101,7 @@ class Shadow:
 def shadow_of(run: Run, knowledge: Path) -> Shadow:
     """The knowledge in a file, which may be that of a robot that runs. Raises RecordingError, KnowledgeError."""
     with run.settings():
-        events = read_lessons(knowledge, run.robot, run.task)
-    with Journal.read_only(knowledge) as journal:
-        statistics = journal.statistics()
+        events, statistics = read_knowledge(knowledge, run.robot, run.task)
     return Shadow(run, events, statistics)
 
 

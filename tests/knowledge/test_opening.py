@@ -1,6 +1,7 @@
 import os
 import shutil
 import sqlite3
+from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -10,11 +11,11 @@ import pytest
 from kurt2rt.critic.features import features
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
-from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
+from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge, read_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed
 from tests.experiments.helpers import ROBOT, short_task
@@ -332,3 +333,21 @@ def test_a_damaged_binding_of_a_level_is_refused(path: Path) -> None:
     Journal.open(path, WITH_CRITIC).close()
     tamper(path, "DELETE FROM binding WHERE key = 'level critic feature_names'")
     assert "table binding is damaged (KeyError('level critic feature_names'))" in refusal(path, WITH_CRITIC)
+
+
+def test_lessons_and_counts_of_a_robot_that_runs_are_of_one_moment(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    task = short_task()
+    with open_knowledge(path, ROBOT, task) as journal:
+        zeros = (0.0,) * len(journal.binding.feature_names)
+        first, second = (RlaCreated(replace(created(number).rla, condition=zeros)) for number in (1, 2))
+        journal.append_and_checkpoint([JournalEntry(first, STAMP)], Statistics({1: 1}))
+
+        def taught_meanwhile(look: Journal) -> Iterator[StoredEntry]:
+            yield from each_entry(look)
+            journal.append_and_checkpoint([JournalEntry(second, STAMP)], Statistics({1: 2, 2: 1}))
+
+        each_entry = Journal.each_entry
+        with monkeypatch.context() as meanwhile:
+            meanwhile.setattr(Journal, "each_entry", taught_meanwhile)
+            assert read_knowledge(path, ROBOT, task) == ([first], Statistics({1: 1}))
+    assert read_knowledge(path, ROBOT, task) == ([first, second], Statistics({1: 2, 2: 1}))
