@@ -16,6 +16,9 @@ _STANDS = {
     Cause.NO_WAY: "no way leads to its goal",
 }
 
+_NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
+"""There is no situation to tell of, or it is the robot itself that has it stand."""
+
 
 def headline(facts: DecisionFacts) -> str:
     """What the robot does, in a few words."""
@@ -43,12 +46,12 @@ def because(facts: DecisionFacts) -> list[str]:
         lines += _held(facts.basic)
     elif facts.cause == Cause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
-        lines += _would(facts.basic)
+        lines += _would(facts)
     elif facts.cause == Cause.UNKNOWN:
         lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
     else:
         lines.append(_stands(facts))
-        lines += _would(facts.basic)
+        lines += _would(facts)
     return lines
 
 
@@ -120,22 +123,44 @@ def _asks_the_way(level: LevelFacts) -> list[str]:
     if nearest is None:
         return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
     if math.isinf(nearest.distance):
-        return ["The robot does not know where it is, so it asks."]
-    return [
-        f"The mid level does not know the way from here: nearest is {who(nearest)}, at {far(nearest.distance)} "
-        f"of R {far(nearest.radius)}."
-    ]
+        return ["The robot is lost: nobody has said where it was set down, so it asks."]
+    return [f"The mid level does not know the way from here: {_nearest(nearest)}."]
 
 
-def _would(level: LevelFacts) -> list[str]:
-    nearest = level.nearest
-    if nearest is None:
+def _would(facts: DecisionFacts) -> list[str]:
+    """What it would do if a stop, its teacher's hand, or whatever had it stand just then, did not."""
+    if facts.cause in _NOTHING_BESIDE:
         return []
-    if nearest.distance <= nearest.radius and not nearest.asks:
-        return [f"By itself it would do as {who(nearest)} says, at {far(nearest.distance)} of R {far(nearest.radius)}."]
-    return [
-        f"By itself it would ask: nearest is {who(nearest)}, at {far(nearest.distance)} of R {far(nearest.radius)}."
-    ]
+    others = [each for each in facts.hindrances if each != facts.cause]
+    unable = next((each for each in others if each in (Cause.BLIND, Cause.UNSAVED)), None)
+    if unable is not None:
+        return [f"By itself it would stand: {_STANDS[Cause(unable)]}."]
+    if facts.asks_at == MID and facts.mid is not None:
+        return [f"By itself it would ask the way: {_why_the_way(facts.mid)}."]
+    nearest, leader = facts.basic.nearest, facts.basic.leader
+    known = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks
+    stands = next(iter(others), None)
+    if Cause.UNATTENDED in others:  # what it does not know it asks, whoever comes
+        stands = Cause.UNATTENDED if known else None
+    if stands is not None:
+        return [f"By itself it would stand: {_STANDS[Cause(stands)]}."]
+    if nearest is None or leader is None:
+        return ["By itself it would ask: nothing was taught yet."]
+    if known:
+        return [f"By itself it would do as {who(leader)} says, at {far(leader.distance)} of R {far(leader.radius)}."]
+    return [f"By itself it would ask: {_nearest(nearest)}."]
+
+
+def _why_the_way(mid: LevelFacts) -> str:
+    if mid.nearest is None:
+        return "the mid level was taught nothing yet"
+    if math.isinf(mid.nearest.distance):
+        return "it is lost, for nobody has said where it was set down"
+    return _nearest(mid.nearest)
+
+
+def _nearest(story: RlaStory) -> str:
+    return f"nearest is {who(story)}, at {far(story.distance)} of R {far(story.radius)}"
 
 
 def _percent(story: RlaStory) -> str:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
-from kurt2rt.layers.decision import Decision, MidDecision
+from kurt2rt.layers.decision import Cause, Decision, MidDecision
+from kurt2rt.planning.step import Course
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import BASIC, MID, Rla, RlaRewarded, SituationNamed
 from kurt2rt.rla.rla_system import Match, RlaSystem
@@ -57,7 +58,36 @@ def facts_of(
         mid=None if mid is None else reader.mid(mid),
         overridden=mid is not None and mid.overridden,
         plan_says="" if decision.plan is None else decision.plan.says,
+        kept=runtime.level.kept,
+        history_frozen=record.situation.history_frozen,
+        learnt_since=_learnt_since(record),
+        hindrances=_hindrances(runtime, record),
     )
+
+
+def _learnt_since(record: TickRecord) -> bool:
+    """What commands taught stood before the decision; all else came of it."""
+    commanded = {result.command_id for result in record.results}
+    return any(event.origin.command_id not in commanded for event in record.events)
+
+
+def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
+    """In the order in which they count."""
+    school, navigator, mid = runtime.school, runtime.navigator, record.decision.mid
+    found = []
+    if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
+        found.append(Cause.BLIND)
+    if record.trouble is not None:
+        found.append(Cause.UNSAVED)
+    if school.needs_a_teacher and not school.authority.present(record.tick):
+        found.append(Cause.UNATTENDED)
+    if navigator is not None and mid is not None and not mid.overridden:
+        match navigator.stands_as:
+            case Course.ARRIVED:
+                found.append(Cause.AT_GOAL)
+            case Course.NO_WAY:
+                found.append(Cause.NO_WAY)
+    return tuple(cause.value for cause in found)
 
 
 class _Reader:
@@ -167,7 +197,15 @@ class _Reader:
             punishments=appraisal.punishments,
             value=float(self._runtime.reinforcement.worth(rla.rla_id)) if rewarded else None,
             asks=rla.asks,
+            leads=self._leads(rla),
         )
+
+    def _leads(self, rla: Rla) -> bool:
+        group = self._system.competitors(rla)
+        if len(group) < 2:
+            return True
+        # Of ways from one place the oldest leads, unless a plan chooses: that one is told as the driver.
+        return rla == (self._runtime.level.would_answer(group) if rla.level == BASIC else group[0])
 
     def _act(self, record: LessonRecord) -> Act:
         origin = record.event.origin

@@ -46,6 +46,8 @@ class RlaStory:
     """What rewards made it worth; None where nobody rewarded."""
     asks: bool
     """Whether its action was withdrawn."""
+    leads: bool = True
+    """Whether, of those on its very condition, it is the one that answers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +89,15 @@ class LevelFacts:
         if self.nearest is None:
             return None
         return next((other for other in self.others if other.action != self.nearest.action), None)
+
+    @property
+    def leader(self) -> RlaStory | None:
+        """Of those on the condition of the nearest the one that answers."""
+        nearest = self.nearest
+        if nearest is None or nearest.leads:
+            return nearest
+        same = (other for other in self.others if other.leads and other.condition == nearest.condition)
+        return next(same, nearest)
 
     def rival_of(self, story: RlaStory) -> RlaStory | None:
         """Whom to compare it with: the nearest; of the nearest itself the next that says something else."""
@@ -132,3 +143,11 @@ class DecisionFacts:
     """Whether a teacher commanded the behaviour, and not the mid level."""
     plan_says: str
     """How it stood with the goal; empty without one."""
+    kept: str = ""
+    """The action whose minimum time was not over: no other one could have taken the wheels. Empty where any could."""
+    history_frozen: bool = True
+    """Whether the averages of the situation stood still."""
+    learnt_since: bool = False
+    """Whether the robot taught itself behind the decision, in the very tick: what is told of its RLAs is of then."""
+    hindrances: tuple[str, ...] = ()
+    """Why it would have stood whatever it knew, but for a stop and its teacher's hand: values of Cause."""

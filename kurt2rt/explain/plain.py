@@ -40,6 +40,7 @@ _STORY = MapOf(
     punishments=_COUNT,
     value=OrNone(_REAL),
     asks=Flag(),
+    leads=Flag(),
 )
 _LEVEL = MapOf(
     LevelFacts,
@@ -85,6 +86,10 @@ _FACTS = MapOf(
     mid=OrNone(_LEVEL),
     overridden=Flag(),
     plan_says=_LINE,
+    kept=_NAME,
+    history_frozen=Flag(),
+    learnt_since=Flag(),
+    hindrances=ManyOf(_NAME, most=8),
 )
 
 

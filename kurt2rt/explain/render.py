@@ -9,7 +9,7 @@ from rich.text import Text
 
 from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
-from kurt2rt.explain.sentences import beside, guarded, mid_lines, number, taught, used, when, would_change
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, number, still_kept, taught, used, when, would_change
 from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.timeline import Kind, Stretch, Timeline, summary
 from kurt2rt.explain.tipping import Tip
@@ -27,7 +27,7 @@ def render_why(facts: DecisionFacts, found: tuple[Tip, ...], where: str) -> Rend
     parts += [plain(line) for line in because(facts)]
     if guarded(facts):
         parts.append(plain(guarded(facts)))
-    if facts.asks_at == MID and facts.mid is not None:
+    if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
         parts += _of_level(facts.mid, None)
     else:
         parts += _of_level(facts.basic, facts.basic.driver)
@@ -35,6 +35,8 @@ def render_why(facts: DecisionFacts, found: tuple[Tip, ...], where: str) -> Rend
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
         parts += [plain(f"  {line}") for line in changes]
+    if still_kept(facts):
+        parts.append(plain(still_kept(facts)))
     above = mid_lines(facts)
     if above:
         parts.append(Text(""))

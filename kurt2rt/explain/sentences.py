@@ -5,6 +5,7 @@ import math
 from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.explain.shares import to_the_border
 from kurt2rt.explain.tipping import Tip
+from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import ASK
 
 
@@ -29,10 +30,19 @@ def beside(level: LevelFacts) -> list[str]:
 def would_change(found: tuple[Tip, ...], most: int = 3) -> list[str]:
     """What would have had to be otherwise for the robot to do something else, the smallest change first."""
     return [
-        f"{tip.sensor} ({tip.label}) at {tip.needed_counts} instead of {tip.counts} counts"
-        f"{_metres(tip)}: {'the robot would ask' if tip.rla is None else who(tip.rla)}"
+        f"{tip.sensor} ({tip.label}) at {tip.needed_counts} instead of {tip.counts} counts{_metres(tip)}: {_then(tip)}"
         for tip in found[:most]
     ]
+
+
+def still_kept(facts: DecisionFacts) -> str:
+    """Why no other action could have been taken just then; empty where one could."""
+    if not facts.kept or facts.cause != Cause.RLA or facts.latched:
+        return ""
+    return (
+        f"{facts.kept} had not driven for its minimum time yet: until then no other action takes its place, "
+        "whatever is seen."
+    )
 
 
 def guarded(facts: DecisionFacts) -> str:
@@ -135,6 +145,14 @@ def _metres(tip: Tip) -> str:
     if abs(tip.distance_m - tip.needed_m) < 0.005:
         return ""
     return f" ({tip.needed_m:.2f} m, not {tip.distance_m:.2f} m)"
+
+
+def _then(tip: Tip) -> str:
+    if tip.rla is None:
+        return "the robot would ask"
+    if tip.action != tip.rla.action:
+        return f"{who(tip.rla)}, once {tip.action} had driven for its minimum time"
+    return who(tip.rla)
 
 
 def _speeds(speeds: tuple[float, float]) -> str:

@@ -72,6 +72,8 @@ class BasicLevel:
         self._choice = choice
         self.nobody_is_asked = False
         """Whether RLAs whose action was withdrawn are passed over, so that their neighbours answer."""
+        self.kept = ""
+        """The action whose minimum time was not over when it was decided last; empty where any could drive."""
         self._decisions = 0
         self._driver: Rla | None = None
         self._drivers_condition: NDArray[np.float64] | None = None
@@ -107,6 +109,7 @@ class BasicLevel:
             self._pursued = self.wanted.behaviour
             self._held.yield_next()
         self._decisions += 1
+        self.kept = self._held.keeps
         match = self.system.match(situation.vector, self._pursued, asking=not self.nobody_is_asked)
         if stand_because is not None:
             return self._stand(stand_because, match)
@@ -125,6 +128,10 @@ class BasicLevel:
         assert driver is not None
         answers = driver.condition == rla.condition or self._inside(driver, situation)
         return self._drive(senses, Cause.HELD, driver, match, answers=answers)
+
+    def would_answer(self, group: tuple[Rla, ...]) -> Rla:
+        """Which of several on one condition, oldest first, answers where that is nearest, chance left out."""
+        return group[0] if self._choice is None else self._choice.likely(group, self._decisions)
 
     def _drive(self, senses: Senses, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
         """What the action at the wheels does; where that one is lost, this level knows no better and asks."""

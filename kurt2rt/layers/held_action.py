@@ -24,13 +24,21 @@ class HeldAction:
         if self._active is not None:
             if action == self.name:
                 return True
-            if self._ticks < self._minimum_ticks and not (self._active.finished or self._active.lost):
+            if self.keeps:
                 return False
         self._active = self._repertoire[action]
         self._active.start()
         self.name = action
         self._ticks = 0
         return True
+
+    @property
+    def keeps(self) -> str:
+        """The action that no other one can take the wheels from now; empty where one can."""
+        active = self._active
+        if active is None or self._ticks >= self._minimum_ticks or active.finished or active.lost:
+            return ""
+        return self.name
 
     @property
     def lost(self) -> bool:

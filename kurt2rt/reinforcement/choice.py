@@ -23,13 +23,14 @@ class Choice:
     def among(self, group: Sequence[Rla], tick: int) -> Rla:
         """The one that answers in a tick, of a group of at least one, oldest first."""
         candidates = [rla for rla in group if not rla.asks] or group
-        oldest = group[0].rla_id
-        chosen, nearest_last = self._chosen.get(oldest, (0, 0))
-        rla = next((each for each in candidates if each.rla_id == chosen), None)
-        if rla is None or tick - nearest_last > self._hold_ticks:
-            rla = self._choose(candidates)
-        self._chosen[oldest] = (rla.rla_id, tick)
+        rla = self._standing(group, candidates, tick) or self._choose(candidates)
+        self._chosen[group[0].rla_id] = (rla.rla_id, tick)
         return rla
+
+    def likely(self, group: Sequence[Rla], tick: int) -> Rla:
+        """Which one `among` would say, chance left out; nothing is chosen by asking."""
+        candidates = [rla for rla in group if not rla.asks] or group
+        return self._standing(group, candidates, tick) or self.best(candidates)
 
     def best(self, group: Sequence[Rla]) -> Rla:
         """The one of most worth that has an action; of equals the newest.
@@ -43,6 +44,13 @@ class Choice:
     def forget(self) -> None:
         """Choose anew: somebody was blamed, or worths have changed otherwise."""
         self._chosen.clear()
+
+    def _standing(self, group: Sequence[Rla], candidates: Sequence[Rla], tick: int) -> Rla | None:
+        """The one that was chosen before, while that stands."""
+        chosen, nearest_last = self._chosen.get(group[0].rla_id, (0, 0))
+        if tick - nearest_last > self._hold_ticks:
+            return None
+        return next((each for each in candidates if each.rla_id == chosen), None)
 
     def _choose(self, candidates: Sequence[Rla]) -> Rla:
         if self.explores and self._chance.random() < self._epsilon:

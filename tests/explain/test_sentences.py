@@ -8,7 +8,7 @@ import pytest
 from hal.robot import WheelSpeeds
 from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import Act, DecisionFacts
-from kurt2rt.explain.sentences import beside, guarded, mid_lines, taught, used, when
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
 from tests.explain.helpers import facts, level, story, with_mid
@@ -16,6 +16,7 @@ from tests.explain.helpers import facts, level, story, with_mid
 NEAR = story(17, (1.0, 2.0), "forward", 4.0)
 NEXT = story(5, (3.0, 2.0), "forward", 6.0)
 ELSE = story(9, (9.0, 2.0), "back", 8.0)
+FAR = replace(NEAR, distance=15.0)
 KNOWN = level((1.0, 6.0), NEAR, NEXT, ELSE)
 
 
@@ -82,12 +83,8 @@ def test_an_action_that_is_lost_asks_inside_r() -> None:
     ("cause", "more", "said"),
     [
         (Cause.STOPPED, {"stopped_because": "Ann stopped it"}, "The robot was stopped: Ann stopped it. It waits"),
-        (Cause.BLIND, {"infrared_age_s": math.inf}, "The infra-red readings never came"),
-        (Cause.BLIND, {"infrared_age_s": 0.07}, "The infra-red readings are 70 ms old"),
         (Cause.UNATTENDED, {}, "The robot knows what to do, but drives only while a teacher is there"),
         (Cause.UNSAVED, {"trouble": "the disk is full"}, "Lessons cannot be saved at the moment (the disk is full)"),
-        (Cause.AT_GOAL, {"plan_says": "arrived at door"}, "arrived at door."),
-        (Cause.NO_WAY, {"plan_says": "no way to door"}, "no way to door."),
     ],
 )
 def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: dict[str, object], said: str) -> None:
@@ -96,6 +93,69 @@ def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: d
     first, second = because(stood)
     assert first.startswith(said)
     assert second == "By itself it would do as RLA 17 (forward) says, at 4 of R 10."
+
+
+@pytest.mark.parametrize(
+    ("cause", "more", "said"),
+    [
+        (Cause.BLIND, {"infrared_age_s": math.inf}, "The infra-red readings never came"),
+        (Cause.BLIND, {"infrared_age_s": 0.07}, "The infra-red readings are 70 ms old"),
+        (Cause.AT_GOAL, {"plan_says": "arrived at door"}, "arrived at door."),
+        (Cause.NO_WAY, {"plan_says": "no way to door"}, "no way to door."),
+    ],
+)
+def test_where_it_stands_of_itself_or_sees_nothing_there_is_nothing_that_it_would_do(
+    cause: Cause, more: dict[str, object], said: str
+) -> None:
+    (line,) = because(standing(cause, hindrances=(cause.value,), **more))
+    assert line.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("hindrances", "would"),
+    [
+        ((Cause.BLIND, Cause.UNATTENDED), "stand: it sees nothing."),
+        ((Cause.UNSAVED,), "stand: lessons cannot be saved."),
+        ((Cause.UNATTENDED, Cause.AT_GOAL), "stand: no teacher is there."),
+        ((Cause.AT_GOAL,), "stand: it is at its goal."),
+        ((Cause.NO_WAY,), "stand: no way leads to its goal."),
+        ((), "do as RLA 17 (forward) says, at 4 of R 10."),
+    ],
+)
+def test_a_stopped_robot_may_have_stood_all_the_same(hindrances: tuple[Cause, ...], would: str) -> None:
+    stood = standing(Cause.STOPPED, hindrances=tuple(each.value for each in hindrances))
+    assert because(stood)[1] == f"By itself it would {would}"
+
+
+def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_drive() -> None:
+    place = replace(story(12, (5.0,), "turn_left", 3.0, 1.0), title="mid-level RLA 12")
+    for mid, why in (
+        (level((1.0,)), "the mid level was taught nothing yet"),
+        (level((1.0,), place), "nearest is mid-level RLA 12 (turn_left), at 3 of R 1"),
+        (
+            level((math.nan,), replace(place, distance=math.inf)),
+            "it is lost, for nobody has said where it was set down",
+        ),
+    ):
+        led = replace(with_mid(facts(KNOWN, Cause.TEACHER.value, "by hand"), replace(mid, driver=None)), asks_at=MID)
+        assert because(led)[1] == f"By itself it would ask the way: {why}."
+
+
+def test_of_several_on_one_condition_the_one_that_leads_is_what_it_would_do() -> None:
+    crowd = level((1.0, 6.0), replace(NEAR, leads=False), replace(NEAR, rla_id=30, title="RLA 30", action="back"))
+    stood = replace(standing(Cause.STOPPED), basic=replace(crowd, driver=None))
+    assert because(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
+
+
+def test_where_it_is_led_and_would_not_know_the_situation_it_would_ask() -> None:
+    for known, said in ((level((1.0, 6.0)), "nothing was taught yet"), (level((1.0, 6.0), FAR), "nearest is RLA 17")):
+        led = replace(facts(known, Cause.TEACHER.value, "by hand"), hindrances=(Cause.UNATTENDED.value,))
+        assert because(led)[1].startswith(f"By itself it would ask: {said}")
+
+
+def test_while_an_action_keeps_its_minimum_time_that_is_said() -> None:
+    assert still_kept(facts(KNOWN)) == ""
+    assert still_kept(replace(facts(KNOWN), kept="forward")).startswith("forward had not driven for its minimum time")
 
 
 def test_a_teacher_who_drives_is_named() -> None:

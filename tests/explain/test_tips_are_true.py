@@ -1,0 +1,74 @@
+"""What is said to change a decision is tried in the replayed robot: the reading is changed, and the tick run again."""
+
+from collections.abc import Iterator
+from copy import deepcopy
+
+import pytest
+
+from kurt2rt.explain.collecting import facts_of
+from kurt2rt.explain.facts import DecisionFacts
+from kurt2rt.explain.tipping import Tip, tips
+from kurt2rt.layers.decision import Cause
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.replay import Replay
+from tests.replay.stories import STORED, STORIES
+
+EVERY_TICKS, EVERY_KEPT = 397, 60
+DECIDED = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
+
+
+def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Replay, TickEntry, DecisionFacts]]:
+    """Some ticks of a stored run, and of those in which an action kept its minimum time: the robot as it was before."""
+    run = read_run(STORED / f"{name}.mcap")
+    replay = Replay(run)
+    kept = 0
+    for entry in run.entries():
+        decided = entry.decision.cause in DECIDED
+        regular = decided and entry.number % every_ticks == 0
+        before = deepcopy(replay) if regular or (decided and entry.number % every_kept == 0) else None
+        record = replay.step(entry)
+        if before is None:
+            continue
+        is_kept = bool(replay.runtime.level.kept)
+        kept += is_kept
+        if regular or is_kept:
+            yield before, entry, facts_of(replay.runtime, record, lambda _: "")
+
+
+def decided_with(before: Replay, entry: TickEntry, tip: Tip, counts: int) -> str | None:
+    """What the robot does in that tick where this sensor reads something else."""
+    names = before.run.robot.infrared.names
+    readings = tuple(
+        counts if name == tip.sensor else reading
+        for name, reading in zip(names, entry.senses.infrared_counts, strict=True)
+    )
+    changed = entry._replace(senses=entry.senses._replace(infrared_counts=readings))
+    return deepcopy(before).step(changed).decision.action
+
+
+@pytest.mark.parametrize("name", STORIES)
+def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str) -> None:
+    heard: dict[str, int] = {}
+    for before, entry, facts in looked_at(name, EVERY_TICKS, EVERY_KEPT):
+        found = tips(facts, before.runtime.definition, before.run.robot.infrared)
+        # The smallest change, and the largest.
+        for tip in {found[0], found[-1]} if found else ():
+            at = entry.tick, tip.sensor, tip.needed_counts
+            assert decided_with(before, entry, tip, tip.needed_counts) == tip.action, at
+            step = 1 if tip.needed_counts > tip.counts else -1
+            assert decided_with(before, entry, tip, tip.needed_counts - step) == facts.action, at
+            kind = "kept" if facts.kept else facts.cause
+            heard[kind] = heard.get(kind, 0) + 1
+    assert heard["rla"] > 5
+    assert heard["kept"] > 2
+
+
+def test_where_the_robot_learnt_behind_its_decision_nothing_is_said() -> None:
+    """It was blamed in that tick: what drove was withdrawn, and is no longer what would answer."""
+    replay = Replay(read_run(STORED / "walls.mcap"))
+    entry, record = next(tick for tick in replay if tick.entry.tick == 3201)
+    facts = facts_of(replay.runtime, record, lambda _: "")
+    assert [type(event).__name__ for event in entry.events] == ["RlaRewarded", "ActionWithdrawn"]
+    assert facts.learnt_since
+    assert tips(facts, replay.runtime.definition, replay.run.robot.infrared) == ()
