@@ -95,7 +95,7 @@ def why(
     if name is not None or robot is not None or port is not None:
         raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
     found = find_run(run, runs or Path(service.recordings))
-    recorded = read_run(found)
+    recorded = read_run(found, in_part=at is None)
     console = console_of(_WIDE)
     if at is None:
         _show_timeline(console, recorded, from_s, math.inf if to_s is None else to_s, limit, picture)
@@ -116,7 +116,7 @@ def _show_timeline(console: Console, run: Run, from_s: float, to_s: float, limit
     known = (lesson.event for lesson in run.lessons)
     with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=None)
-        entries = _counted(run.entries(), lambda read_s: progress.update(bar, completed=read_s))
+        entries = _counted(run.entries_in_part(), lambda read_s: progress.update(bar, completed=read_s))
         timeline = timeline_of(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
     console.print(render_timeline(timeline, _of(run), limit))
     if picture is not None:

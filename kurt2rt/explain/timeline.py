@@ -95,6 +95,8 @@ class Timeline:
     ticks: int
     missed: int
     """Ticks that were skipped."""
+    unrecorded: int = 0
+    """Ticks that were not skipped, but are not in the recording."""
 
     @property
     def from_s(self) -> float:
@@ -143,14 +145,21 @@ class _Reader:
         self._stretches: list[Stretch] = []
         self._notes: list[Note] = []
         self._samples: list[Sample] = []
-        self._ticks = self._missed = 0
-        self._before: int | None = None
+        self._ticks = self._missed = self._unrecorded = 0
+        self._before: TickEntry | None = None
         self._latched = False
         self.lessons = LessonWords()
 
     @property
     def timeline(self) -> Timeline:
-        return Timeline(tuple(self._stretches), tuple(self._notes), tuple(self._samples), self._ticks, self._missed)
+        return Timeline(
+            tuple(self._stretches),
+            tuple(self._notes),
+            tuple(self._samples),
+            self._ticks,
+            self._missed,
+            self._unrecorded,
+        )
 
     def take(self, entry: TickEntry) -> bool:
         """Take in one tick; False behind the end."""
@@ -163,13 +172,16 @@ class _Reader:
             return False
         if at_s < self._from_s:
             return True
+        unrecorded = 0
         if self._before is not None:
-            self._missed += max(0, entry.tick - self._before - 1)
-        self._before = entry.tick
+            unrecorded = max(0, entry.number - self._before.number - 1)
+            self._unrecorded += unrecorded
+            self._missed += max(0, entry.tick - self._before.tick - 1 - unrecorded)
+        self._before = entry
         kind, what = _doing(entry)
         last = self._stretches[-1] if self._stretches else None
-        if last is None or (last.kind, last.what, last.behaviour) != (kind, what, entry.behaviour):
-            if last is not None:
+        if last is None or unrecorded or (last.kind, last.what, last.behaviour) != (kind, what, entry.behaviour):
+            if last is not None and not unrecorded:
                 last.to_s = at_s
             last = Stretch(kind, what, entry.behaviour, at_s, at_s)
             self._stretches.append(last)
@@ -248,6 +260,7 @@ def summary(timeline: Timeline) -> str:
     parts += [_counted(lessons, "lesson")] if lessons else []
     parts += [_counted(alarms, "alarm")] if alarms else []
     parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
+    parts += [f"{timeline.unrecorded} ticks not recorded"] if timeline.unrecorded else []
     return f"{whole_s:.1f} s: {', '.join(parts)}"
 
 

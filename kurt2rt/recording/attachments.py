@@ -10,7 +10,7 @@ from typing import Any
 
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
-from hal.settings import FILES, find_beside, find_config, kept_name, load_settings
+from hal.settings import FILES, Settings, find_beside, find_config, kept_name, load_settings
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
@@ -27,6 +27,8 @@ ROBOT, TASK = "settings/robot.json", "settings/task.json"
 KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
 SETTINGS = "settings/"
 """All that a loader of settings looks for begins so."""
+_ABSENT = (None, [""])
+"""What stands for a key that was left out: nothing, and the one behaviour without a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +48,8 @@ def attachments_of(
 ) -> dict[str, bytes]:
     """All attachments of a run, by name: take them before the first tick. Raises SettingsError, KnowledgeError."""
     attached = {
-        ROBOT: robot.model_dump_json(serialize_as_any=True, exclude_unset=True).encode(),
-        TASK: task.model_dump_json(serialize_as_any=True, exclude_unset=True).encode(),
+        ROBOT: _in_force(robot),
+        TASK: _in_force(task),
         KNOWLEDGE: "".join(
             json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))}) + "\n"
             for each in entries
@@ -117,6 +119,29 @@ def decode_statistics(data: bytes) -> Statistics:
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordingError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
+
+
+def _in_force(settings: Settings) -> bytes:
+    """JSON, with every value that comes from a default: another kurt2rt may have other ones."""
+    every = settings.model_dump(mode="json", serialize_as_any=True)
+    told = settings.model_dump(mode="json", serialize_as_any=True, exclude_unset=True)
+    return json.dumps(_without_absent(every, told)).encode()
+
+
+def _without_absent(every: Any, told: Any) -> Any:
+    """`every` value, but for those that only say that nobody has `told` one: files leave such a key out."""
+    match every:
+        case dict():
+            said = told if isinstance(told, dict) else {}
+            return {
+                key: _without_absent(value, said.get(key))
+                for key, value in every.items()
+                if key in said or value not in _ABSENT
+            }
+        case list():
+            parts = told if isinstance(told, list) else [None] * len(every)
+            return [_without_absent(*each) for each in zip(every, parts, strict=True)]
+    return every
 
 
 def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:

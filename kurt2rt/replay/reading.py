@@ -8,14 +8,15 @@ from kurt2rt.recording.entries import TickEntry, decode_tick
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
-from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader
 from kurt2rt.replay.run import Run
 
-_TICK = "/tick"
 
+def read_run(path: Path, *, in_part: bool = False) -> Run:
+    """The run in a folder, or of which `path` is a segment. Raises RecordingError in a sentence.
 
-def read_run(path: Path) -> Run:
-    """The run in a folder, or of which `path` is a segment. Raises RecordingError in a sentence."""
+    `in_part`: to look at what there is; a run whose beginning is gone will do, which cannot be replayed.
+    """
     try:
         segments = segments_in(path) if path.is_dir() else _beside(path)
     except OSError as error:
@@ -23,11 +24,17 @@ def read_run(path: Path) -> Run:
     if not segments:
         raise RecordingError(f"{path}: holds no recorded run; give a folder with files such as 0001.mcap")
     files = _Files([SegmentReader(each) for each in segments])
-    head = files.readers[0].head()
+    head = files.head(in_part=in_part)
     if RUN_METADATA not in head.metadata:
         raise RecordingError(f"{segments[0]}: says of no run of kurt2rt, or is torn at its very beginning")
     return Run(
-        str(path), decode_head(head.metadata[RUN_METADATA]), head.attachments, files.ticks, files.torn, files.ends_s
+        str(path),
+        decode_head(head.metadata[RUN_METADATA]),
+        head.attachments,
+        files.ticks,
+        files.torn,
+        files.ends_s,
+        in_part=in_part,
     )
 
 
@@ -37,15 +44,23 @@ class _Files:
     def __init__(self, readers: Sequence[SegmentReader]) -> None:
         self.readers = readers
 
+    def head(self, *, in_part: bool) -> SegmentHead:
+        """That of the first segment; `in_part`: of the first one that has kept it."""
+        heads = (reader.head() for reader in self.readers)
+        first = next(heads)
+        if in_part and RUN_METADATA not in first.metadata:
+            return next((head for head in heads if RUN_METADATA in head.metadata), first)
+        return first
+
     def ticks(self) -> Iterator[TickEntry]:
         for reader in self.readers:
-            for message in reader.messages({_TICK}):
+            for message in reader.messages({TICK_TOPIC}):
                 yield decode_tick(message.data)
 
     def ends_s(self) -> float:
         """Time of the last tick that can be read; 0 where there is none."""
         for reader in reversed(self.readers):
-            newest = deque(reader.messages({_TICK}), maxlen=1)
+            newest = deque(reader.messages({TICK_TOPIC}), maxlen=1)
             if newest:
                 return decode_tick(newest[0].data).now_s
         return 0.0

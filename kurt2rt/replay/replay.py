@@ -28,7 +28,8 @@ class Replay:
     """A runtime as it was at the start of a run, and its ticks, one after the other."""
 
     def __init__(self, run: Run) -> None:
-        """Raises RecordingError where this program cannot build what the run began with."""
+        """Raises RecordingError where that is gone, or this program cannot build it."""
+        run.require_beginning()
         self.run = run
         self._replayed = Replayed()
         self.runtime = self._build()
@@ -93,5 +94,10 @@ def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
             break
         last = ReplayedTick(entry, replay.step(entry))
     if last is None:
-        raise RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")
+        raise no_tick(run)
     return replay.runtime, last
+
+
+def no_tick(run: Run) -> RecordingError:
+    """What there is to say of a run without ticks, once they were looked for."""
+    return RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")

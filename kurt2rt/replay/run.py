@@ -37,10 +37,13 @@ class Run:
         read: Callable[[], Iterator[TickEntry]],
         torn: Callable[[], str] = str,
         ends_s: Callable[[], float] = float,
+        *,
+        in_part: bool = False,
     ) -> None:
         """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
 
-        `ends_s`: time of the last tick, for those who tell how far they are.
+        `ends_s`: time of the last tick, for those who tell how far they are. `in_part`: to look at what there is; one
+        whose beginning is gone will do, which cannot be replayed.
 
         Raises RecordingError where what a replay needs is missing or damaged.
         """
@@ -50,6 +53,7 @@ class Run:
         self._read = read
         self._torn = torn
         self._ends_s = ends_s
+        self._in_part = in_part
         self._gap = ""
         self.began_s: float | None = None
         """Time of the runtime's clock at the first tick; None until that was read."""
@@ -87,8 +91,9 @@ class Run:
 
     @cached_property
     def lessons(self) -> tuple[KnownLesson, ...]:
-        """What had been taught before the run."""
-        return tuple(read_lessons_of(self._attachments[KNOWLEDGE]))
+        """What had been taught before the run; nothing where its beginning is gone."""
+        data = self._attachments.get(KNOWLEDGE)
+        return () if data is None else tuple(read_lessons_of(data))
 
     @cached_property
     def saved(self) -> Statistics:
@@ -109,6 +114,19 @@ class Run:
                 ) from error
             yield
 
+    def require_beginning(self) -> None:
+        """Raises RecordingError where what was known at the start is not there, so that nothing can be replayed."""
+        first = None if KNOWLEDGE in self._attachments else next(self._read(), None)
+        if first is None or first.number == 1:
+            self._require(KNOWLEDGE)
+            return
+        minutes = (first.number - 1) * self.robot.can.cycle_s / 60
+        raise RecordingError(
+            f"{self.name}: is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make "
+            "room for later ones, and with them what was known at the start, so it can neither be replayed nor one of "
+            "its decisions be explained. kurt2rt why without --at tells what is there; raise recordings_mb for the next"
+        )
+
     def entries(self) -> Iterator[TickEntry]:
         """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
         self._gap = ""
@@ -124,13 +142,36 @@ class Run:
                 return
             yield entry
 
+    def entries_in_part(self) -> Iterator[TickEntry]:
+        """All ticks that are there, also behind a gap; `trouble` tells of those that are not. Raises RecordingError."""
+        self._gap = ""
+        newest = missing = gaps = 0
+        for entry in self._read():
+            if newest == 0:
+                self.began_s = entry.now_s
+            if entry.number > newest + 1 and newest == 0 and KNOWLEDGE not in self._attachments:
+                self._gap = self._beginning_gone(entry.number - 1)
+            elif entry.number > newest + 1:
+                missing += entry.number - newest - 1
+                gaps += 1
+            newest = entry.number
+            yield entry
+        if gaps:
+            where = "in one place" if gaps == 1 else f"in {gaps} places"
+            told = f"{missing} ticks {where} are not in the recording"
+            self._gap = f"{self._gap}; {told}" if self._gap else told
+
+    def _beginning_gone(self, ticks: int) -> str:
+        minutes = ticks * self.robot.can.cycle_s / 60
+        return (
+            f"the first {ticks} ticks of the run ({minutes:.1f} min) are gone, which made room for later ones; times "
+            "are those from the first tick that is there"
+        )
+
     def _check(self) -> None:
-        missing = [name for name in (ROBOT, TASK, KNOWLEDGE) if name not in self._attachments]
-        if missing:
-            raise RecordingError(
-                f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
-                "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
-            )
+        self._require(ROBOT, TASK)
+        if not self._in_part:
+            self.require_beginning()
         trouble = trouble_of({name: len(data) for name, data in self._attachments.items()})
         if trouble:
             raise RecordingError(f"{self.name}: {trouble}; give a run as kurt2rt run recorded it")
@@ -146,3 +187,11 @@ class Run:
                 f"{self.name}: was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
                 f"({'.'.join(map(str, problem['loc']))}: {problem['msg']}); replay it with that one"
             ) from error
+
+    def _require(self, *names: str) -> None:
+        missing = [name for name in names if name not in self._attachments]
+        if missing:
+            raise RecordingError(
+                f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
+                "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
+            )

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.replay.comparing import Difference, compare
-from kurt2rt.replay.replay import Replay, ReplayedTick
+from kurt2rt.replay.replay import Replay, ReplayedTick, no_tick
 from kurt2rt.replay.run import Run
 
 
@@ -32,7 +32,10 @@ class Verdict:
 
 
 def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> Verdict:
-    """Replay a run up to the first difference. `on_tick` is called for each tick. Raises RecordingError."""
+    """Replay a run up to the first difference. `on_tick` is called for each tick.
+
+    Raises RecordingError, also for a run without ticks: nothing is the same there.
+    """
     ticks = knowledge = 0
     lasted_s = 0.0
     differences: list[Difference] = []
@@ -45,4 +48,6 @@ def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> V
         knowledge += tick.entry.knowledge is not None
         if on_tick is not None:
             on_tick(tick)
+    if not ticks and not differences:
+        raise no_tick(run)
     return Verdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)

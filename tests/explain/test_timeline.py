@@ -73,7 +73,15 @@ def test_the_way_is_that_of_the_wheels(lesson: Lesson) -> None:
 
 def test_ticks_that_were_missed_are_counted(lesson: Lesson) -> None:
     entries = lesson.entries
-    assert timeline_of([*entries[:100], *entries[103:]], ROBOT).missed == 3
+    late = [entry._replace(number=entry.number - 3) for entry in entries[103:]]
+    assert timeline_of([*entries[:100], *late], ROBOT).missed == 3
+
+
+def test_ticks_that_the_recording_lacks_are_not_called_missed(lesson: Lesson) -> None:
+    entries = lesson.entries
+    timeline = timeline_of([*entries[:100], *entries[103:]], ROBOT)
+    assert (timeline.missed, timeline.unrecorded) == (0, 3)
+    assert "3 ticks not recorded" in summary(timeline)
 
 
 def test_a_run_without_ticks_says_so() -> None:

@@ -77,3 +77,21 @@ class RecordedDesk:
         self.run(100, counts)
         self.recorder.write_waiting()
         self.recorder.tend()
+
+
+def late_run(recordings: Path) -> Path:
+    """A run whose first files had to make room for later ones, as those of a robot that is never switched off."""
+    desk = RecordedDesk(recordings, budget=Budget(150_000, segment_bytes=40_000))
+    desk.recorder.tend()
+    for second in range(30):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    return recordings / NAME
+
+
+def empty_run(recordings: Path) -> Path:
+    """A run that ended before its first tick."""
+    desk = RecordedDesk(recordings)
+    desk.recorder.tend()
+    desk.recorder.close()
+    return recordings / NAME

@@ -1,5 +1,6 @@
 """What a replay needs stands in the run: settings as they were in force, and what was known."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,16 @@ def test_a_task_comes_back_as_it_was_in_force(task: str) -> None:
     attached = attachments_of(robot, settings)
     assert TaskSettings.model_validate_json(attached[TASK]) == settings
     assert RobotSettings.model_validate_json(attached[ROBOT]) == robot
+
+
+def test_values_that_come_from_a_default_are_in_force_too() -> None:
+    """Or a replay by a kurt2rt with other defaults would go by those."""
+    task = load_task("wall_following")
+    assert {"reinforcement", "critic", "mid", "behaviours"}.isdisjoint(task.model_fields_set)
+    kept = json.loads(attachments_of(load_robot(), task)[TASK])
+    assert kept["reinforcement"] == task.reinforcement.model_dump(mode="json", exclude_none=True)
+    assert kept["critic"] == task.critic
+    assert kept.keys().isdisjoint({"mid", "behaviours"})  # which must not be there where they mean nothing
 
 
 def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_path: Path) -> None:

@@ -1,0 +1,24 @@
+"""`kurt2rt why` and `kurt2rt replay` of runs of which not all is there."""
+
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine
+from tests.recording.desk_recording import empty_run, late_run
+
+
+def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_when(
+    kurt2rt: CommandLine, tmp_path: Path
+) -> None:
+    late = late_run(tmp_path)
+    said = kurt2rt("why", late)
+    assert said.exit_code == 0, said.err
+    assert "The recording: the first " in said.out
+    assert "ticks not recorded" not in said.out
+    refused = " ".join(kurt2rt.refused("why", late, "--at", "3").split())
+    assert "so it can neither be replayed nor one of its decisions be explained" in refused
+    assert "is there from its tick" in kurt2rt.refused("replay", late)
+
+
+def test_a_run_without_a_tick_is_not_the_same_and_never_the_newest(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "holds no tick; the program ended before the first one" in kurt2rt.refused("replay", empty_run(tmp_path))
+    assert "no recorded run is there" in kurt2rt.refused("replay", "--runs", tmp_path)
