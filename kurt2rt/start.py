@@ -54,11 +54,21 @@ class Start:
         self._hold = hold
         self._again_s = again_s
         self._missing = {each.name: "" for each in needs}
+        self._there = {each.name: anyio.Event() for each in needs}
 
     @property
     def missing(self) -> tuple[str, ...]:
         """What is not there, each with the reason once it is known."""
         return tuple(f"{name}: {why}" if why else name for name, why in self._missing.items())
+
+    @property
+    def waits_for(self) -> str:
+        """What is known to be missing and why, in a line; of what is only being looked for, the names."""
+        return "; ".join([each for each in self.missing if ": " in each] or self.missing)
+
+    async def until(self, name: str) -> None:
+        """Return when one of the needs is there."""
+        await self._there[name].wait()
 
     async def wait(self) -> None:
         """Return when all is there. Raises what no waiting mends."""
@@ -80,6 +90,7 @@ class Start:
             await anyio.sleep(self._again_s)
         if self._missing.pop(need.name):
             self._tell(f"{need.name} is there")
+        self._there[need.name].set()
         self._say()
 
     def _note(self, name: str, why: str) -> None:

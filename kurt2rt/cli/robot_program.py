@@ -25,6 +25,7 @@ from kurt2rt.cli.printer import Printer
 from kurt2rt.cli.status_line import doing, status_line, troubles
 from kurt2rt.ending import Ending, leave
 from kurt2rt.health.instruments import Instruments
+from kurt2rt.health.status_socket import socket_of, tell_waiting
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.can_log import CanLog, open_can_log
@@ -43,6 +44,7 @@ from kurt2rt.upkeep import Upkeep
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Of systemd's journal, by how the line looks on a screen."""
+_KNOWLEDGE = "knowledge"
 _WAITS = "the robot program waits for what it needs"
 
 
@@ -171,7 +173,7 @@ class RobotProgram:
         loop = asyncio.get_running_loop()
         needs = (
             Need("bus", self._take_robot),
-            Need("knowledge", self._take_knowledge),
+            Need(_KNOWLEDGE, self._take_knowledge),
             Need("teachers' keys", self._pair),
             Need("network", self._look_at_port),
             *((Need("recordings", self._look_at_recordings),) if self._orders.record else ()),
@@ -179,13 +181,21 @@ class RobotProgram:
         start = Start(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
         with self._upkeep.ending.first(self._brake, lambda: loop.call_soon_threadsafe(waiting.cancel)):
             try:
-                await start.wait()
+                async with anyio.create_task_group() as tasks:
+                    tasks.start_soon(self._tell_waiting, start)
+                    await start.wait()
+                    tasks.cancel_scope.cancel()
             except BaseException:
                 if self._knowledge is not None:
                     self._knowledge.journal.close()
                 raise
         if self._opened is not None:
             self._opened.robot.release()
+
+    async def _tell_waiting(self, start: Start) -> None:
+        """As soon as the knowledge is this program's: the status of whoever else teaches on in it is not ours."""
+        await start.until(_KNOWLEDGE)
+        await tell_waiting(socket_of(Path(self._service.knowledge)), lambda: start.waits_for)
 
     def _hold(self) -> None:
         """Have a robot stand that is there before the rest, and look whether its bus still is."""

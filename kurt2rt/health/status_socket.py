@@ -4,8 +4,8 @@ import json
 import os
 import socket
 import threading
-from collections.abc import AsyncIterator, Iterator
-from contextlib import asynccontextmanager, contextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager, suppress
 from pathlib import Path
 
 import anyio
@@ -21,6 +21,7 @@ _MOST_READERS = 8
 _TAKEN_WITHIN_S = 2.0
 _REMOVED_WITHIN_S = 0.2
 _LONGEST_LINE = 65_536
+_WAITS_FOR = "waits_for"
 
 
 def socket_of(knowledge: Path) -> Path:
@@ -72,24 +73,43 @@ class StatusSocket:
             self._readers -= 1
 
 
+async def tell_waiting(path: Path, waits_for: Callable[[], str]) -> None:
+    """Tell every reader what the program still waits for, until cancelled; its status then takes the socket's place.
+
+    `waits_for`: in a line with what to do.
+    """
+
+    async def tell(reader: SocketStream) -> None:
+        async with reader:
+            with suppress(anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):  # gone, or too slow
+                with anyio.fail_after(_TAKEN_WITHIN_S):
+                    await reader.send(json.dumps({_WAITS_FOR: waits_for()}).encode() + b"\n")
+
+    with suppress(OSError):  # the status will tell why nothing is told there
+        with short_name(path) as short:
+            listener = await anyio.create_unix_listener(short, mode=0o600)
+        async with listener:
+            await listener.serve(tell)
+
+
 def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
     """Each report of the program that tells at `path`, the newest first; waits for each, so not in a loop of events.
 
-    Raises StatusError when none runs, when nothing comes for `patience_s`, or for another version's words.
+    Raises StatusError when none runs, when it still waits for something, when nothing comes for `patience_s`, or for
+    another version's words.
     """
-    with socket.socket(socket.AF_UNIX) as reader:
+    with socket.socket(socket.AF_UNIX) as reader, reader.makefile("rb") as lines:
         reader.settimeout(patience_s)
         try:
             with short_name(path) as short:
                 reader.connect(short)
         except (FileNotFoundError, ConnectionRefusedError) as error:
             raise StatusError(
-                f"no robot program runs with the knowledge {path.with_suffix('')}, or it still waits for something; "
+                f"no robot program runs with the knowledge {path.with_suffix('')}, or it waits for its disk; "
                 "start one with kurt2rt run, or name its knowledge file"
             ) from error
         except OSError as error:
             raise StatusError(f"{path}: cannot be read ({error}); be the user of the robot program") from error
-        lines = reader.makefile("rb")
         while True:
             try:
                 line = lines.readline(_LONGEST_LINE)
@@ -103,7 +123,10 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
             if not line:
                 raise StatusError(f"{path}: the robot program has ended")
             try:
-                yield report_of(json.loads(line))
+                told = json.loads(line)
+                if isinstance(told, dict) and _WAITS_FOR in told:
+                    raise StatusError(f"the robot program stands and waits for {told[_WAITS_FOR]}")
+                yield report_of(told)
             except (ValueError, WireError) as error:
                 raise StatusError(
                     f"{path}: is not understood ({error}); use the kurt2rt that the robot runs"

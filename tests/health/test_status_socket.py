@@ -15,7 +15,7 @@ import pytest
 from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
-from kurt2rt.health.status_socket import StatusSocket, reports_at, short_name, socket_of
+from kurt2rt.health.status_socket import StatusSocket, reports_at, short_name, socket_of, tell_waiting
 from kurt2rt.health.watch import HealthWatch
 from tests.health.reports import ILL, WELL
 
@@ -126,6 +126,21 @@ async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> No
         await until(lambda: is_told(path))
         assert await following(reports_at(path, PATIENCE_S)) == WELL
         tasks.cancel_scope.cancel()
+
+
+async def test_a_program_that_waits_says_for_what_until_there_is_a_status(path: Path) -> None:
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(tell_waiting, path, lambda: "bus: no such interface; set it up")
+        await until(lambda: is_told(path))
+        for _ in range(2):
+            with pytest.raises(StatusError, match="stands and waits for bus: no such interface; set it up"):
+                await anyio.to_thread.run_sync(lambda: list(reports_at(path, PATIENCE_S)))
+        assert mode_of(path) & 0o077 == 0
+        tasks.cancel_scope.cancel()
+    watch = Watch()
+    watch.tell(WELL)
+    async with serving(watch, path):
+        assert await following(reports_at(path, PATIENCE_S)) == WELL
 
 
 def test_where_none_runs_the_reader_is_told_what_to_do(path: Path) -> None:

@@ -22,6 +22,8 @@ from hal.tap import Tap
 from kurt2rt.app import OpenedRobot
 from kurt2rt.channel.credentials import LOCAL, local_pairing
 from kurt2rt.cli.robot_program import Orders, RobotProgram
+from kurt2rt.health.error import StatusError
+from kurt2rt.health.status_socket import reports_at, socket_of
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient
@@ -193,16 +195,7 @@ def test_whatever_comes_last_the_robot_stands_until_it_is_told_to_go(
             monkeypatch.setenv(name, value)
         here = around.enter_context(rig())
         world = World(tmp_path, here, taught, around)
-        program = RobotProgram(
-            ORDERS,
-            world.read,
-            SETTINGS,
-            TASK,
-            opening=world.open_robot,
-            console=Console(file=world.log),
-            give_up=None,
-            again_s=0.01,
-        )
+        program = program_in(world)
 
         def story() -> None:
             world.log.wait_for("waits for bus", "waits for knowledge", "waits for network")
@@ -220,3 +213,40 @@ def test_whatever_comes_last_the_robot_stands_until_it_is_told_to_go(
 
         play(program, story)
         assert here.control_payloads()[-1] == BRAKE
+
+
+def test_its_status_says_what_it_waits_for(tmp_path: Path, taught: bytes) -> None:
+    with ExitStack() as around:
+        world = World(tmp_path, around.enter_context(rig()), taught, around)
+        program = program_in(world)
+        knowledge = Path(world.service.knowledge)
+
+        def story() -> None:
+            world.log.wait_for("waits for bus", "waits for knowledge", "waits for network")
+            assert "no robot program runs" in status_of(knowledge)
+            world.comes("disk")
+            while "no robot program runs" in status_of(knowledge):  # it is told a moment later
+                pass
+            assert "stands and waits for bus: bus 'can0': no such network interface; network: " in status_of(knowledge)
+
+        play(program, story)
+
+
+def program_in(world: World) -> RobotProgram:
+    return RobotProgram(
+        ORDERS,
+        world.read,
+        SETTINGS,
+        TASK,
+        opening=world.open_robot,
+        console=Console(file=world.log),
+        give_up=None,
+        again_s=0.01,
+    )
+
+
+def status_of(knowledge: Path) -> str:
+    """Why another program gets no report."""
+    with pytest.raises(StatusError) as told:
+        next(reports_at(socket_of(knowledge), 60.0))
+    return str(told.value)
