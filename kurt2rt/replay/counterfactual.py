@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from kurt2rt.layers.decision import Cause
-from kurt2rt.replay.replay import Replay, ReplayedTick
+from kurt2rt.replay.replay import Replay, ReplayedTick, no_tick
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Answer, Answers, Shadow, answers_then
 from kurt2rt.rla.rla import BASIC, MID
@@ -82,7 +82,10 @@ def counterfactual(
         )
         if on_tick is not None:
             on_tick(tick)
-    return count.result(run.trouble)
+    found = count.result(run.trouble)
+    if not found.ticks:
+        raise no_tick(run)
+    return found
 
 
 class _Count:

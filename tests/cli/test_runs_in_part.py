@@ -2,8 +2,11 @@
 
 from pathlib import Path
 
+from hal.robot_settings import load_robot
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.tasks.settings import load_task
 from tests.cli.helpers import CommandLine
-from tests.recording.desk_recording import empty_run, late_run
+from tests.recording.desk_recording import NAME, empty_run, late_run
 
 
 def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_when(
@@ -21,4 +24,7 @@ def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_w
 
 def test_a_run_without_a_tick_is_not_the_same_and_never_the_newest(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "holds no tick; the program ended before the first one" in kurt2rt.refused("replay", empty_run(tmp_path))
+    knowledge = tmp_path / "some.knowledge"
+    open_knowledge(knowledge, load_robot(), load_task("wall_following")).close()
+    assert "holds no tick" in kurt2rt.refused("replay", tmp_path / NAME, "--with", knowledge)
     assert "no recorded run is there" in kurt2rt.refused("replay", "--runs", tmp_path)
