@@ -1,8 +1,9 @@
 """How two knowledge files differ: lessons that stand in one of them only, and RLAs."""
 
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
-from kurt2rt.knowledge.kinship import Taught, common_rows, kinship_of
+from kurt2rt.knowledge.kinship import Mark, Taught, common_rows
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import BASIC, Rla
 
@@ -30,28 +31,27 @@ class Difference:
 
 def difference(a: Taught, b: Taught) -> Difference:
     """Compare two files of the same features: RLAs are the same where the same lesson made them."""
-    kinship = kinship_of(a, b)
-    stands_a = {record.event.origin.command_id: record for record in a.system.lessons if not record.undone}
-    stands_b = {
-        kinship.lessons.get(record.event.origin.command_id): record for record in b.system.lessons if not record.undone
-    }
-    rlas_a = {rla.rla_id: rla for rla in living(a)}
-    rlas_b = {kinship.rlas.get(rla.rla_id, -rla.rla_id): rla for rla in living(b)}
+    stands_a = {a.marks[record.event.origin.command_id] for record in a.system.lessons if not record.undone}
+    stands_b = {b.marks[record.event.origin.command_id] for record in b.system.lessons if not record.undone}
+    rlas_a = {a.rla_marks[rla.rla_id]: rla for rla in living(a)}
+    rlas_b = {b.rla_marks[rla.rla_id]: rla for rla in living(b)}
     return Difference(
         common_rows(a.entries, b.entries),
-        tuple(record for name, record in stands_a.items() if name not in stands_b),
+        _standing_only_in(a, stands_b),
+        _standing_only_in(b, stands_a),
+        tuple(rla for mark, rla in rlas_a.items() if mark not in rlas_b),
+        tuple(rla for mark, rla in rlas_b.items() if mark not in rlas_a),
         tuple(
-            record
-            for record in b.system.lessons
-            if not record.undone and kinship.lessons.get(record.event.origin.command_id) not in stands_a
+            (rla, rlas_b[mark]) for mark, rla in rlas_a.items() if mark in rlas_b and rlas_b[mark].action != rla.action
         ),
-        tuple(rla for rla_id, rla in rlas_a.items() if rla_id not in rlas_b),
-        tuple(rla for rla_id, rla in rlas_b.items() if rla_id not in rlas_a),
-        tuple(
-            (rla, rlas_b[rla_id])
-            for rla_id, rla in rlas_a.items()
-            if rla_id in rlas_b and rlas_b[rla_id].action != rla.action
-        ),
+    )
+
+
+def _standing_only_in(one: Taught, other: AbstractSet[Mark]) -> tuple[LessonRecord, ...]:
+    return tuple(
+        record
+        for record in one.system.lessons
+        if not record.undone and one.marks[record.event.origin.command_id] not in other
     )
 
 

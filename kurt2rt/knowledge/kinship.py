@@ -1,29 +1,47 @@
-"""Two knowledge files that began as one: where they part, and which lesson of the one is which of the other."""
+"""Two knowledge files that began as one: which lesson of the one is which of the other."""
 
 import json
 import math
 import zlib
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.lesson_book import LessonRecord, Pile, pile_of
-from kurt2rt.rla.rla import (
-    ActionReplaced,
-    ActionWithdrawn,
-    Credit,
-    KnowledgeMerged,
-    Lesson,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-    SituationNamed,
-    TeachingEvent,
-)
+from kurt2rt.rla.rla import RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
+
+PileMark = tuple[str, str] | tuple[str, int, int]
+"""A pile in whichever file: a level and a name, or what created its RLA, and the how manieth of such it was."""
+
+NO_PILE: PileMark = ("", "")
+"""Of events that are no lessons."""
+
+
+class Mark(NamedTuple):
+    """Which event it is, in whichever file, and however it is called there."""
+
+    command_id: str
+    """The one that it was taught under."""
+    content: int
+    """CRC-32 of what it says, without ids that are of its file."""
+    pile: PileMark
+    is_reward: bool
+
+    def name(self, taken: Iterable[str]) -> str:
+        """Command id for it in a file where those are taken."""
+        taken, other = frozenset(taken), f"{self.command_id}~{self.content:08x}"
+        name, number = self.command_id, 0
+        while name in taken:
+            number += 1
+            name = other if number == 1 else f"{other}-{number}"
+        return name
 
 
 @dataclass(frozen=True)
@@ -41,11 +59,52 @@ class Taught:
         """All lessons by their command id."""
         return {record.event.origin.command_id: record for record in self.system.lessons}
 
+    @cached_property
+    def marks(self) -> Mapping[str, Mark]:
+        """Of all lessons, in their order, by the command id that they have here."""
+        marks, created = dict[str, Mark](), Counter[tuple[str, int]]()
+        of_rla = dict[Pile, PileMark]()
+        for record in self.system.lessons:
+            lesson = record.event
+            first, content = _as_first_taught(lesson)
+            pile = pile_of(lesson)
+            if isinstance(lesson, RlaCreated):
+                of_rla[pile] = (first, content, created[first, content])
+                created[first, content] += 1
+            mark = pile if isinstance(pile, tuple) else of_rla[pile]
+            marks[lesson.origin.command_id] = Mark(first, content, mark, isinstance(lesson, RlaRewarded))
+        return marks
+
+    @cached_property
+    def piles(self) -> Mapping[PileMark, Pile]:
+        """All piles that ever were, in their order."""
+        return {
+            self.marks[record.event.origin.command_id].pile: pile_of(record.event) for record in self.system.lessons
+        }
+
+    @cached_property
+    def rla_marks(self) -> Mapping[int, PileMark]:
+        """Of all RLAs that ever lived, by their ids here."""
+        return {pile: mark for mark, pile in self.piles.items() if isinstance(pile, int)}
+
 
 def read_taught(journal: Journal) -> Taught:
     """Read a file whole. Raises KnowledgeError."""
     entries = tuple(journal.entries())
     return Taught(journal, entries, fold_entries(journal, entries, radius=math.inf))
+
+
+def mark_of(event: TeachingEvent) -> Mark:
+    """Of an event that is no lesson."""
+    return Mark(*_as_first_taught(event), NO_PILE, is_reward=False)
+
+
+def named(event: TeachingEvent, command_id: str) -> TeachingEvent:
+    """The same event by another command id."""
+    origin = replace(event.origin, command_id=command_id)
+    if isinstance(event, RlaCreated):
+        return RlaCreated(replace(event.rla, origin=origin))
+    return replace(event, origin=origin)
 
 
 def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int:
@@ -58,108 +117,40 @@ def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int
     return same
 
 
-def known_rows(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> int:
-    """How many rows of `theirs` were taken account of in `mine`: the common ones, or all up to the last merge."""
-    known = common_rows(mine, theirs)
-    for entry in mine:
-        event = entry.event
-        if (
-            isinstance(event, KnowledgeMerged)
-            and known < event.rows <= len(theirs)
-            and theirs[event.rows - 1].event.origin.command_id == event.last
-        ):
-            known = event.rows
-    return known
-
-
-def standing_piles(lessons: Iterable[LessonRecord]) -> dict[Pile, tuple[str, ...]]:
-    """Command ids of the lessons that stand, by what they are about; the order in which each was put on the other."""
-    piles: dict[Pile, tuple[str, ...]] = {}
+def standing_piles(lessons: Iterable[LessonRecord], marks: Mapping[str, Mark]) -> dict[PileMark, tuple[Mark, ...]]:
+    """The lessons that stand, by what they are about; the order in which each was put on the other."""
+    piles = dict[PileMark, tuple[Mark, ...]]()
     for record in lessons:
         if not record.undone:
-            pile = pile_of(record.event)
-            piles[pile] = (*piles.get(pile, ()), record.event.origin.command_id)
+            mark = marks[record.event.origin.command_id]
+            piles[mark.pile] = (*piles.get(mark.pile, ()), mark)
     return piles
 
 
-@dataclass
-class Kinship:
-    """How lessons and RLAs of another file (theirs) are called in this one (mine)."""
-
-    lessons: dict[str, str] = field(default_factory=dict)
-    """Command id there -> here, of the lessons that are in both."""
-    rlas: dict[int, int] = field(default_factory=dict)
-    """RLA id there -> here, of those that were created in both, whether they live or not."""
-    taken: frozenset[str] = frozenset()
-    """All command ids of mine."""
-
-    def pile(self, theirs: Pile) -> Pile | None:
-        """The same pile here; None for an RLA that is not here."""
-        return self.rlas.get(theirs) if isinstance(theirs, int) else theirs
-
-    def name_for(self, lesson: Lesson) -> str:
-        """Command id under which a lesson of theirs is, or would be, here: its own, where no other one has that."""
-        own = lesson.origin.command_id
-        if own in self.lessons:
-            return self.lessons[own]
-        return own if own not in self.taken else _another_name(lesson)
-
-    def here(self, lesson: Lesson, command_id: str, new_id: int | None = None) -> Lesson:
-        """A lesson of theirs as it is here, its RLA under its id here: `new_id` for one that it creates.
-
-        Raises KeyError for an RLA that is not here. Credits of such ones are left out.
-        """
-        origin = replace(lesson.origin, command_id=command_id)
-        match lesson:
-            case RlaCreated(rla):
-                rla_id = self.rlas[rla.rla_id] if new_id is None else new_id
-                return RlaCreated(replace(rla, rla_id=rla_id, origin=origin))
-            case RlaRewarded():
-                credits_ = tuple(
-                    Credit(self.rlas[each.rla_id], each.change, each.before and self.rlas[each.before])
-                    for each in lesson.credits
-                    if each.rla_id in self.rlas and (each.before is None or each.before in self.rlas)
-                )
-                return replace(lesson, rla_id=self.rlas[lesson.rla_id], origin=origin, credits=credits_)
-            case ActionReplaced() | ActionWithdrawn() | RlaDeleted():
-                return replace(lesson, rla_id=self.rlas[lesson.rla_id], origin=origin)
-            case SituationNamed():
-                return replace(lesson, origin=origin)
+def lessons_up_to(taught: Taught, rows: int) -> tuple[LessonRecord, ...]:
+    """The lessons as they were when the file had that many rows."""
+    if rows == len(taught.entries):
+        return taught.system.lessons
+    system = RlaSystem(taught.system.dimensions, math.inf)
+    system.apply_all(entry.event for entry in taught.entries[:rows])
+    return system.lessons
 
 
-def kinship_of(mine: Taught, theirs: Taught) -> Kinship:
-    """Find each lesson of theirs in mine: in the common beginning, or brought over by a merge in either direction."""
-    here = {record.event.origin.command_id: record.event for record in mine.system.lessons}
-    kinship = Kinship(taken=frozenset(entry.event.origin.command_id for entry in mine.entries))
-    for record in theirs.system.lessons:
-        lesson = record.event
-        own = lesson.origin.command_id
-        for name in (own, _another_name(lesson)):
-            same = here.get(name)
-            if same is not None and _is_same(lesson, same, kinship, name):
-                kinship.lessons[own] = name
-                if isinstance(lesson, RlaCreated) and isinstance(same, RlaCreated):
-                    kinship.rlas[lesson.rla.rla_id] = same.rla.rla_id
-                break
-    return kinship
+def _as_first_taught(event: TeachingEvent) -> tuple[str, int]:
+    """Command id that an event was taught under, before it was brought anywhere, and the CRC-32 of its content."""
+    first = event.origin.command_id
+    content = _content(event, first)
+    while "~" in first:
+        before, _, check = first.rpartition("~")
+        of_before = _content(event, before)
+        if check.partition("-")[0] != f"{of_before:08x}":
+            break
+        first, content = before, of_before
+    return first, content
 
 
-def _is_same(theirs: Lesson, mine: Lesson, kinship: Kinship, name: str) -> bool:
-    new_id = mine.rla.rla_id if isinstance(mine, RlaCreated) and isinstance(theirs, RlaCreated) else None
-    try:
-        return _told(kinship.here(theirs, name, new_id)) == _told(mine)
-    except KeyError:
-        return False
-
-
-def _told(lesson: TeachingEvent) -> TeachingEvent:
-    """Without its credits: those of RLAs that are not here were left out."""
-    return replace(lesson, credits=()) if isinstance(lesson, RlaRewarded) else lesson
-
-
-def _another_name(lesson: Lesson) -> str:
-    """A command id that is the same whenever this lesson is brought where its own id is another one's."""
-    content = json.loads(encode_event(lesson))
+def _content(event: TeachingEvent, command_id: str) -> int:
+    content = json.loads(encode_event(event)) | {"command_id": command_id}
     for of_its_file in ("version", "rla_id", "credits"):
         content.pop(of_its_file, None)
-    return f"{lesson.origin.command_id}~{zlib.crc32(json.dumps(content, sort_keys=True).encode()):08x}"
+    return zlib.crc32(json.dumps(content, sort_keys=True).encode())

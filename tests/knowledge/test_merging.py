@@ -33,7 +33,19 @@ from kurt2rt.rla.rla import (
 )
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.rla.space import Space
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded, session, undone
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    begun,
+    created,
+    deleted,
+    origin,
+    replaced,
+    rewarded,
+    session,
+    undone,
+)
 from tests.knowledge.test_writer import largest_file
 
 BORDERS = Borders({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
@@ -266,6 +278,171 @@ def test_on_a_disk_without_room_all_of_a_merge_is_written_or_nothing(mine: Path,
     assert failed
     bring(mine, theirs)
     assert the_same(mine, theirs)
+
+
+def both_taught(mine: Path, theirs: Path) -> None:
+    """One lesson in each since they parted, so that what comes here has another number there; then merged there."""
+    append(mine, at(4, FAR, "left", "mine-4"))
+    append(theirs, at(4, -FAR, "right", "theirs-4"))
+    bring(theirs, mine)
+    assert actions(theirs) == {1: "forward", 2: "forward", 3: "forward", 4: "right", 5: "left"}
+
+
+def test_what_was_undone_here_after_they_took_it_does_not_come_back_from_there(mine: Path, theirs: Path) -> None:
+    both_taught(mine, theirs)
+    append(mine, undone("mine-4"))
+    merged = bring(mine, theirs)
+    assert (merged.lessons, merged.redone, merged.conflicts) == (1, 0, ())
+    assert actions(mine) == {1: "forward", 2: "forward", 3: "forward", 5: "right"}
+    bring(theirs, mine)
+    assert the_same(mine, theirs)
+
+
+def test_what_they_took_and_undid_is_undone_here(mine: Path, theirs: Path) -> None:
+    both_taught(mine, theirs)
+    append(theirs, undone("mine-4"))
+    assert bring(mine, theirs).undone == 1
+    assert the_same(mine, theirs)
+
+
+def test_what_they_took_and_corrected_is_corrected_here_without_a_conflict(mine: Path, theirs: Path) -> None:
+    both_taught(mine, theirs)
+    append(theirs, replaced(5, "back", "left"))
+    assert bring(mine, theirs).conflicts == ()
+    assert actions(mine)[4] == "back"
+    assert the_same(mine, theirs)
+
+
+def test_what_came_by_way_of_a_third_file_and_was_undone_here_is_a_conflict(
+    mine: Path, theirs: Path, tmp_path: Path
+) -> None:
+    third = tmp_path / "third"
+    branch(mine, third, None, stamp=STAMP)
+    append(mine, at(4, FAR, "left", "mine-4"))
+    append(theirs, at(4, -FAR, "right", "theirs-4"))
+    bring(third, mine)
+    bring(theirs, third)
+    append(mine, undone("mine-4"))
+    (conflict,) = bring(mine, theirs).conflicts
+    assert (conflict.mine, conflict.theirs) == ("RLA 4 is gone", "RLA 5 says left")
+    assert 4 not in actions(mine)
+
+
+def test_where_each_was_merged_into_an_older_other_a_change_of_both_is_a_conflict(
+    mine: Path, theirs: Path, tmp_path: Path
+) -> None:
+    append(mine, at(4, FAR, "left", "mine-4"))
+    append(theirs, at(4, -FAR, "right", "theirs-4"))
+    older = tmp_path / "older" / "branch.knowledge"
+    branch(theirs, older, None, stamp=STAMP)
+    bring(theirs, mine)
+    bring(mine, older)
+    assert the_same(mine, theirs)
+    append(theirs, undone("mine-4"))
+    append(mine, replaced(4, "back", "left"))
+    assert len(bring(mine, theirs).conflicts) == 1
+
+
+def test_praise_comes_also_where_an_older_one_was_undone(mine: Path, tmp_path: Path) -> None:
+    append(mine, rewarded(1, 1, "old"))
+    branch(mine, tmp_path / "new", None, stamp=STAMP)
+    append(mine, undone("old"))
+    append(tmp_path / "new", rewarded(1, -1, "blame"))
+    bring(mine, tmp_path / "new")
+    assert folded(mine).appraisal(1) == (0, 1)
+
+
+def test_praise_that_was_taken_back_there_is_taken_back_here_from_under_a_newer_one(mine: Path, tmp_path: Path) -> None:
+    append(mine, rewarded(1, 1, "old"))
+    theirs = tmp_path / "new"
+    branch(mine, theirs, None, stamp=STAMP)
+    append(mine, rewarded(1, -1, "blame"))
+    append(theirs, undone("old"))
+    merged = bring(mine, theirs)
+    assert (merged.lessons, merged.undone, merged.redone) == (0, 1, 0)
+    assert folded(mine).appraisal(1) == (0, 1)
+    bring(theirs, mine)
+    assert the_same(mine, theirs)
+
+
+def test_praise_under_a_correction_of_mine_stays_and_that_is_told(mine: Path, tmp_path: Path) -> None:
+    append(mine, rewarded(1, 1, "old"))
+    theirs = tmp_path / "new"
+    branch(mine, theirs, None, stamp=STAMP)
+    append(mine, replaced(1, "left", "forward"))
+    append(theirs, undone("old"))
+    (told,) = bring(mine, theirs).left_out
+    assert told == "RLA 1 rewarded by Hertha was taken back there, and stays under what came here since"
+    assert bring(mine, theirs).left_out == ()
+
+
+def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, theirs: Path) -> None:
+    append(mine, replaced(1, "left", "forward"))
+    of_another = RlaRewarded(2, -1, 390, origin("of-2"), (Credit(2, -0.5), Credit(1, -0.25)))
+    append(theirs, rewarded(1, -1, "of-1"), of_another)
+    merged = bring(mine, theirs)
+    assert merged.left_out == ("RLA 1 punished there by Hertha for forward; it is RLA 1 here and says left",)
+    system = folded(mine)
+    assert (system.appraisal(1), system.appraisal(2)) == ((0, 0), (0, 1))
+    record = system.lesson("of-2")
+    assert record is not None
+    assert isinstance(record.event, RlaRewarded)
+    assert record.event.credits == (Credit(2, -0.5),)
+    assert bring(mine, theirs).left_out == ()
+
+
+def test_praise_here_of_what_was_taken_back_there_is_a_conflict(mine: Path, theirs: Path) -> None:
+    append(theirs, replaced(1, "left", "forward"))
+    bring(mine, theirs)
+    append(mine, rewarded(1, 1, "praise"))
+    append(theirs, undone("replace-1-left"))
+    (conflict,) = bring(mine, theirs).conflicts
+    assert conflict.where == "praised or blamed here for what was taken back there"
+    bring(mine, theirs, "theirs")
+    assert (actions(mine)[1], folded(mine).appraisal(1)) == ("forward", (0, 0))
+
+
+def test_a_plan_and_a_refused_merge_leave_the_file_as_it_is_and_a_plan_needs_no_robot_to_end(
+    mine: Path, tmp_path: Path
+) -> None:
+    theirs = tmp_path / "with-critic"
+    with Journal.open(theirs, WITH_CRITIC) as journal:
+        journal.append([JournalEntry(created(number), STAMP) for number in (1, 2, 3)])
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    whole = mine.read_bytes()
+    with Journal.open(mine, BINDING):
+        assert bring(mine, theirs, dry_run=True).lessons == 1
+    assert mine.read_bytes() == whole
+    append(mine, replaced(1, "right", "forward"))
+    whole = mine.read_bytes()
+    assert len(bring(mine, theirs).conflicts) == 1
+    assert mine.read_bytes() == whole
+
+
+def test_a_lesson_that_cannot_stand_again_comes_as_a_new_one(mine: Path, theirs: Path) -> None:
+    append(mine, rewarded(1, 1, "praise"))
+    append(theirs, replaced(1, "left", "forward"))
+    bring(mine, theirs)
+    append(mine, undone("replace-1-left"), undone("praise"))
+    append(theirs, replaced(1, "right", "left"))
+    assert len(bring(mine, theirs).conflicts) == 1
+    bring(mine, theirs, "theirs")
+    assert actions(mine)[1] == "right"
+    bring(theirs, mine)
+    assert the_same(mine, theirs)
+
+
+def test_lessons_and_sessions_of_the_same_ids_are_there_once_each_when_merged_both_ways(
+    mine: Path, theirs: Path
+) -> None:
+    append(mine, at(4, FAR, "left", "same"), *session(100))
+    append(theirs, at(4, -FAR, "right", "same"), *session(20))
+    bring(mine, theirs)
+    bring(theirs, mine)
+    assert the_same(mine, theirs)
+    for path in (mine, theirs):
+        assert sorted(actions(path).values()) == ["forward", "forward", "forward", "left", "right"]
+        assert folded(path).teaching_ticks == 120
 
 
 Step = tuple[int, int]

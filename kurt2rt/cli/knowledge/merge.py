@@ -39,6 +39,8 @@ def merge(
     merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
     for conflict in merged.conflicts:
         say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {conflict.where}")
+    for reward in merged.left_out:
+        say(f"left out  {reward}")
     if merged.conflicts and prefer is None:
         say(f"{file}: nothing was changed; say --prefer mine or --prefer theirs")
         raise typer.Exit(1)

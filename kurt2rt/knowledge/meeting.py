@@ -1,0 +1,146 @@
+"""When two knowledge files last knew of each other: what changed since then changed on one side, or on both."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from kurt2rt.knowledge.entry import StoredEntry
+from kurt2rt.knowledge.kinship import Mark, PileMark, Taught, common_rows, lessons_up_to, standing_piles
+from kurt2rt.rla.rla import KnowledgeMerged
+
+Side = Literal["mine", "theirs"]
+Way = Literal["stays", "as there", "both"]
+"""What becomes of a pile here; both: it changed on both sides."""
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """A moment at which one of them took account of all that the other one held."""
+
+    mine: int
+    """Rows of mine then, what was brought in among them."""
+    theirs: int
+    shown: Side
+    """Whose lessons the other one saw."""
+
+    def is_after(self, other: "Meeting") -> bool:
+        """Whether it knew all that was known at the other one."""
+        return self != other and self.mine >= other.mine and self.theirs >= other.theirs
+
+
+@dataclass(frozen=True)
+class Base:
+    """What both knew at a meeting."""
+
+    piles: Mapping[PileMark, tuple[Mark, ...]]
+    """As they stood in the file that was shown."""
+    mine: frozenset[Mark]
+    """All lessons that mine held then, undone ones among them."""
+    theirs: frozenset[Mark]
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """One pile as it stands in both files."""
+
+    mine: tuple[Mark, ...]
+    theirs: tuple[Mark, ...]
+
+    @property
+    def without_rewards(self) -> "Sides":
+        """Praise and blame left out."""
+        return Sides(lessons_of(self.mine), lessons_of(self.theirs))
+
+
+def lessons_of(pile: Sequence[Mark]) -> tuple[Mark, ...]:
+    """The lessons of a pile that are neither praise nor blame: those whose order matters."""
+    return tuple(mark for mark in pile if not mark.is_reward)
+
+
+def last_meetings(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[Meeting, ...]:
+    """Where they parted, or the last merge of one into the other; two where each was merged into an older other."""
+    common = common_rows(mine, theirs)
+    found = [Meeting(common, common, "mine")]
+    for row, seen in _merges(mine, theirs):
+        found.append(Meeting(max(row, common), max(seen, common), "theirs"))
+    for row, seen in _merges(theirs, mine):
+        found.append(Meeting(max(seen, common), max(row, common), "mine"))
+    found = list({(each.mine, each.theirs): each for each in found}.values())
+    return tuple(each for each in found if not any(other.is_after(each) for other in found))
+
+
+def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[tuple[int, int]]:
+    """Rows of `into` that say that `other` was brought in there, and how many rows that had."""
+    return [
+        (row, entry.event.rows)
+        for row, entry in enumerate(into, start=1)
+        if isinstance(entry.event, KnowledgeMerged)
+        and entry.event.rows <= len(other)
+        and other[entry.event.rows - 1].event.origin.command_id == entry.event.last
+    ]
+
+
+def base_of(meeting: Meeting, mine: Taught, theirs: Taught) -> Base:
+    """What both knew at that meeting."""
+    here, there = lessons_up_to(mine, meeting.mine), lessons_up_to(theirs, meeting.theirs)
+    shown = standing_piles(here, mine.marks) if meeting.shown == "mine" else standing_piles(there, theirs.marks)
+    return Base(
+        shown,
+        frozenset(mine.marks[record.event.origin.command_id] for record in here),
+        frozenset(theirs.marks[record.event.origin.command_id] for record in there),
+    )
+
+
+class Parting:
+    """How both went on since they met."""
+
+    def __init__(self, mine: Taught, theirs: Taught) -> None:
+        self._bases = [base_of(each, mine, theirs) for each in last_meetings(mine.entries, theirs.entries)]
+        self._here, self._there = frozenset(mine.marks.values()), frozenset(theirs.marks.values())
+
+    def way_of(self, pile: PileMark, sides: Sides) -> Way:
+        """Who changed the lessons of a pile, praise and blame apart."""
+        sides = sides.without_rewards
+        ways = {self._way(lessons_of(base.piles.get(pile, ())), base, sides) for base in self._bases}
+        return ways.pop() if len(ways) == 1 else "both"
+
+    def rewards_that_came(self, pile: PileMark, sides: Sides) -> list[Mark]:
+        """Praise and blame that are new there, or stand there again. Of one that came on another way an undo stays."""
+        before = {mark for base in self._bases for mark in base.piles.get(pile, ())}
+        late = self._here - frozenset[Mark]().union(*(base.mine for base in self._bases))
+        return [
+            mark
+            for mark in sides.theirs
+            if mark.is_reward and mark not in before and mark not in sides.mine and mark not in late
+        ]
+
+    def rewards_that_went(self, pile: PileMark, sides: Sides) -> list[Mark]:
+        """Praise and blame that stand here and were taken back there."""
+        before = {mark for base in self._bases for mark in base.piles.get(pile, ())}
+        late = self._there - frozenset[Mark]().union(*(base.theirs for base in self._bases))
+        return [
+            mark
+            for mark in sides.mine
+            if mark.is_reward and mark in self._there and mark not in sides.theirs and (mark in before or mark in late)
+        ]
+
+    def _way(self, before: tuple[Mark, ...], base: Base, sides: Sides) -> Way:
+        mine, theirs = sides.mine, sides.theirs
+        if mine == theirs:
+            return "stays"
+        # A lesson that came on another way than this meeting, and was undone since, was changed although nothing shows.
+        undone_there = (self._there - base.theirs) & (set(mine) - set(theirs))
+        undone_here = (self._here - base.mine) & (set(theirs) - set(mine))
+        if theirs == before and not undone_there:
+            return "stays"
+        if mine == before and not undone_here:
+            return "as there"
+        if _goes_on(theirs, mine, self._here | frozenset(before)):
+            return "as there"
+        return "stays" if _goes_on(mine, theirs, self._there | frozenset(before)) else "both"
+
+
+def _goes_on(longer: tuple[Mark, ...], shorter: tuple[Mark, ...], known: frozenset[Mark]) -> bool:
+    """Whether one is the other and more, of which that one's file never heard."""
+    size = len(shorter)
+    return longer[:size] == shorter and not known.intersection(longer[size:])
