@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, NamedTuple, Protocol
 
+from kurt2rt.channel.allowance import Allowance
 from kurt2rt.channel.command_of import command_of
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
@@ -53,6 +54,8 @@ MOVING_TICKS = 100
 COMMAND_TICKS = 300
 _SEEKING = (SeekRequest, SeekRlaRequest, SeekLikeRequest)
 _MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest, *_SEEKING)
+MOST_WHYS, WHY_EVERY_TICKS = 5, 10
+"""An answer takes about a millisecond of the loop; a device says it again every 0.1 s until it is answered."""
 LONGEST_WAIT_S = 3.0
 """Then a lesson that is not durable yet is answered as unsaved."""
 
@@ -108,6 +111,7 @@ class Reception:
         self._longest_wait_s = longest_wait_s
         self._health = health
         self._why = why
+        self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
         self._outcomes = Outcomes()
         self._newest: dict[str, Sender] = {}
         self._under_way: set[asyncio.Task[None]] = set()
@@ -143,6 +147,8 @@ class Reception:
                 health = self._health()
                 return Reply(Verdict.DONE, {"health": None if health is None else plain_of(health)})
             case WhyRequest():
+                if not self._whys.take(sender.device, self.tick):
+                    return refusal("refused", "asked too often; ten times a second is enough", self.tick)
                 return Reply(Verdict.DONE, {"why": self._why()})
             case WorldRequest():
                 return self._world()

@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.planning.step import Course
-from kurt2rt.rla.lesson_book import LessonRecord, rla_of
-from kurt2rt.rla.rla import BASIC, MID, Rla, RlaRewarded, SituationNamed
+from kurt2rt.rla.lesson_book import LessonRecord
+from kurt2rt.rla.rla import BASIC, MID, Rla, RlaRewarded
 from kurt2rt.rla.rla_system import Match, RlaSystem
 from kurt2rt.runtime import Runtime
 from kurt2rt.tick import TickRecord
+
+_PASSED_OVER = 12
+"""RLAs whose action was withdrawn are not told of where nobody is asked: so many more are looked at."""
 
 StampOf = Callable[[str], str]
 """When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
@@ -30,7 +33,8 @@ def facts_of(
 ) -> DecisionFacts:
     """What the decision of `record`, the newest tick of `runtime`, rested on.
 
-    `most`: how many RLAs behind the nearest are told of each level; None: all. With 8 it takes less than a millisecond.
+    `most`: how many RLAs behind the nearest are told of each level; None: all. With few it takes about a millisecond,
+    however many there are.
     `uses_before`: of RLAs how often they had been used when they got the action that they have.
     """
     decision, school = record.decision, runtime.school
@@ -99,7 +103,6 @@ class _Reader:
         self._stamp_of = stamp_of
         self._most = most
         self._uses_before = uses_before
-        self._lessons = _by_rla(self._system.lessons)
 
     def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
         vector, system = record.situation.vector, self._system
@@ -138,7 +141,7 @@ class _Reader:
         *,
         symbols: bool = False,
     ) -> LevelFacts:
-        ranking = self._system.nearest_first(vector, behaviour, level)
+        ranking = self._ranking(level, behaviour, vector, driver_id)
         distances: Mapping[int, float] = dict(ranking)
         nearest = None if match is None else self._story(match.rla, match.radius, match.distance)
         driver_rla = None if driver_id is None else self._system.get(driver_id)
@@ -165,8 +168,21 @@ class _Reader:
             nearest=nearest,
             driver=driver,
             others=tuple(others),
-            count=len(ranking),
+            count=self._system.competing(behaviour, level),
         )
+
+    def _ranking(
+        self, level: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
+    ) -> tuple[tuple[int, float], ...]:
+        """The nearest, as many as will be told and may be passed over; all where the driver is farther off."""
+        if self._most is not None:
+            ranking = self._system.nearest_first(vector, behaviour, level, most=self._most + 1 + _PASSED_OVER)
+            ids = {rla_id for rla_id, _ in ranking}
+            rlas = [self._system.get(rla_id) for rla_id in ids]
+            speak = sum(rla is not None and not rla.asks for rla in rlas)
+            if (driver_id is None or driver_id in ids) and speak > self._most:
+                return ranking
+        return self._system.nearest_first(vector, behaviour, level)
 
     def _radius_of(self, rla: Rla) -> float:
         if rla.radius is not None:
@@ -177,7 +193,7 @@ class _Reader:
     def _story(self, rla: Rla, radius: float, distance: float) -> RlaStory:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
-        lessons = self._lessons.get(rla.rla_id, [])
+        lessons = self._system.lessons_about(rla.rla_id)
         acts = tuple(self._act(each) for each in lessons)
         uses = counted.uses.get(rla.rla_id, 0)
         before = self._uses_before.get(rla.rla_id)
@@ -222,11 +238,3 @@ class _Reader:
 
 def _with_words(facts: LevelFacts, here: tuple[str, ...], there: tuple[str, ...]) -> LevelFacts:
     return replace(facts, words=here, nearest_words=there)
-
-
-def _by_rla(lessons: tuple[LessonRecord, ...]) -> dict[int, list[LessonRecord]]:
-    found: dict[int, list[LessonRecord]] = {}
-    for record in lessons:
-        if not isinstance(record.event, SituationNamed):
-            found.setdefault(rla_of(record.event), []).append(record)
-    return found

@@ -74,6 +74,8 @@ class LessonBook:
         """Number of lessons that stand."""
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
+        self._places_of: dict[Pile, list[int]] = {}
+        """Of all lessons of a pile, those that do not stand among them."""
         self._standing_of: dict[Pile, list[int]] = {}
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA that ever lived."""
@@ -104,6 +106,10 @@ class LessonBook:
         place = self._place.get(command_id)
         return None if place is None else self._records[place]
 
+    def about(self, pile: Pile) -> tuple[LessonRecord, ...]:
+        """All lessons about an RLA, or that gave a name, oldest first, those that were undone among them."""
+        return tuple(self._records[place] for place in self._places_of.get(pile, ()))
+
     def enter(self, lesson: Lesson) -> None:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)
@@ -111,6 +117,7 @@ class LessonBook:
         pile = self._standing_of.setdefault(pile_of(lesson), [])
         self._below.append(pile[-1] if pile else None)
         pile.append(place)
+        self._places_of.setdefault(pile_of(lesson), []).append(place)
         self._newest.append(place)
         if isinstance(lesson, RlaCreated):
             self._home_of[lesson.rla.rla_id] = (lesson.rla.behaviour, lesson.rla.level)

@@ -146,6 +146,10 @@ class RlaSystem:
         """All lessons, oldest first, those that were undone among them."""
         return self._book.records
 
+    def lessons_about(self, rla_id: int) -> tuple[LessonRecord, ...]:
+        """All lessons about one RLA, oldest first, those that were undone among them."""
+        return self._book.about(rla_id)
+
     @property
     def standing_lessons(self) -> int:
         """Number of lessons that stand, rewards among them."""
@@ -199,21 +203,32 @@ class RlaSystem:
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
     def nearest_first(
-        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, most: int | None = None
     ) -> tuple[tuple[int, float], ...]:
-        """Ids and distances of all RLAs of a level and behaviour, the nearest to a situation (d,) first.
+        """Ids and distances of the RLAs of a level and behaviour, the nearest to a situation (d,) first.
 
-        Looks at all of them: to explain with, not for every tick.
+        `most`: so many of them; None: all. Looks at all of them: to explain with, not for every tick.
         """
         contest = self._contests.get((level, behaviour))
         if contest is None or not contest.ids:
             return ()
         distances = contest.index.distances(situation * contest.weights)
-        order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
+        if most is None or most >= len(distances):
+            order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
+        else:
+            # Only those as near as the last one that is wanted are put in order; NaN, far off, comes behind all.
+            limit = np.partition(distances, most - 1)[most - 1]
+            near = np.flatnonzero((distances <= limit) | np.isnan(limit))
+            order = near[np.argsort(distances[near], kind="stable")][:most].tolist()
         return tuple(
             (contest.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place]))
             for place in order
         )
+
+    def competing(self, behaviour: str = "", level: str = BASIC) -> int:
+        """How many RLAs of a level and behaviour compete."""
+        contest = self._contests.get((level, behaviour))
+        return 0 if contest is None else len(contest.ids)
 
     def _match_passing_over(self, contest: Contest, situation: NDArray[np.float64]) -> Match | None:
         """The nearest that has an action: looks at all, for it is seldom needed."""

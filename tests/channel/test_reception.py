@@ -488,6 +488,20 @@ async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_ma
         assert report_of(told["health"]) == ILL
 
 
+async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: Desk) -> None:
+    """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
+    desk.run(1)
+    at_once = [(await desk.ask(WhyRequest(), "bob")).verdict for _ in range(20)]
+    assert at_once.count(Verdict.DONE) == 5
+    assert set(at_once[5:]) == {Verdict.CONFLICT}
+    assert (await desk.ask(WhyRequest(), "ann")).verdict is Verdict.DONE
+    answered = 0
+    for _ in range(100):
+        desk.run(1)
+        answered += (await desk.ask(WhyRequest(), "bob")).verdict is Verdict.DONE
+    assert answered == 10
+
+
 async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: Desk) -> None:
     await desk.ask(desk.answer("forward"))
     told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))

@@ -290,3 +290,33 @@ def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: l
             assert together.match(here, behaviour) == system.match(here, behaviour)  # bit for bit
     assert together.standing_lessons == sum(system.standing_lessons for system in alone.values())
     assert [rla.rla_id for rla in together.rlas] == sorted(rla.rla_id for rla in together.rlas)
+
+
+@pytest.mark.parametrize("most", [1, 2, 3, 5, 8, 20])
+def test_the_nearest_few_are_the_first_of_all_in_order_of_nearness_and_age(most: int) -> None:
+    places = (3.0, -3.0, 0.0, 7.0, 3.0, 1.0, -1.0, 3.0)
+    system = system_of(*(created(place, (at, 0.0)) for place, at in enumerate(places, start=1)))
+    assert system.competing() == len(places)
+    whole = system.nearest_first(np.array([0.0, 0.0]))
+    assert [rla_id for rla_id, _ in whole] == [3, 6, 7, 1, 2, 5, 8, 4]
+    assert system.nearest_first(np.array([0.0, 0.0]), most=most) == whole[:most]
+    lost = system.nearest_first(np.array([math.nan, 0.0]), most=most)
+    assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
+
+
+def test_the_lessons_about_one_rla_are_told_apart_from_all_others() -> None:
+    lessons = (
+        created(1, (0.0, 0.0)),
+        created(2, (1.0, 0.0)),
+        replaced(1, "back", "forward"),
+        rewarded(2, 1),
+        replaced(1, "stand", "back", "again"),
+    )
+    system = system_of(*lessons)
+    system.apply(undone(lessons[4].origin.command_id))
+    assert [(each.event, each.undone) for each in system.lessons_about(1)] == [
+        (lessons[0], False),
+        (lessons[2], False),
+        (lessons[4], True),
+    ]
+    assert system.lessons_about(3) == ()
