@@ -93,9 +93,12 @@ def kept_settings(folder: Path) -> Iterator[None]:
 
 
 def kept_name(name_or_path: str) -> str:
-    """File name under which a file is kept: the shipped one for settings, or one of its own for each path."""
+    """File name under which a file is kept: the shipped one for settings, or one of its own for each path.
+
+    It leads out of no folder, whatever it is made of: who wrote a recorded run may have meant ill.
+    """
     path = Path(name_or_path)
-    if not path.suffix:
+    if not path.suffix and path.name == name_or_path:
         return f"{name_or_path}.yaml"
     return f"{path.stem}-{hashlib.sha256(name_or_path.encode()).hexdigest()[:8]}{path.suffix}"
 

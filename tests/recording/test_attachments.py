@@ -7,7 +7,7 @@ import pytest
 
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, load_robot
-from hal.settings import SettingsError, find_config, kept_settings
+from hal.settings import SettingsError, find_config, kept_name, kept_settings
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.attachments import (
@@ -71,6 +71,17 @@ def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tm
     mine.unlink()
     with kept_settings(tmp_path / "kept" / "settings"):
         assert find_config("situations", str(mine)).is_file()
+
+
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "../../secret", "/etc/secret", "~/secret", "a/b", "/etc/secret.yaml", "x/"]
+)
+def test_whatever_a_recording_names_is_looked_for_in_its_own_folder(name: str) -> None:
+    kept = kept_name(name)
+    assert "/" not in kept
+    assert kept not in (".", "..")
+    assert kept_name(name) != kept_name(f"{name}/other")
+    assert kept_name("walls") == "walls.yaml"
 
 
 def test_lessons_come_back_with_their_stamps() -> None:
