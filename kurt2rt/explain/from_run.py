@@ -44,6 +44,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
     """
     replay = Replay(run)
     stamps = {lesson.event.origin.command_id: lesson.stamped_at for lesson in run.lessons}
+    reckoned: dict[str, str] = {}
     counted = replay.runtime.statistics
     uses_before: dict[int, int] = {}
     began_s = last_s = 0.0
@@ -56,7 +57,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
             break
         last_s = entry.now_s - began_s
         for event in entry.events:
-            stamps[event.origin.command_id] = _stamp(run.head.started_at, last_s)
+            reckoned[event.origin.command_id] = _stamp(run.head.started_at, last_s)
             _note_uses(event, counted.uses, uses_before, replay.runtime.level.system)
         newest = replay.step(entry)
         if difference is None:
@@ -66,6 +67,8 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
     if newest is None:
         raise RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")
     runtime = replay.runtime
+    # As the journal has it; a recording that does not say so says to the second when the tick was.
+    stamps.update({**reckoned, **run.stamps_of(reckoned.keys())})
     facts = facts_of(runtime, newest, lambda command_id: stamps.get(command_id, ""), uses_before=uses_before)
     found = tips(facts, runtime.definition, runtime.robot.infrared)
     return Explained(facts, found, last_s, difference)

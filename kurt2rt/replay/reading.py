@@ -1,5 +1,6 @@
 """Reads a recorded run from its files."""
 
+import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -10,6 +11,8 @@ from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader
 from kurt2rt.replay.run import Run
+
+_LESSON_TOPIC = "/lesson"
 
 
 def read_run(path: Path, *, in_part: bool = False) -> Run:
@@ -35,6 +38,7 @@ def read_run(path: Path, *, in_part: bool = False) -> Run:
         files.torn,
         files.ends_s,
         in_part=in_part,
+        stamps=files.stamps,
     )
 
 
@@ -56,6 +60,14 @@ class _Files:
         for reader in self.readers:
             for message in reader.messages({TICK_TOPIC}):
                 yield decode_tick(message.data)
+
+    def stamps(self) -> Iterator[tuple[str, str]]:
+        """Command ids of lessons that became durable, and when. Leaves alone what `torn` says of the ticks."""
+        for reader in self.readers:
+            for message in SegmentReader(reader.path).messages({_LESSON_TOPIC}):
+                content = json.loads(message.data)
+                if "acknowledged" in content and "stamped_at" in content:
+                    yield content["acknowledged"], content["stamped_at"]
 
     def ends_s(self) -> float:
         """Time of the last tick that can be read; 0 where there is none."""

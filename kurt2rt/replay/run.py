@@ -1,6 +1,6 @@
 """A recorded run, as it is read."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
 
@@ -39,11 +39,13 @@ class Run:
         ends_s: Callable[[], float] = float,
         *,
         in_part: bool = False,
+        stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(()),
     ) -> None:
         """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
 
         `ends_s`: time of the last tick, for those who tell how far they are. `in_part`: to look at what there is; one
-        whose beginning is gone will do, which cannot be replayed.
+        whose beginning is gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that
+        became durable, and when.
 
         Raises RecordingError where what a replay needs is missing or damaged.
         """
@@ -54,6 +56,7 @@ class Run:
         self._torn = torn
         self._ends_s = ends_s
         self._in_part = in_part
+        self._stamps = stamps
         self._gap = ""
         self.began_s: float | None = None
         """Time of the runtime's clock at the first tick; None until that was read."""
@@ -94,6 +97,20 @@ class Run:
         """What had been taught before the run; nothing where its beginning is gone."""
         data = self._attachments.get(KNOWLEDGE)
         return () if data is None else tuple(read_lessons_of(data))
+
+    def stamps_of(self, command_ids: Collection[str]) -> dict[str, str]:
+        """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
+
+        Reads until all are found. Raises RecordingError.
+        """
+        found: dict[str, str] = {}
+        if command_ids:
+            for command_id, stamp in self._stamps():
+                if command_id in command_ids:
+                    found[command_id] = stamp
+                    if len(found) == len(command_ids):
+                        break
+        return found
 
     @cached_property
     def saved(self) -> Statistics:
