@@ -45,6 +45,7 @@ def test_every_start_left_a_recording_of_its_own(result: SoakResult, folder: Pat
     assert runs[0].startswith("20000101T000000Z")
 
 
+@pytest.mark.deep
 def test_the_same_seed_is_the_same_day(tmp_path: Path) -> None:
     days = []
     for name in ("one", "other"):
