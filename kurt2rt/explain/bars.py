@@ -133,7 +133,7 @@ def draw_tug_of_war(
 
 
 def _side(story: RlaStory, end: float) -> str:
-    return "left" if story.distance < 0.15 * end else "right" if story.distance > 0.85 * end else "center"
+    return "left" if story.distance < 0.15 * end else "right" if story.distance > 0.7 * end else "center"
 
 
 def _dot(story: RlaStory, colours: Mapping[str, str]) -> str:

@@ -120,10 +120,10 @@ def _asks(level: LevelFacts) -> list[str]:
 
 def _asks_the_way(level: LevelFacts) -> list[str]:
     nearest = level.nearest
+    if level.lost:
+        return ["The robot is lost: nobody has said where it was set down, so it asks."]
     if nearest is None:
         return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
-    if math.isinf(nearest.distance):
-        return ["The robot is lost: nobody has said where it was set down, so it asks."]
     return [f"The mid level does not know the way from here: {_nearest(nearest)}."]
 
 
@@ -152,10 +152,10 @@ def _would(facts: DecisionFacts) -> list[str]:
 
 
 def _why_the_way(mid: LevelFacts) -> str:
+    if mid.lost:
+        return "it is lost, for nobody has said where it was set down"
     if mid.nearest is None:
         return "the mid level was taught nothing yet"
-    if math.isinf(mid.nearest.distance):
-        return "it is lost, for nobody has said where it was set down"
     return _nearest(mid.nearest)
 
 

@@ -23,16 +23,18 @@ _SHARPNESS = ("bear", "curve", "sharp", "spin")
 
 
 def colours_of(actions: Iterable[str]) -> Mapping[str, str]:
-    """A colour for each action, the darker the sharper it turns, whatever the order they come in."""
+    """A colour for each action, the darker the sharper it turns, whatever the order they come in.
+
+    No two have the same, as long as there are colours.
+    """
     colours: dict[str, str] = {}
-    taken: dict[str, int] = {}
     for action in sorted(set(actions), key=lambda each: (_sharpness(each), each)):
-        family, palette = next(((word, row) for word, row in _FAMILIES if word in action), ("", _OTHERS))
+        palette = next((row for word, row in _FAMILIES if word in action), _OTHERS)
         place = _sharpness(action)
-        if place == len(_SHARPNESS):
-            place = taken.get(family, 0)
-            taken[family] = place + 1
-        colours[action] = palette[place % len(palette)]
+        fitting = palette[place : place + 1] if place < len(_SHARPNESS) else ()
+        taken = set(colours.values())
+        free = (colour for colour in (*fitting, *palette, *_OTHERS) if colour not in taken)
+        colours[action] = next(free, palette[len(colours) % len(palette)])
     return colours
 
 

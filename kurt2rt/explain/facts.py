@@ -1,5 +1,6 @@
 """What is known of one decision: all that an explanation is made of, as plain values that can be sent elsewhere."""
 
+import math
 from dataclasses import dataclass
 
 from hal.robot import WheelSpeeds
@@ -89,6 +90,11 @@ class LevelFacts:
         if self.nearest is None:
             return None
         return next((other for other in self.others if other.action != self.nearest.action), None)
+
+    @property
+    def lost(self) -> bool:
+        """Whether the robot does not know where it is."""
+        return any(math.isnan(value) for value in self.vector)
 
     @property
     def leader(self) -> RlaStory | None:

@@ -32,8 +32,9 @@ def _draw_places(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> Non
     """Each place with the heading in which it is come to, in the colour of what is done there."""
     stories = [story for story in (mid.nearest, *mid.others) if story is not None]
     x_m, y_m, east, north = mid.vector[:4]
-    lost = x_m != x_m  # NaN
-    axes.set_title("Where it is, and the places it knows", fontsize=11.5, loc="left", color=INK, pad=8)
+    lost = mid.lost
+    title = "The places it knows" if lost else "Where it is, and the places it knows"
+    axes.set_title(title, fontsize=11.5, loc="left", color=INK, pad=8)
     axes.set_aspect("equal", adjustable="datalim")
     if not lost and stories:
         axes.add_patch(

@@ -26,6 +26,8 @@ from kurt2rt.rla.rla import MID
 _FEATURES, _FEATURES_BELOW_MID = 7, 4
 _POINTED_AT = 4
 _MARKS = 1
+_CAPTION = 76
+"""Characters in a line below a situation."""
 _WORTH_POINTING = 0.03
 
 
@@ -48,9 +50,9 @@ def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings,
         top=top,
         bottom=0.085,
         width_ratios=(1.0, 1.0, 0.95),
-        height_ratios=(1.0, 0.13),
+        height_ratios=(1.0, 0.14),
         wspace=0.05,
-        hspace=0.13,
+        hspace=0.32,  # room for four lines about who taught it
     )
     _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, story, colours)
     draw_nearness(figure.add_subplot(grid[1, 0:2]), level, story, colours)
@@ -64,7 +66,9 @@ def _right_column(
 ) -> None:
     """What mattered: at the level that decided, with the level above where there is one."""
     level, mid = facts.basic, facts.mid
-    if mid is not None and facts.asks_at == MID:
+    if mid is not None and mid.lost and mid.nearest is None:
+        mid = None  # neither where it is nor any place is there to be drawn; the text says so
+    if mid is not None and facts.asks_at == MID and mid.nearest is not None and not mid.lost:
         right = spec.subgridspec(2, 1, hspace=0.3, height_ratios=(2.0, 1.0))
         draw_mid(figure.add_subplot(right[0]), mid, colours)
         draw_differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID)
@@ -149,8 +153,8 @@ def _situations(
     draw_surroundings(there, robot, counts, averages, differing=pointed_at)
     says = "asks again" if story.asks else story.action
     there.set_title(f"As taught: {story.title}, {says}", fontsize=13, fontweight="bold", color=INK)
-    below = f"{fill(taught(story), 72)}\n{fill(used(story), 72)}"
-    there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=9, color=INK)
+    below = f"{fill(taught(story), _CAPTION)}\n{fill(used(story), _CAPTION)}"
+    there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=8.5, color=INK)
     moving = f"wheels: {granted.left_m_s:+.2f} / {granted.right_m_s:+.2f} m/s"
     if facts.reasons and not facts.latched:
         moving += f", on the way to {decided.left_m_s:+.2f} / {decided.right_m_s:+.2f}"

@@ -71,7 +71,8 @@ def teaching_acts(story: RlaStory) -> tuple[Act, ...]:
 
 def used(story: RlaStory) -> str:
     """How often, and what teachers thought of it."""
-    text = "Used " + times(story.uses if story.uses_since is None else story.uses_since)
+    count = story.uses if story.uses_since is None else story.uses_since
+    text = f"Used {times(count)}" if count else "Never used"
     if story.uses_since is None:
         text += " since it was first taught"
     elif story.uses_since == story.uses:
@@ -119,7 +120,8 @@ def mid_lines(facts: DecisionFacts) -> list[str]:
             taught(story),
         ]
     else:
-        lines = [f"Mid level: it asks.{came_by}"]
+        lost = ", for it is lost: nobody has said where it was set down" if mid.lost else ""
+        lines = [f"Mid level: it asks{lost}.{'' if mid.lost else came_by}"]
     return [*lines, *([f"Goal: {facts.plan_says}"] if facts.plan_says else [])]
 
 

@@ -49,7 +49,19 @@ def test_places_are_a_map_with_the_robot_in_it(lesson: Lesson, tmp_path: Path) -
 def test_a_robot_that_is_lost_is_not_on_the_map(lesson: Lesson, tmp_path: Path) -> None:
     near = titled(12, (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), "turn_left", math.inf, 0.85)
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5), near), names=PLACES, level=MID, driver=None)
-    assert "nobody has said where it was set down" in drawn(lesson, mid, tmp_path / "lost.svg", asks=True)
+    text = drawn(lesson, mid, tmp_path / "lost.svg", asks=True)
+    assert "nobody has said where it was set down" in text
+    assert "The places it knows" in text
+
+
+def test_a_lost_robot_that_knows_no_place_is_told_of_in_words_and_the_room_is_for_what_is_near(
+    lesson: Lesson, tmp_path: Path
+) -> None:
+    mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
+    text = drawn(lesson, mid, tmp_path / "lost.svg", asks=True)
+    assert "nobody has said where it was set down" in text
+    assert "places it knows" not in text
+    assert "What makes the distance to RLA 1" in text
 
 
 def test_histories_stand_below_each_other(lesson: Lesson, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from kurt2rt.explain.because import headline
 from kurt2rt.explain.collecting import facts_of
@@ -148,3 +149,24 @@ def test_the_picture_shows_the_decision_and_is_the_same_each_time(
     if ending == "svg":
         for words in ("a title", "Now: tick 141", "As taught: RLA 2, bear_right", "Why not RLA 1, forward"):
             assert words.encode() in drawn
+
+
+def test_what_is_said_of_who_taught_it_does_not_run_into_what_is_near(
+    taught_lesson: Lesson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However much there is to say."""
+    facts = taught_lesson.facts
+    driver = facts.basic.driver
+    assert driver is not None
+    act = replace(driver.acts[-1], text="RLA 1416 of turn_right corrected: quarter_turn_right instead of spin_left")
+    much = replace(driver, acts=(act,), uses=1204, uses_since=0, rewards=12, punishments=31, value=0.51)
+    drawn: list[Figure] = []
+    monkeypatch.setattr("kurt2rt.explain.picture.save", lambda figure, _path: drawn.append(figure))
+    crowd = replace(facts, basic=replace(facts.basic, driver=much, nearest=much))
+    draw_why(crowd, taught_lesson.tips, ROBOT, "a title", Path("never.png"))
+    (figure,) = drawn
+    figure.draw_without_rendering()
+    caption = next(text for axes in figure.axes for text in axes.texts if "RLA 1416" in text.get_text())
+    strip = next(axes for axes in figure.axes for text in axes.texts if text.get_text() == "how near each RLA is")
+    assert caption.get_text().count("\n") >= 3
+    assert caption.get_window_extent().y0 > strip.get_window_extent().y1
