@@ -122,7 +122,7 @@ class Bringing:
                 self._add(LessonRedone(name, new_origin("redo", self._teacher)), self._stamp)
                 return
         name = mark.name(self._taken)
-        if mark in own:
+        if mark in own and not (mark.is_reward and mark in standing):
             before = own[mark]
             self._add(named(before, name), self._own_stamps[before.origin.command_id])
         else:

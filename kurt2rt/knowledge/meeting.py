@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal
 
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.kinship import Mark, PileMark, Taught, common_rows, lessons_up_to, standing_piles
-from kurt2rt.rla.rla import KnowledgeMerged
+from kurt2rt.rla.rla import KnowledgeMerged, LessonUndone
 
 Side = Literal["mine", "theirs"]
 Way = Literal["stays", "as there", "both"]
@@ -34,9 +35,11 @@ class Base:
 
     piles: Mapping[PileMark, tuple[Mark, ...]]
     """As they stood in the file that was shown."""
-    mine: frozenset[Mark]
-    """All lessons that mine held then, undone ones among them."""
-    theirs: frozenset[Mark]
+    undone_here: frozenset[Mark]
+    """Lessons that were undone in mine after it."""
+    undone_there: frozenset[Mark]
+    stood_there: frozenset[Mark]
+    """Those of theirs that stood there then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,12 +86,18 @@ def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[t
 def base_of(meeting: Meeting, mine: Taught, theirs: Taught) -> Base:
     """What both knew at that meeting."""
     here, there = lessons_up_to(mine, meeting.mine), lessons_up_to(theirs, meeting.theirs)
-    shown = standing_piles(here, mine.marks) if meeting.shown == "mine" else standing_piles(there, theirs.marks)
+    on_mine, on_theirs = standing_piles(here, mine.marks), standing_piles(there, theirs.marks)
     return Base(
-        shown,
-        frozenset(mine.marks[record.event.origin.command_id] for record in here),
-        frozenset(theirs.marks[record.event.origin.command_id] for record in there),
+        on_mine if meeting.shown == "mine" else on_theirs,
+        undone_here=_undone_since(meeting.mine, mine),
+        undone_there=_undone_since(meeting.theirs, theirs),
+        stood_there=frozenset(chain.from_iterable(on_theirs.values())),
     )
+
+
+def _undone_since(rows: int, taught: Taught) -> frozenset[Mark]:
+    later = taught.entries[rows:]
+    return frozenset(taught.marks[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone))
 
 
 class Parting:
@@ -104,33 +113,35 @@ class Parting:
         ways = {self._way(lessons_of(base.piles.get(pile, ())), base, sides) for base in self._bases}
         return ways.pop() if len(ways) == 1 else "both"
 
-    def rewards_that_came(self, pile: PileMark, sides: Sides) -> list[Mark]:
-        """Praise and blame that are new there, or stand there again. Of one that came on another way an undo stays."""
-        before = {mark for base in self._bases for mark in base.piles.get(pile, ())}
-        late = self._here - frozenset[Mark]().union(*(base.mine for base in self._bases))
-        return [
-            mark
-            for mark in sides.theirs
-            if mark.is_reward and mark not in before and mark not in sides.mine and mark not in late
-        ]
+    def rewards_that_came(self, sides: Sides) -> tuple[Mark, ...]:
+        """Praise and blame that are new there, or stand there again."""
+        rewards = [mark for mark in sides.theirs if mark.is_reward and mark not in sides.mine]
+        return tuple(mark for mark in rewards if all(self._came(mark, base) for base in self._bases))
 
-    def rewards_that_went(self, pile: PileMark, sides: Sides) -> list[Mark]:
+    def rewards_that_went(self, sides: Sides) -> tuple[Mark, ...]:
         """Praise and blame that stand here and were taken back there."""
-        before = {mark for base in self._bases for mark in base.piles.get(pile, ())}
-        late = self._there - frozenset[Mark]().union(*(base.theirs for base in self._bases))
-        return [
+        rewards = [mark for mark in sides.mine if mark.is_reward and mark not in sides.theirs and mark in self._there]
+        return tuple(
             mark
-            for mark in sides.mine
-            if mark.is_reward and mark in self._there and mark not in sides.theirs and (mark in before or mark in late)
-        ]
+            for mark in rewards
+            if any(mark in base.piles.get(mark.pile, ()) or mark in base.undone_there for base in self._bases)
+        )
+
+    def _came(self, mark: Mark, base: Base) -> bool:
+        if mark in base.piles.get(mark.pile, ()):
+            return False  # it was undone here since, or left out
+        if mark not in self._here:
+            return True
+        # Of one that came here on another way the undo counts; one that they kept although it was undone is not new.
+        return mark not in base.undone_here and mark not in base.stood_there
 
     def _way(self, before: tuple[Mark, ...], base: Base, sides: Sides) -> Way:
         mine, theirs = sides.mine, sides.theirs
         if mine == theirs:
             return "stays"
         # A lesson that came on another way than this meeting, and was undone since, was changed although nothing shows.
-        undone_there = (self._there - base.theirs) & (set(mine) - set(theirs))
-        undone_here = (self._here - base.mine) & (set(theirs) - set(mine))
+        undone_there = base.undone_there & (set(mine) - set(theirs))
+        undone_here = base.undone_here & (set(theirs) - set(mine))
         if theirs == before and not undone_there:
             return "stays"
         if mine == before and not undone_here:

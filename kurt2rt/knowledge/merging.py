@@ -174,8 +174,8 @@ class Merging:
             way = parting.way_of(mark, sides)
             if way == "both" and self._come_to_the_same(mark):
                 way = "stays"
-            came, went = parting.rewards_that_came(mark, sides), parting.rewards_that_went(mark, sides)
-            pile = _Pile(mark, sides, way, tuple(came), tuple(went))
+            came, went = parting.rewards_that_came(sides), parting.rewards_that_went(sides)
+            pile = _Pile(mark, sides, way, came, went)
             found.append(replace(pile, way="both") if way == "as there" and pile.homeless else pile)
         return found
 
