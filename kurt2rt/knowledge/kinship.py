@@ -4,7 +4,7 @@ import json
 import math
 import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -34,10 +34,9 @@ class Mark(NamedTuple):
     pile: PileMark
     is_reward: bool
 
-    def name(self, taken: Iterable[str]) -> str:
+    def name(self, taken: Container[str]) -> str:
         """Command id for it in a file where those are taken."""
-        taken, other = frozenset(taken), f"{self.command_id}~{self.content:08x}"
-        name, number = self.command_id, 0
+        name, other, number = self.command_id, f"{self.command_id}~{self.content:08x}", 0
         while name in taken:
             number += 1
             name = other if number == 1 else f"{other}-{number}"

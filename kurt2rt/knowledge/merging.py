@@ -126,6 +126,7 @@ class Merging:
         both = [each for each in piles if each.way == "both"]
         conflicts = [self._conflict_of(each) for each in both]
         moved = [each for each in piles if each.way == "as there" or (each.way == "both" and prefer == "theirs")]
+        changed = {each.mark for each in moved}
         contradictions = Contradictions(self._unknown_there(moved), self._borders)
         left_out, deletions = set[PileMark](), list[int]()
         for each in moved:
@@ -138,9 +139,11 @@ class Merging:
                     deletions.append(near.rla.rla_id)
                 else:
                     left_out.add(each.mark)
-        stuck = [self._stays(mark) for each in piles if each not in moved for mark in each.stuck]
+        stuck = [self._stays(mark) for each in piles if each.mark not in changed for mark in each.stuck]
         known = frozenset(self._mine.marks.values())
-        wanted = [each.as_there() if each in moved else each.as_here() for each in piles if each.mark not in left_out]
+        wanted = [
+            each.as_there() if each.mark in changed else each.as_here() for each in piles if each.mark not in left_out
+        ]
         bringing.bring(wanted, deletions)
         stands = {mark for each in wanted for mark in each.then if bringing.name_of(mark) is not None}
         stood = {mark for each in wanted for mark in each.now}
