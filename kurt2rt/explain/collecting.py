@@ -64,15 +64,9 @@ def facts_of(
         plan_says="" if decision.plan is None else decision.plan.says,
         kept=runtime.level.kept,
         history_frozen=record.situation.history_frozen,
-        learnt_since=_learnt_since(record),
+        taught_now=bool(record.events),
         hindrances=_hindrances(runtime, record),
     )
-
-
-def _learnt_since(record: TickRecord) -> bool:
-    """What commands taught stood before the decision; all else came of it."""
-    commanded = {result.command_id for result in record.results}
-    return any(event.origin.command_id not in commanded for event in record.events)
 
 
 def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:

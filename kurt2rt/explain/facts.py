@@ -153,7 +153,7 @@ class DecisionFacts:
     """The action whose minimum time was not over: no other one could have taken the wheels. Empty where any could."""
     history_frozen: bool = True
     """Whether the averages of the situation stood still."""
-    learnt_since: bool = False
-    """Whether the robot taught itself behind the decision, in the very tick: what is told of its RLAs is of then."""
+    taught_now: bool = False
+    """Whether something was taught in the very tick: of what was seen then, or of what was decided."""
     hindrances: tuple[str, ...] = ()
     """Why it would have stood whatever it knew, but for a stop and its teacher's hand: values of Cause."""

@@ -88,7 +88,7 @@ _FACTS = MapOf(
     plan_says=_LINE,
     kept=_NAME,
     history_frozen=Flag(),
-    learnt_since=Flag(),
+    taught_now=Flag(),
     hindrances=ManyOf(_NAME, most=8),
 )
 

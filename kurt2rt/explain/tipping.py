@@ -39,7 +39,7 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
     `facts`: with all RLAs that may answer. The features are computed anew from the changed reading, so extremes,
     orientations and averages follow it. That another RLA says the same is no change, and while an action keeps its
     minimum time another RLA is none either: only a question is. Empty where something else than the situation decided,
-    and where the robot knows something else by now.
+    and where something was taught in that tick: with another reading something else had been.
     """
     level, counts = facts.basic, facts.infrared_counts
     stories = () if level.nearest is None else (level.nearest, *level.others)
@@ -83,7 +83,7 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
 def _situation_decided(facts: DecisionFacts) -> bool:
     """Whether what the robot saw, and nothing else, had it drive or ask."""
     if (
-        facts.learnt_since
+        facts.taught_now
         or facts.latched
         or facts.asks_at != BASIC
         or facts.cause not in (Cause.RLA, Cause.HELD, Cause.UNKNOWN)

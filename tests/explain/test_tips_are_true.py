@@ -64,11 +64,11 @@ def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str) -> N
     assert heard["kept"] > 2
 
 
-def test_where_the_robot_learnt_behind_its_decision_nothing_is_said() -> None:
-    """It was blamed in that tick: what drove was withdrawn, and is no longer what would answer."""
+def test_in_a_tick_with_a_lesson_nothing_is_said() -> None:
+    """It was blamed in this one: what drove was withdrawn, and is no longer what would answer."""
     replay = Replay(read_run(STORED / "walls.mcap"))
     entry, record = next(tick for tick in replay if tick.entry.tick == 3201)
     facts = facts_of(replay.runtime, record, lambda _: "")
     assert [type(event).__name__ for event in entry.events] == ["RlaRewarded", "ActionWithdrawn"]
-    assert facts.learnt_since
+    assert facts.taught_now
     assert tips(facts, replay.runtime.definition, replay.run.robot.infrared) == ()
