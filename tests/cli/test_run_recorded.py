@@ -11,7 +11,7 @@ from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.topics import GROUND, SCENE, TICK, TRUTH
 from tests.cli.helpers import CommandLine, running
 
-WORDS = ("run", "--seconds", "1.3", "--teacher", "none", "--knowledge", "mine.knowledge")
+WORDS = ("run", "--seconds", "0.5", "--teacher", "none", "--knowledge", "mine.knowledge")
 
 
 @pytest.fixture(autouse=True)
@@ -82,7 +82,7 @@ def test_a_folder_that_cannot_be_made_costs_no_tick_and_is_told(kurt2rt: Command
 def test_a_killed_program_leaves_a_run_that_can_be_read(folder: Path) -> None:
     words = ("run", "--seconds", "60", "--teacher", "none", "--knowledge", "mine.knowledge")
     with running(*words, folder=folder) as robot:
-        for _ in range(5):  # the newest second may be lost
+        for _ in range(3):  # the newest second may be lost
             robot.wait_for(" s | ")
         robot.process.kill()
         robot.process.wait()

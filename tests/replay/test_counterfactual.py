@@ -21,10 +21,11 @@ from tests.replay.stories import STORED, STORIES
 ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
 
 
-@pytest.fixture(scope="module", params=STORIES)
-def name(request: pytest.FixtureRequest) -> str:
-    said: str = request.param
-    return said
+def of_every_story(first: str) -> pytest.MarkDecorator:
+    """The other ones in the deep suite."""
+    return pytest.mark.parametrize(
+        "name", [pytest.param(name, marks=() if name == first else pytest.mark.deep) for name in STORIES]
+    )
 
 
 def stored(name: str) -> Run:
@@ -40,6 +41,7 @@ def lessons() -> dict[str, list[TeachingEvent]]:
     return {name: taught_in(stored(name)) for name in STORIES}
 
 
+@of_every_story("errand")
 def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
     name: str, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
@@ -49,6 +51,7 @@ def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itsel
     assert found.ticks == 4400
 
 
+@of_every_story("walls")
 def test_who_knows_nothing_would_have_asked_wherever_it_drove(
     name: str, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
@@ -113,6 +116,7 @@ def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEv
     assert {each.level for each in found.stretches} == {MID}
 
 
+@of_every_story("walls")
 def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(name: str) -> None:
     run = stored(name)
     replay = Replay(run)
