@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from typing import Literal
 
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.kinship import Mark, PileMark, Taught, common_rows, lessons_up_to, standing_piles
-from kurt2rt.rla.rla import KnowledgeMerged, LessonUndone
+from kurt2rt.rla.rla import KnowledgeMerged, LessonRedone, LessonUndone
 
 Side = Literal["mine", "theirs"]
 Way = Literal["stays", "as there", "both"]
@@ -38,8 +37,6 @@ class Base:
     undone_here: frozenset[Mark]
     """Lessons that were undone in mine after it."""
     undone_there: frozenset[Mark]
-    stood_there: frozenset[Mark]
-    """Those of theirs that stood there then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +88,6 @@ def base_of(meeting: Meeting, mine: Taught, theirs: Taught) -> Base:
         on_mine if meeting.shown == "mine" else on_theirs,
         undone_here=_undone_since(meeting.mine, mine),
         undone_there=_undone_since(meeting.theirs, theirs),
-        stood_there=frozenset(chain.from_iterable(on_theirs.values())),
     )
 
 
@@ -106,6 +102,20 @@ class Parting:
     def __init__(self, mine: Taught, theirs: Taught) -> None:
         self._bases = [base_of(each, mine, theirs) for each in last_meetings(mine.entries, theirs.entries)]
         self._here, self._there = frozenset(mine.marks.values()), frozenset(theirs.marks.values())
+        heard = max(
+            [common_rows(mine.entries, theirs.entries), *(rows for _, rows in _merges(mine.entries, theirs.entries))]
+        )
+        self._news = frozenset(
+            theirs.marks[name]
+            for entry in theirs.entries[heard:]
+            for name in (
+                entry.event.lesson if isinstance(entry.event, LessonRedone) else entry.event.origin.command_id,
+            )
+            if name in theirs.marks
+        )
+        """Lessons that were taught there, or stand there again, and of which mine did not hear yet."""
+        self._taken_back = _undone_since(heard, theirs)
+        """Lessons that were undone there, of which mine did not hear yet."""
 
     def way_of(self, pile: PileMark, sides: Sides) -> Way:
         """Who changed the lessons of a pile, praise and blame apart."""
@@ -120,7 +130,9 @@ class Parting:
 
     def rewards_that_went(self, sides: Sides) -> tuple[Mark, ...]:
         """Praise and blame that stand here and were taken back there."""
-        rewards = [mark for mark in sides.mine if mark.is_reward and mark not in sides.theirs and mark in self._there]
+        rewards = [
+            mark for mark in sides.mine if mark.is_reward and mark not in sides.theirs and mark in self._taken_back
+        ]
         return tuple(
             mark
             for mark in rewards
@@ -133,7 +145,7 @@ class Parting:
         if mark not in self._here:
             return True
         # Of one that came here on another way the undo counts; one that they kept although it was undone is not new.
-        return mark not in base.undone_here and mark not in base.stood_there
+        return mark not in base.undone_here and mark in self._news
 
     def _way(self, before: tuple[Mark, ...], base: Base, sides: Sides) -> Way:
         mine, theirs = sides.mine, sides.theirs
