@@ -21,7 +21,7 @@ _KNOWLEDGE, _RUNS = "soak.knowledge", "runs"
 
 
 def soak(
-    hours: Annotated[float, typer.Option(min=0.01, max=1000.0, help="Simulated hours.")] = 24.0,
+    hours: Annotated[float, typer.Option(min=0.002, max=1000.0, help="Simulated hours.")] = 24.0,
     seed: Annotated[
         int, typer.Option(min=0, help="Decides the robot, the noise, the faults, and the teacher's moods.")
     ] = 1,

@@ -28,8 +28,10 @@ def require_safe(stopped: Stopped) -> None:
     assert stopped.most_at_once <= MOST_AT_ONCE
 
 
-async def test_a_program_that_was_halted_for_a_moment_drives_on_and_makes_up_for_nothing(tmp_path: Path) -> None:
-    async with a_robot_that_turns(tmp_path, "shared:halted-shortly") as story:
+async def test_a_program_that_was_halted_drives_on_after_a_moment_and_after_longer_not_before_it_is_told_to(
+    tmp_path: Path,
+) -> None:
+    async with a_robot_that_turns(tmp_path, "shared:halted") as story:
         stopped = await story.stop_for(0.05)
         while stopped.gap_s > SHORT_S:  # the machine has much to do
             stopped = await story.stop_for(0.05)
@@ -37,9 +39,6 @@ async def test_a_program_that_was_halted_for_a_moment_drives_on_and_makes_up_for
         assert stopped.cycles_to_rest is None
         assert stopped.drove_on > 0
 
-
-async def test_a_program_that_was_halted_does_not_drive_on_before_it_is_told_to(tmp_path: Path) -> None:
-    async with a_robot_that_turns(tmp_path, "shared:halted") as story:
         stopped = await story.stop_for(0.6, until_it_rests=True)
         assert stopped.gap_s > 0.5
         assert stopped.cycles_to_rest is not None
