@@ -74,3 +74,12 @@ def test_a_restart_waits_for_a_beat_again(ends: Ends) -> None:
 def _wait_for(looks: threading.Semaphore, count: int) -> None:
     for _ in range(count):
         assert looks.acquire(timeout=60)
+
+
+def test_who_watches_can_be_told_from_other_threads_while_it_does(ends: Ends) -> None:
+    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, VirtualClock())
+    assert watchdog.thread is None
+    with watchdog:
+        assert watchdog.thread in threading.enumerate()
+        assert watchdog.running
+    assert watchdog.thread is None
