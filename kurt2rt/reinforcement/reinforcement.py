@@ -151,21 +151,12 @@ class Reinforcement:
                     self._alone_bookings[origin.command_id] = _booked(self._alone, credits_alone)
                     self._alone.take(value, trace)
                 self._blame(value, trace, origin.command_id, origin.teacher)
-            case ActionReplaced(rla_id, _, _, origin):
-                for account in self._accounts:
-                    account.renew(rla_id)
-                self._since[rla_id] = origin.tick
-            case RlaDeleted(rla_id):
-                for account in self._accounts:
-                    account.leave(rla_id)
-                self._since.pop(rla_id, None)
-                self._repair.gone(rla_id)
-            case RlaCreated(rla):
-                self._repair.there(rla)
             case LessonUndone(lesson, origin):
                 self._hear_undone(lesson, origin)
             case LessonRedone(lesson, origin):
                 self._hear_redone(lesson, origin)
+            case _:
+                self._hear_of_an_rla(event, event.origin.tick)
 
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
         """Learn from a signal that is no event: one of the critic's, which changes the account of phase 5 only.
@@ -298,10 +289,16 @@ class Reinforcement:
                 self._bookings[lesson] = _booked(self.rule, credits_)
                 self.rule.book(self._bookings[lesson], 1)
                 self.choice.forget()
+            case event:
+                self._hear_of_an_rla(event, origin.tick)
+
+    def _hear_of_an_rla(self, event: TeachingEvent, tick: int) -> None:
+        """That one was made, changed or deleted at that tick, for the first time or again."""
+        match event:
             case ActionReplaced(rla_id):
                 for account in self._accounts:
                     account.renew(rla_id)
-                self._since[rla_id] = origin.tick
+                self._since[rla_id] = tick
             case RlaDeleted(rla_id):
                 for account in self._accounts:
                     account.leave(rla_id)
