@@ -167,11 +167,12 @@ class Story:
         for tick in {*file.decisions, *other.decisions}:
             stood = tick in stands
             theirs, mine = other.decisions.get(tick), file.decisions.get(tick)
+            decided = settled and tick not in rewards  # one that stays under a correction is no decision, and is told
             if tick not in here and tick in rewards:
                 continue  # left out: nobody said that it shall not stand there
             if theirs is not None and theirs.stands == stood and theirs.number not in file.heard_of:
                 file.decisions[tick] = theirs
-            elif mine is None or mine.stands != stood or (settled and theirs is not None and theirs.stands != stood):
+            elif mine is None or mine.stands != stood or (decided and theirs is not None and theirs.stands != stood):
                 file.decisions[tick] = self._decision(file, stands=stood)
         file.heard_of |= other.heard_of
 
