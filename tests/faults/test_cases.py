@@ -34,7 +34,7 @@ def test_stop_times_meet_their_goals() -> None:
 
 @pytest.mark.parametrize(
     ("target", "kind"),
-    [("sensor_board_1", "garbage"), ("disk", "intermittent")],
+    [pytest.param("sensor_board_1", "garbage", marks=pytest.mark.deep), ("disk", "intermittent")],
 )
 def test_the_same_seed_comes_to_the_same(target: Target, kind: Kind) -> None:
     assert tried(target, kind, seed=7).outcome == tried(target, kind, seed=7).outcome

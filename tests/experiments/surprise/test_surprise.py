@@ -47,6 +47,7 @@ def test_on_known_ground_little_is_surprising_and_more_where_something_is_differ
     assert set_down.surprising_first_ends > 0.5 * set_down.first_ends > 0
 
 
+@pytest.mark.deep  # the same lesson twice, in tests/experiments/test_phases_of_a_lesson.py, is not
 def test_the_same_seed_gives_the_same_surprises(taught_shortly: SurpriseJob) -> None:
     assert taught_shortly.run(lambda _: None) == taught_shortly.run(lambda _: None)
 
