@@ -5,10 +5,11 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
@@ -101,8 +102,8 @@ class Running:
 
 
 @contextmanager
-def running(*words: str, folder: Path) -> Iterator[Running]:
-    """Start `kurt2rt ...` in a folder; what is left of it at the end is killed."""
+def running(*words: str, folder: Path, environment: Mapping[str, str] = MappingProxyType({})) -> Iterator[Running]:
+    """Start `kurt2rt ...` in a folder, with this in its environment, too; what is left of it at the end is killed."""
     with subprocess.Popen(
         [sys.executable, "-m", "kurt2rt.cli.main", *words],
         stdin=subprocess.PIPE,
@@ -110,7 +111,7 @@ def running(*words: str, folder: Path) -> Iterator[Running]:
         stderr=subprocess.PIPE,
         text=True,
         cwd=folder,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
     ) as process:
         try:
             yield Running(process)

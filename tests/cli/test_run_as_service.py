@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -12,7 +10,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from tests.cli.helpers import CommandLine, Running
+from tests.cli.helpers import CommandLine, Running, running
 from tests.systemd.manager import Manager, manager
 
 
@@ -28,18 +26,7 @@ def kurt2rt_process(tmp_path: Path) -> Iterator[Callable[..., Running]]:
     with ExitStack() as around:
 
         def start(*words: str) -> Running:
-            process = subprocess.Popen(
-                [sys.executable, "-m", "kurt2rt.cli.main", *words],
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                text=True,
-                cwd=tmp_path,
-                env={**os.environ, "PYTHONUNBUFFERED": "1"},
-            )
-            around.enter_context(process)
-            around.callback(process.kill)
-            return Running(process)
+            return around.enter_context(running(*words, folder=tmp_path))
 
         yield start
 
@@ -52,22 +39,10 @@ def settings_in(folder: Path, **changes: object) -> str:
 
 
 def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
-    environment = {**os.environ, "PYTHONUNBUFFERED": "1", **systemd.environment(0.5)}
+    environment = systemd.environment(0.5)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
-    with ExitStack() as around:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "kurt2rt.cli.main", *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=tmp_path,
-            env=environment,
-        )
-        around.enter_context(process)
-        around.callback(process.kill)
-        program = Running(process)
+    with running(*words, folder=tmp_path, environment=environment) as program:
         assert systemd.wait_for("READY=1")[0] == "READY=1"
         program.wait_for("teachers are listened to on UDP port")
         program.wait_for("stands until Go: the robot program was started")
@@ -75,7 +50,7 @@ def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
         systemd.wait_for("WATCHDOG=1")
 
         settings_in(tmp_path, status_period_s=2.0, task="circle")
-        process.send_signal(signal.SIGHUP)
+        program.process.send_signal(signal.SIGHUP)
         program.wait_for("settings taken: status_period_s")
         program.wait_for("settings for the next start, not for a robot that runs: task")
         systemd.wait_for("RELOADING=1")
@@ -136,18 +111,7 @@ def test_a_reload_never_leaves_others_before_the_loop_nor_the_loop_before_its_gu
 
 def test_a_terminal_that_hangs_up_ends_a_program_that_was_run_by_hand(tmp_path: Path) -> None:
     words = ("run", "--port", "0", "--knowledge", "mine.knowledge")
-    with ExitStack() as around:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "kurt2rt.cli.main", *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=tmp_path,
-        )
-        around.enter_context(process)
-        around.callback(process.kill)
-        program = Running(process)
+    with running(*words, folder=tmp_path) as program:
         program.wait_for("teachers are listened to")
         assert program.end(signal.SIGHUP).exit_code == 0
 

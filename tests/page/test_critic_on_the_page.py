@@ -2,17 +2,15 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 
 import pytest
-from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
-from tests.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
+from tests.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
+from tests.page.lesson import Lesson, a_lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.page.test_browser import assert_handy, show_on
-from tests.page.test_served_page import TOKEN, served
+from tests.page.test_browser import assert_handy
 
 ACTIONS = (
     *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
@@ -26,60 +24,34 @@ A_CHANGE = LessonLine(
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 
 
-class Lesson:
-    """A robot with a critic, and the page that its teacher has open."""
+def fits(lesson: Lesson) -> None:
+    """Nothing of the critic's words runs out of their box."""
+    over = lesson.phone.run(
+        "const edge = document.querySelector('#critic').getBoundingClientRect().right;"
+        "return [...document.querySelectorAll('#critic *')].filter((e) => e.checkVisibility())"
+        ".filter((e) => e.getBoundingClientRect().right > edge).map((e) => e.textContent);"
+    )
+    assert over == []
 
-    def __init__(self, phone: Phone, portal: BlockingPortal, robot: FakeRobot) -> None:
-        self.phone = phone
-        self.robot = robot
-        self._portal = portal
 
-    def show(self, **changes: object) -> None:
-        """From the next picture on."""
-        self._portal.call(partial(self.robot.show, **changes))
-
-    def reads(self, selector: str, text: str) -> None:
-        """Wait until it stands there."""
-        self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
-
-    def told(self, name: str) -> list[object]:
-        """What the robot was told of one kind."""
-        return [each[1] for each in self.robot.told if each[0] == name]
-
-    def fits(self) -> None:
-        """Nothing of the critic's words runs out of their box."""
-        over = self.phone.run(
-            "const edge = document.querySelector('#critic').getBoundingClientRect().right;"
-            "return [...document.querySelectorAll('#critic *')].filter((e) => e.checkVisibility())"
-            ".filter((e) => e.getBoundingClientRect().right > edge).map((e) => e.textContent);"
-        )
-        assert over == []
-
-    def look(self, name: str) -> None:
-        """It can be read and touched on each screen."""
-        for size in SIZES:
-            self.phone.turn(size, touch=size != LAPTOP)
-            self.phone.show(f"11-{name}-{size[0]}x{size[1]}")
-            assert_handy(self.phone, size, "teach")
-            self.fits()
-        self.phone.turn(PORTRAIT)
+def look(lesson: Lesson, name: str) -> None:
+    """It can be read and touched on each screen."""
+    for size in SIZES:
+        lesson.phone.turn(size, touch=size != LAPTOP)
+        lesson.phone.show(f"11-{name}-{size[0]}x{size[1]}")
+        assert_handy(lesson.phone, size, "teach")
+        fits(lesson)
+    lesson.phone.turn(PORTRAIT)
 
 
 @pytest.fixture
 def lesson(a_phone: Phone) -> Iterator[Lesson]:
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.greeting = replace(A_HELLO, actions=ACTIONS, appraisals=APPRAISALS, trusted_from=0.8)
-        page.robot.newest_lessons = (A_LESSON,)
-        lesson = Lesson(a_phone, portal, page.robot)
-        lesson.show(teacher="local", place=A_PLACE, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
-        pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            a_phone.turn(PORTRAIT)
-            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            lesson.reads("#sentence", "RLA 1 does forward")
-            yield lesson
-        finally:
-            pictures.cancel()
+    def prepare(robot: FakeRobot) -> None:
+        robot.greeting = replace(A_HELLO, actions=ACTIONS, appraisals=APPRAISALS, trusted_from=0.8)
+        robot.newest_lessons = (A_LESSON,)
+
+    with a_lesson(a_phone, prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2)) as lesson:
+        yield lesson
 
 
 def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it_agrees(lesson: Lesson) -> None:
@@ -87,7 +59,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     lesson.reads("#opinion", "critic: thinks good")
     assert phone.text("#trusted") == "not trusted yet"
     assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
-    lesson.fits()
+    fits(lesson)
     shown = [each.text for each in phone.driver.find_elements("css selector", "#rewards button") if each.is_displayed()]
     assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
     phone.touch("[data-appraisal=bad]")
@@ -99,7 +71,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     lesson.show(opinion=None, opinion_of=None, agreement=0.61, signals_missing=(0, 0))
     lesson.reads("#opinion", "critic: does not know this")
     lesson.reads("#agreement-text", "agrees 0.61, needs 0.80")
-    lesson.fits()
+    fits(lesson)
     lesson.show(opinion=-1, opinion_of=41, agreement=0.87, trusted=True)
     lesson.reads("#agreement-text", "agrees with you 0.87")
     assert phone.text("#agreement-text") == "agrees with you 0.87"
@@ -107,7 +79,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     lesson.reads("#opinion", "critic: thinks bad")
     assert not phone.find("#role").is_displayed()
     assert not phone.find("#changed").is_displayed()
-    lesson.look("phase-4")
+    look(lesson, "phase-4")
 
     lesson.show(phase=3, value=-0.001)
     phone.wait(lambda: not phone.find("#critic").is_displayed(), "before phase 4 nobody sees it")
@@ -134,12 +106,12 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.reads("#role", "not needed: 1 % of the driving was bad")
     phone.touch("#praise")
     phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
-    lesson.look("phase-5")
+    look(lesson, "phase-5")
     lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
     lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
     lesson.reads("#trusted", "only listens")
     assert not phone.find("#role").is_displayed()
-    lesson.fits()
+    fits(lesson)
     lesson.reads("#changed", "undone: RLA 17")
 
 

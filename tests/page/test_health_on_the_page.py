@@ -4,15 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
-from anyio.from_thread import start_blocking_portal
 
 from kurt2rt.health.report import HealthReport
 from tests.health.reports import ILL, SILENT, WELL
-from tests.page.fake_robot import A_PLACE
+from tests.page.fake_robot import FakeRobot
+from tests.page.lesson import Lesson, a_lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.page.test_browser import assert_handy, show_on
-from tests.page.test_critic_on_the_page import Lesson
-from tests.page.test_served_page import TOKEN, served
+from tests.page.test_browser import assert_handy
 
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 CLASS = "return document.querySelector(arguments[0]).className;"
@@ -20,18 +18,11 @@ CLASS = "return document.querySelector(arguments[0]).className;"
 
 @pytest.fixture
 def lesson(a_phone: Phone) -> Iterator[Lesson]:
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.report = replace(WELL, tick=100)
-        lesson = Lesson(a_phone, portal, page.robot)
-        lesson.show(teacher="local", place=A_PLACE)
-        pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            a_phone.turn(PORTRAIT)
-            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            lesson.reads("#sentence", "RLA 1 does forward")
-            yield lesson
-        finally:
-            pictures.cancel()
+    def prepare(robot: FakeRobot) -> None:
+        robot.report = replace(WELL, tick=100)
+
+    with a_lesson(a_phone, prepare) as lesson:
+        yield lesson
 
 
 def later(lesson: Lesson, ticks: int, report: HealthReport) -> None:

@@ -3,14 +3,12 @@
 from collections.abc import Iterator
 
 import pytest
-from anyio.from_thread import start_blocking_portal
 
 from tests.explain.helpers import facts, level, story
-from tests.page.fake_robot import A_PLACE
+from tests.page.fake_robot import FakeRobot
+from tests.page.lesson import Lesson, a_lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.page.test_browser import assert_handy, show_on
-from tests.page.test_critic_on_the_page import Lesson
-from tests.page.test_served_page import TOKEN, served
+from tests.page.test_browser import assert_handy
 
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 NEAREST, RUNNER_UP = story(1, (120.0, 80.0), "forward", 5.0), story(2, (90.0, 88.0), "spin_left", 34.0)
@@ -19,18 +17,11 @@ DECIDED = facts(level((123.0, 84.0), NEAREST, RUNNER_UP))
 
 @pytest.fixture
 def lesson(a_phone: Phone) -> Iterator[Lesson]:
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.decided = DECIDED
-        lesson = Lesson(a_phone, portal, page.robot)
-        lesson.show(teacher="local", place=A_PLACE)
-        pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            a_phone.turn(PORTRAIT)
-            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            lesson.reads("#sentence", "RLA 1 does forward")
-            yield lesson
-        finally:
-            pictures.cancel()
+    def prepare(robot: FakeRobot) -> None:
+        robot.decided = DECIDED
+
+    with a_lesson(a_phone, prepare) as lesson:
+        yield lesson
 
 
 def test_a_touch_on_its_sentence_tells_why_it_does_so(lesson: Lesson) -> None:
