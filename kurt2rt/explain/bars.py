@@ -70,15 +70,13 @@ def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows
     highest = max(share.share for share in found)
     for row, share in enumerate(found):
         axes.barh(row, share.share, height=0.56, color=DIFFERS if row == 0 else _SMALLER, zorder=2)
-        axes.text(-0.03 * highest, row - 0.12, share.name, ha="right", va="center", fontsize=9.5, color=INK)
-        axes.text(
+        _name_row(
+            axes,
             -0.03 * highest,
-            row + 0.26,
+            row,
+            share.name,
             f"{number(share.here)} now, {number(share.there)} taught",
             ha="right",
-            va="center",
-            fontsize=8,
-            color=PALE_INK,
         )
         axes.text(
             share.share + 0.015 * highest,
@@ -114,16 +112,8 @@ def draw_tug_of_war(
     for row, pull in enumerate(found):
         mine = pull.pull > 0
         axes.barh(row, pull.pull, height=0.56, color=_dot(story if mine else other, colours), zorder=2)
-        axes.text(-2.15 * widest, row - 0.12, pull.name, ha="left", va="center", fontsize=9.5, color=INK)
-        axes.text(
-            -2.15 * widest,
-            row + 0.26,
-            f"{number(pull.here)} now, {number(pull.in_first)} or {number(pull.in_second)}",
-            ha="left",
-            va="center",
-            fontsize=8,
-            color=PALE_INK,
-        )
+        values = f"{number(pull.here)} now, {number(pull.in_first)} or {number(pull.in_second)}"
+        _name_row(axes, -2.15 * widest, row, pull.name, values, ha="left")
     axes.plot([0, 0], [-0.45, len(found) - 0.55], color=INK, linewidth=0.9, zorder=3)
     below = len(found) - 0.45
     axes.text(0.05 * widest, below, f"for {story.rla_id}", ha="left", va="top", fontsize=9, color=INK)
@@ -138,6 +128,12 @@ def _side(story: RlaStory, end: float) -> str:
 
 def _dot(story: RlaStory, colours: Mapping[str, str]) -> str:
     return ASKS if story.asks else colours.get(story.action, STANDS)
+
+
+def _name_row(axes: Axes, x: float, row: int, name: str, values: str, *, ha: str) -> None:
+    """A feature's name beside its bar, and its values below."""
+    axes.text(x, row - 0.12, name, ha=ha, va="center", fontsize=9.5, color=INK)
+    axes.text(x, row + 0.26, values, ha=ha, va="center", fontsize=8, color=PALE_INK)
 
 
 def _bare(axes: Axes) -> None:
