@@ -22,7 +22,8 @@ from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.recording.entries import encode_tick, tick_entry_of
+from kurt2rt.recording.entries import tick_entry_of
+from kurt2rt.recording.entry_code import encode_tick
 from kurt2rt.recording.odometry import Odometry, PlanePose
 from kurt2rt.recording.pictures import (
     ROBOT,

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.recording.entries import TickEntry, decode_tick
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.topics import GROUND, SCENE, TICK, TRUTH

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.recording.entries import decode_tick
+from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.segment_reader import SegmentReader

@@ -15,7 +15,8 @@ from kurt2rt.health.plain import report_of
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.recording.disk import RealDisk, WritableFile
-from kurt2rt.recording.entries import TickEntry, decode_tick, tick_entry_of
+from kurt2rt.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head

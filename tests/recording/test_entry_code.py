@@ -19,9 +19,8 @@ from kurt2rt.recording.entries import (
     MidEntry,
     OpinionEntry,
     TickEntry,
-    decode_tick,
-    encode_tick,
 )
+from kurt2rt.recording.entry_code import decode_tick, encode_tick
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.rla.rla import Credit, LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.teaching.commands import Command, CommandResult, Seek, SetPhase
