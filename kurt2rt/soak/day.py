@@ -1,5 +1,6 @@
 """The day: start after start of the program, fault after fault, mood after mood."""
 
+import gc
 import random
 import time
 import tracemalloc
@@ -29,6 +30,7 @@ from kurt2rt.soak.person import Person
 from kurt2rt.soak.place import SoakPlace
 from kurt2rt.soak.result import Check, SoakResult, Start
 from kurt2rt.soak.settings import SoakSettings
+from kurt2rt.soak.spool import Spool
 from kurt2rt.soak.teacher import SoakTeacher
 from kurt2rt.soak.witness import SoakWitness
 from kurt2rt.tasks.settings import TaskSettings
@@ -70,11 +72,10 @@ class Day:
         self._person = Person(place, soak.picked_up_after_s, self._period_s)
         self._odometry = OdometryCheck(place, settings.geometry.metres_per_tick)
         self._log = MinuteLog()
-        self._starts: list[Start] = []
+        self._starts: Spool[Start] = Spool()
         self._unexpected: list[str] = []
         self._objects: dict[str, dict[str, int]] = {}
         self._first_hour: tracemalloc.Snapshot | None = None
-        self._life: Life
         self._next_minute_s = _MINUTE_S
         self._missed_before = 0
         self._refused = self._most_waiting = self._session_off = 0
@@ -83,7 +84,17 @@ class Day:
         self._session_from: int | None = None
 
     async def run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
-        """So many simulated hours; `on_progress` gets simulated seconds. Raises KnowledgeError, DiskOutOfStepError."""
+        """So many simulated hours; `on_progress` gets simulated seconds; once only.
+
+        Raises KnowledgeError, DiskOutOfStepError, OSError.
+        """
+        try:
+            return await self._run(hours, on_progress)
+        finally:
+            for spool in (self._log.minutes, self._starts, self._faults.seen):
+                spool.close()
+
+    async def _run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
         begun_s = time.monotonic()
         end_s = hours * HOUR_S
         clock = self._place.time
@@ -91,6 +102,8 @@ class Day:
             tracemalloc.start(1)
         while clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED:
             await self._live(min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s)), on_progress)
+            # On a robot the end of the program takes all that it knew along; two at a time would count twice.
+            gc.collect()
             # A fault that ended the program is over before somebody starts it anew.
             clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
         return self._result(clock.now_s(), time.monotonic() - begun_s)
@@ -99,7 +112,7 @@ class Day:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
         begun_s = self._place.time.now_s()
-        life = self._life = Life(
+        life = Life(
             self._place,
             self._witness,
             self._teacher,
@@ -117,7 +130,7 @@ class Day:
         self._faults.life = life
 
         def on_tick(record: TickRecord) -> None:
-            self._see(record, on_progress)
+            self._see(life, record, on_progress)
 
         # A program that is ended while its disk fails says what it could not save; that is no loss to look for here.
         await life.run(until_s, on_tick, lambda: self._faults.acting is None)
@@ -141,8 +154,8 @@ class Day:
         lasted_s = self._place.time.now_s() - begun_s
         self._starts.append(Start(begun_s, lasted_s, wire, life.ended_by, complaint))
 
-    def _see(self, record: TickRecord, on_progress: Callable[[float], None]) -> None:
-        life, now_s = self._life, self._place.time.now_s()
+    def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
+        now_s = self._place.time.now_s()
         ledger = life.runtime.ledger
         missed = ledger.missed_ticks - self._missed_before
         self._missed_before = ledger.missed_ticks
@@ -153,7 +166,7 @@ class Day:
             self._odometry.spoil()
         if self._faults.acting is not None or life.wire in ("lossy", "failing"):
             self._odometry.spoil()
-        self._look_at_the_session(record)
+        self._look_at_the_session(life, record)
         if now_s >= self._next_minute_s:
             self._next_minute_s += _MINUTE_S
             self._odometry.look()
@@ -162,8 +175,8 @@ class Day:
             if len(self._log.minutes) % 60 == 0:
                 self._look_at_memory(len(self._log.minutes) // 60)
 
-    def _look_at_the_session(self, record: TickRecord) -> None:
-        school = self._life.runtime.school
+    def _look_at_the_session(self, life: Life, record: TickRecord) -> None:
+        school = life.runtime.school
         if school.session is None:
             return
         if self._session_from is None:
@@ -178,7 +191,8 @@ class Day:
             self._first_hour = tracemalloc.take_snapshot()
 
     def _result(self, simulated_s: float, took_s: float) -> SoakResult:
-        witness, limits, minutes = self._witness, self._soak.limits, self._log.minutes
+        witness, limits = self._witness, self._soak.limits
+        minutes, starts, faults = tuple(self._log.minutes), tuple(self._starts), tuple(self._faults.seen)
         frames = witness.envelope.frames
         counted = {
             "set down": self._person.set_down,
@@ -190,8 +204,8 @@ class Day:
         }
         checks = (
             envelope_check(witness.complaints, frames),
-            fault_check(self._faults.seen),
-            starts_check(self._starts, self._unexpected),
+            fault_check(faults),
+            starts_check(starts, self._unexpected),
             memory_check(minutes, limits),
             steady_check(minutes),
             Check(
@@ -221,9 +235,9 @@ class Day:
             missed_ticks=witness.missed_ticks,
             frames=frames,
             checks=checks,
-            minutes=tuple(minutes),
-            starts=tuple(self._starts),
-            faults=tuple(self._faults.seen),
+            minutes=minutes,
+            starts=starts,
+            faults=faults,
             complaints=(*witness.complaints.told, *self._unexpected),
             counted=counted,
             objects=self._objects,

@@ -10,6 +10,7 @@ from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
 from kurt2rt.soak.life import Life
 from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.spool import Spool
 from kurt2rt.soak.witness import SoakWitness
 
 _LEAST_GAP_S = 4.0
@@ -40,7 +41,7 @@ class SoakFaults:
     """One fault at a time, each case of the table as often as any other."""
 
     def __init__(self, place: SoakPlace, witness: SoakWitness, table: FaultTable, gap_s: float, seed: int) -> None:
-        self.seen: list[FaultSeen] = []
+        self.seen: Spool[FaultSeen] = Spool()
         self.expects_the_end = False
         """Whether the program that runs may end by the fault that acts."""
         self.acting: FaultCase | None = None
@@ -54,6 +55,7 @@ class SoakFaults:
         self._deck: list[FaultCase] = []
         self._disturbance: Disturbance | None = None
         self._recorder: FailingRecorder | None = None
+        self._newest: FaultSeen | None = None
         self._drove = False
         self._old_frames = self._resumes = 0
         self._suffered: Life | None = None
@@ -135,16 +137,14 @@ class SoakFaults:
         allowed = case.must.old_frames * (1 + witness.resumes - self._resumes)
         if old_frames > allowed and self.life is self._suffered and not self.lossy:
             complaints.append(f"{old_frames} old set points arrived at the robot, allowed are {allowed}")
-        self.seen.append(
-            FaultSeen(
-                at_s=begin_s,
-                target=case.target,
-                kind=case.kind,
-                drove=self._drove,
-                stood_after_s=None if stood_at_s is None else max(0.0, stood_at_s - begin_s),
-                latched=None if robot is None else robot.health.latched,
-                complaint="; ".join(complaints),
-            )
+        self._newest = FaultSeen(
+            at_s=begin_s,
+            target=case.target,
+            kind=case.kind,
+            drove=self._drove,
+            stood_after_s=None if stood_at_s is None else max(0.0, stood_at_s - begin_s),
+            latched=None if robot is None else robot.health.latched,
+            complaint="; ".join(complaints),
         )
 
     @property
@@ -153,8 +153,9 @@ class SoakFaults:
         return self.life is not None and self.life.wire == "failing"
 
     def _end(self) -> None:
-        case, life = self.acting, self.life
+        case, life, seen = self.acting, self.life, self._newest
         assert case is not None
+        assert seen is not None
         self._place.end()
         self._witness.envelope.slew_share = 1.0
         self._witness.envelope.clock_is_wrong = False
@@ -164,8 +165,9 @@ class SoakFaults:
             self._recorder.close()
             uncounted = self._recorder.what_is_uncounted()
             if uncounted:
-                self.seen[-1] = self.seen[-1]._replace(complaint=uncounted)
+                seen = seen._replace(complaint=uncounted)
             self._recorder = None
+        self.seen.append(seen)
         if life is not None and life is self._suffered:
             life.mend(case.target)
         self.acting = self._disturbance = self._suffered = None

@@ -1,12 +1,14 @@
 """The knowledge file of a soak and its writer, on a disk that may fail, in step with simulated time."""
 
 import time
+from itertools import chain
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.disk import DiskOutOfStepError, DisturbedJournal, exchange_file
 from kurt2rt.faults.place import Disturbance, SimulatedTime
-from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching, read_lessons
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -16,17 +18,24 @@ _PATIENCE_S = 30.0
 _FAIL = ("off", "intermittent", "garbage", "wrong")
 
 
-class SoakKnowledge:
-    """Opened for one start of the program; closed by `close`."""
+def open_soak_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
+    """What the file holds already, with its journal closed: the soak's own, which may fail, takes its place."""
+    opened = go_on_teaching(path, settings, task)
+    opened.journal.close()
+    return opened
 
-    def __init__(self, path: Path, settings: RobotSettings, task: TaskSettings, simulated: SimulatedTime) -> None:
-        """Raises KnowledgeError."""
-        self._path, self._settings, self._task = path, settings, task
+
+class SoakKnowledge:
+    """Made of what was opened for one start of the program; closed by `close`."""
+
+    def __init__(self, path: Path, opened: OpenedKnowledge, simulated: SimulatedTime) -> None:
+        """`opened`: by `open_soak_knowledge`, at `path`. Raises KnowledgeError."""
+        self._path = path
         self._simulated = simulated
         self._disturbance: Disturbance | None = None
-        self.opened: OpenedKnowledge = go_on_teaching(path, settings, task)
-        binding = self.opened.journal.binding
-        self.opened.journal.close()
+        # Not the entries themselves: the program that is tried here does not keep them, either.
+        self._before = [entry.event.origin.command_id for entry in opened.entries]
+        binding = opened.journal.binding
         self._journal = DisturbedJournal.open(path, binding)
         self._journal.simulated = simulated
         retry = RetryDelays(first_s=0.001, longest_s=0.001)
@@ -35,6 +44,11 @@ class SoakKnowledge:
         """Command ids of the lessons of this start, in order; whoever sees them notes them here."""
         self.acknowledged: list[str] = []
         """Of those said to be durable."""
+
+    @property
+    def lessons(self) -> int:
+        """Of all of the file so far."""
+        return len(self._before) + len(self.submitted)
 
     def disturb(self, disturbance: Disturbance) -> None:
         """From now on the disk fails. Raises DiskOutOfStepError."""
@@ -76,10 +90,13 @@ class SoakKnowledge:
 
     def what_it_lost(self) -> str:
         """What is wrong with the closed file, in a line; empty when it holds all lessons, once, and in order."""
-        before = [entry.event.origin.command_id for entry in self.opened.entries]
-        kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
-        if kept != before + self.submitted:
-            return f"{len(before)} lessons were there and {len(self.submitted)} came, the file holds {len(kept)}"
+        # One by one, for all at once would be more than the program itself takes; whether they fit one another is
+        # looked at when it is opened again.
+        awaited = chain(self._before, self.submitted)
+        with Journal.read_only(self._path) as journal:
+            agree = [entry.event.origin.command_id == next(awaited, None) for entry in journal.each_entry()]
+        if not all(agree) or len(agree) != self.lessons:
+            return f"{len(self._before)} lessons were there and {len(self.submitted)} came, the file holds {len(agree)}"
         if self.acknowledged != self.submitted:
             return f"{len(self.submitted)} lessons were saved, {len(self.acknowledged)} were said to be"
         return ""

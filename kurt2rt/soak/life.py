@@ -16,7 +16,7 @@ from kurt2rt.rounds import Rounds, Screen
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.soak.clock import SoakClock
-from kurt2rt.soak.knowledge import SoakKnowledge
+from kurt2rt.soak.knowledge import SoakKnowledge, open_soak_knowledge
 from kurt2rt.soak.level import SoakLevel
 from kurt2rt.soak.place import SoakPlace
 from kurt2rt.soak.teacher import NAME, SoakTeacher
@@ -73,13 +73,14 @@ class Life:
         self._begun_s = 0.0
         self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
         self._link: HandLink | None = None
-        self.knowledge = SoakKnowledge(Path(service.knowledge), settings, task, place.time)
+        path = Path(service.knowledge)
+        opened = open_soak_knowledge(path, settings, task)
+        self.knowledge = SoakKnowledge(path, opened, place.time)
         robot = place.start_driver(wire)
         witness.look_at(robot, settings.can.cycle_s)
         teacher.program_started()
         self.clock = SoakClock(place.time)
         self.level = SoakLevel(place.time)
-        opened = self.knowledge.opened
         self.runtime: Runtime = build_runtime(
             witness,
             settings,

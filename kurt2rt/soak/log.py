@@ -5,6 +5,7 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.life import Life
 from kurt2rt.soak.meters import open_files, resident_mb, threads
 from kurt2rt.soak.result import Minute
+from kurt2rt.soak.spool import Spool
 from kurt2rt.tick import TickRecord
 
 
@@ -12,7 +13,7 @@ class MinuteLog:
     """Counts ticks, and makes a line of them when a minute is over."""
 
     def __init__(self) -> None:
-        self.minutes: list[Minute] = []
+        self.minutes: Spool[Minute] = Spool()
         self._ticks = self._drives = self._asks = self._stopped = self._missed = 0
         self._worst_late_s = 0.0
 
@@ -28,7 +29,6 @@ class MinuteLog:
     def end_minute(self, at_s: float, life: Life, mood: str) -> None:
         """A minute is over."""
         ticks = max(1, self._ticks)
-        opened, knowledge = life.knowledge.opened, life.knowledge
         self.minutes.append(
             Minute(
                 at_s=at_s,
@@ -36,7 +36,7 @@ class MinuteLog:
                 open_files=open_files(),
                 threads=threads(),
                 rlas=len(life.runtime.level.system),
-                lessons=len(opened.entries) + len(knowledge.submitted),
+                lessons=life.knowledge.lessons,
                 drives=round(self._drives / ticks, 4),
                 asks=round(self._asks / ticks, 4),
                 stopped=round(self._stopped / ticks, 4),
