@@ -1,67 +1,80 @@
-"""What an undo would have changed in recorded runs."""
+"""What an undo or a redo would change in recorded runs."""
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
-from kurt2rt.care.trial import REPORT_EVERY, Known, Report, runs_to_try
+from kurt2rt.care.trial import Known, Report, Runs, newest_to_try, runs_to_try, telling
 from kurt2rt.knowledge.changing import worths_after
-from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.fold import fold_entries
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.undo import lesson_to_undo, lessons_to_undo, undos_of
+from kurt2rt.knowledge.undo import Planned
+from kurt2rt.recording.error import RecordingError
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
-from kurt2rt.replay.replay import ReplayedTick
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Shadow
-from kurt2rt.rla.lesson_book import LessonRecord
+
+LAST_S: Final = 600.0
+"""So much of the newest run is compared where nobody named one: what came before is replayed, in half the time."""
+
+LONGEST_S: Final = 3600.0
+"""A longer run is not tried unless it is named: to replay an hour takes half a minute."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """What an undo would have changed in one run."""
+    """What a change would have changed in one run."""
 
     run: str
+    from_s: float
+    """Where the comparison began, since the first tick of the run."""
     found: Counterfactual
 
 
 @dataclass(frozen=True)
 class Preview:
-    """An undo that was not made."""
+    """A change that was tried."""
 
-    lessons: tuple[LessonRecord, ...]
-    """What would be taken back, in this order."""
     runs: tuple[Tried, ...]
+    """Empty where there was none to try it on."""
     notes: tuple[str, ...]
     """Which runs, or parts of one, could not be tried, and why."""
 
 
-def preview_undo(path: Path, lesson: str | None, of: str | None, recordings: Path, report: Report) -> Preview:
-    """Try an undo of one lesson (None: the last that stands), or of all of the teacher `of`; changes nothing.
+def preview(planned: Planned, runs: Path, report: Report) -> Preview:
+    """Try it on all recorded runs in a folder, or on the one that `runs` is; changes nothing.
 
-    Raises KnowledgeError as the undo would, and where there are no runs to try it on.
+    Raises KnowledgeError where none of them can be tried.
     """
-    with Journal.read_only(path) as journal:
-        binding = journal.binding
-        entries, statistics = journal.read_all()
-        system = fold_entries(journal, entries, radius=math.inf)
-    lessons = [lesson_to_undo(system, lesson, path)] if of is None else lessons_to_undo(system, of, path)
-    undos = undos_of(system, lessons, "preview", lambda problem: KnowledgeError(f"{path}: {problem}"))
-    runs = runs_to_try(recordings, binding)
-    events = tuple(entry.event for entry in entries)
-    dimensions = len(binding.feature_names)
+    return _try_on(planned, runs_to_try(runs, planned.binding), report, last_s=float("inf"))
+
+
+def preview_on_newest(
+    planned: Planned, recordings: Path, report: Report, *, last_s: float = LAST_S, longest_s: float = LONGEST_S
+) -> Preview:
+    """Try it on the end of the newest recorded run of this knowledge, where there is one; changes nothing."""
+    newest = newest_to_try(recordings, planned.binding, planned.path)
+    too_long = [run for run in newest.runs if run.lasts_s > longest_s]
+    if too_long:
+        (run,) = too_long
+        note = f"{run.name}: lasts {run.lasts_s / 60:.0f} min, which takes long; name it with --runs to try it"
+        return Preview((), (*newest.left_out, note))
+    return _try_on(planned, newest, report, last_s=last_s)
+
+
+def _try_on(planned: Planned, runs: Runs, report: Report, last_s: float) -> Preview:
+    events, statistics = planned.events, planned.statistics
+    dimensions = len(planned.binding.feature_names)
     before = Known(events, statistics)
-    after = Known((*events, *undos), worths_after(events, undos, statistics, dimensions))
-    records = {record.event.origin.command_id: record for record in system.lessons}
-    tried = tuple(_tried(run, before, after, report) for run in runs.runs)
-    return Preview(tuple(records[name] for name in lessons), tried, runs.notes)
+    after = Known((*events, *planned.changes), worths_after(events, planned.changes, statistics, dimensions))
+    tried, troubles = list[Tried](), list[str]()
+    for run in runs.runs:
+        try:
+            tried.append(_tried(run, before, after, report, last_s))
+        except RecordingError as error:
+            troubles.append(str(error))
+    return Preview(tuple(tried), (*runs.notes, *troubles))
 
 
-def _tried(run: Run, before: Known, after: Known, report: Report) -> Tried:
-    def on_tick(tick: ReplayedTick) -> None:
-        if tick.entry.number % REPORT_EVERY == 1:
-            report(run.name, tick.entry.number)
-
+def _tried(run: Run, before: Known, after: Known, report: Report, last_s: float) -> Tried:
+    from_s = max(run.lasts_s - last_s, 0.0)
     old, new = (Shadow(run, each.events, each.statistics) for each in (before, after))
-    found = counterfactual(run, new, old, on_tick)
-    return Tried(run.name, found)
+    return Tried(run.name, from_s, counterfactual(run, new, old, telling(run, report), from_s))

@@ -12,16 +12,18 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.replay import Replay
+from kurt2rt.replay.replay import Replay, ReplayedTick
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Answer, Answers, Shadow
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tick import TickRecord
 
-Report = Callable[[str, int], None]
-"""Called now and then with a run's name and how many of its ticks were tried."""
+Report = Callable[[str, float, float], None]
+"""Called now and then with a run's name, how many seconds of it were tried, and how many there are."""
 
-REPORT_EVERY = 500
+_REPORT_EVERY_TICKS = 500
+_NEWEST = 20
+"""So many runs are looked through for one that suits."""
 
 
 class Known(NamedTuple):
@@ -51,7 +53,7 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
 
     Raises KnowledgeError where there is none.
     """
-    paths = [each for each in runs_in(folder) if segments_in(each)] or [folder]
+    paths = _recorded_in(folder) or [folder]
     if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
         raise KnowledgeError(f"{folder}: holds no recorded run; kurt2rt run makes them, --runs says where they are")
     runs, left_out = list[Run](), list[str]()
@@ -70,14 +72,45 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
     return Runs(tuple(runs), tuple(left_out))
 
 
+def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> Runs:
+    """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
+    could have been used in; none where there is none. Its notes say which newer ones cannot be read.
+    """
+    fits, left_out = list[Run](), list[str]()
+    for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
+        try:
+            run = read_run(path)
+            if _why_not(run, binding) is not None or next(run.entries(), None) is None:
+                continue
+        except RecordingError as error:
+            if not fits:
+                left_out.append(str(error))
+            continue
+        if run.head.knowledge and Path(run.head.knowledge).resolve() == knowledge.resolve():
+            return Runs((run,), tuple(left_out))
+        fits.append(run)
+    return Runs(tuple(fits[:1]), tuple(left_out))
+
+
 def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tuple[TickRecord, list[Answers]]]:
     """What each of these says to the situations of each tick of a run, as they were, and that tick."""
     replay = Replay(run)
     shadows = [Shadow(run, each.events, each.statistics) for each in knowledge]
-    for number, (_, record) in enumerate(replay, start=1):
-        if number % REPORT_EVERY == 1:
-            report(run.name, number)
-        yield record, [shadow.look(record, replay.runtime) for shadow in shadows]
+    tell = telling(run, report)
+    for tick in replay:
+        tell(tick)
+        yield tick.record, [shadow.look(tick.record, replay.runtime) for shadow in shadows]
+
+
+def telling(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
+    """To be called with each replayed tick of a run; it reports now and then."""
+    whole_s = run.lasts_s
+
+    def tell(tick: ReplayedTick) -> None:
+        if tick.entry.number % _REPORT_EVERY_TICKS == 1:
+            report(run.name, run.second_of(tick.entry), whole_s)
+
+    return tell
 
 
 def told(both: Answers) -> str:
@@ -88,6 +121,11 @@ def told(both: Answers) -> str:
 def said(answer: Answer) -> str:
     """What one level answers."""
     return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
+
+
+def _recorded_in(folder: Path) -> list[Path]:
+    """The oldest first."""
+    return [each for each in runs_in(folder) if segments_in(each)]
 
 
 def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:

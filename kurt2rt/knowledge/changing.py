@@ -23,6 +23,11 @@ def open_again(path: Path) -> Journal:
     return Journal.open(path, binding)
 
 
+def require_at_rest(path: Path) -> None:
+    """Raises KnowledgeError while a robot runs on the file, before a user waits for what comes first."""
+    open_again(path).close()
+
+
 def new_origin(what: str, teacher: str) -> Origin:
     """Of a change from outside: no robot runs, so there is no tick; to mend what was taught is a correction."""
     return Origin(f"{what}-{uuid.uuid4().hex}", teacher, Phase.CORRECTIONS, tick=0)

@@ -1,36 +1,112 @@
 """Takes lessons back, or lets them stand again, in a knowledge file that no robot runs on."""
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.changing import new_origin, open_again, write
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.fold import fold_journal
+from kurt2rt.knowledge.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import LessonRedone, LessonUndone
+from kurt2rt.rla.rla import LessonRedone, LessonUndone, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 
 
-def undo_lesson(path: Path, lesson: str | None, *, teacher: str, stamp: str) -> LessonRecord:
-    """Undo the lesson of that command id, None: the last that stands; durable on return. Returns what was undone.
+@dataclass(frozen=True)
+class Planned:
+    """An undo or a redo that can be made, and is not made yet."""
+
+    path: Path
+    changes: tuple[LessonUndone | LessonRedone, ...]
+    """What is to be written, in this order."""
+    lessons: tuple[LessonRecord, ...]
+    """The lessons that it is about, in the same order, as they are afterwards."""
+    stay: tuple[str, ...]
+    """Why other lessons of the same teacher stay as they are, a sentence each."""
+    binding: KnowledgeBinding
+    events: tuple[TeachingEvent, ...]
+    """All that was taught before."""
+    statistics: Statistics
+
+
+def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> Planned:
+    """To take back the lesson of that command id, None: the last that stands; or all of the teacher `of`, newest first.
+
+    Reads only; it is `teacher` who undoes. Raises KnowledgeError where there is no such lesson, or a newer one stands
+    in its way.
+    """
+    reading = _read(path)
+    system = reading.system
+    command_ids = [_lesson_to_undo(system, lesson, path)] if of is None else _lessons_to_undo(system, of, path)
+    changes = [LessonUndone(command_id, new_origin("undo", teacher)) for command_id in command_ids]
+    _apply(system, changes, f"{path}: nothing was undone")
+    return reading.planned(changes)
+
+
+def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> Planned:
+    """To let the lesson of that command id stand again, None: the one undone last; or all undone of the teacher `of`.
+
+    Those go the one undone last first; one in whose place something else stands stays undone. Reads only; it is
+    `teacher` who does it. Raises KnowledgeError where there is no such lesson, or none that can stand again.
+    """
+    reading = _read(path)
+    system = reading.system
+    changes, reasons = list[LessonRedone](), list[str]()
+    for command_id in [_lesson_to_redo(system, lesson, path)] if of is None else _undone_by_time(reading, of):
+        problem = system.why_not_redo(command_id)
+        if problem is not None:
+            reasons.append(problem)
+            continue
+        changes.append(LessonRedone(command_id, new_origin("redo", teacher)))
+        system.apply(changes[-1])
+    if not changes:
+        why = f": {reasons[0]}" if reasons else ""
+        raise KnowledgeError(f"{path}: holds no undone lesson by {of} that can stand again{why}")
+    return reading.planned(changes, reasons)
+
+
+def carry_out(planned: Planned, stamp: str) -> None:
+    """Make what was planned, all or nothing; durable on return.
 
     Values become what a robot would make of it: those whom a reward was given lose its credits, and an RLA that gets
-    its former action back is worth what that one had earned, as far as the journal tells. Weights of edges follow when
-    a robot starts next. Raises KnowledgeError, and changes nothing, where there is no such lesson, a newer one stands
-    in its way, or a robot runs on the file.
+    its former action back is worth what that one had earned, as far as the journal tells; a reward that stands again
+    is worth what it was worth then. Weights of edges follow when a robot starts next. Raises KnowledgeError, and
+    changes nothing, where a robot runs on the file, or has changed it since so that it does not fit any more.
     """
-    with open_again(path) as journal:
-        system = fold_journal(journal, radius=math.inf)
-        command_id = lesson_to_undo(system, lesson, path)
-        (record,) = _undo(journal, system, [command_id], teacher, stamp)
-    return record
+    with open_again(planned.path) as journal:
+        _apply(fold_journal(journal, radius=math.inf), planned.changes, f"{planned.path}: nothing was changed")
+        write(journal, [JournalEntry(event, stamp) for event in planned.changes])
 
 
-def lesson_to_undo(system: RlaSystem, lesson: str | None, path: Path) -> str:
-    """Command id of the lesson that can be undone, None: the last that stands. Raises KnowledgeError."""
+@dataclass(frozen=True)
+class _Reading:
+    """What is in a file, and its fold, to plan on."""
+
+    path: Path
+    binding: KnowledgeBinding
+    events: tuple[TeachingEvent, ...]
+    statistics: Statistics
+    system: RlaSystem
+
+    def planned(self, changes: Sequence[LessonUndone | LessonRedone], stay: Sequence[str] = ()) -> Planned:
+        """These changes, which `system` has taken already."""
+        records = tuple(_record(self.system, change.lesson) for change in changes)
+        return Planned(self.path, tuple(changes), records, tuple(stay), self.binding, self.events, self.statistics)
+
+
+def _read(path: Path) -> _Reading:
+    with Journal.read_only(path) as journal:
+        entries, statistics = journal.read_all()
+        system = fold_entries(journal, entries, radius=math.inf)
+        return _Reading(path, journal.binding, tuple(entry.event for entry in entries), statistics, system)
+
+
+def _lesson_to_undo(system: RlaSystem, lesson: str | None, path: Path) -> str:
     command_id = lesson if lesson is not None else system.last_standing_lesson
     if command_id is None:
         raise KnowledgeError(f"{path}: holds no lesson that stands; there is nothing to undo")
@@ -40,19 +116,8 @@ def lesson_to_undo(system: RlaSystem, lesson: str | None, path: Path) -> str:
     return command_id
 
 
-def undo_lessons_of(path: Path, taught_by: str, *, teacher: str, stamp: str) -> tuple[LessonRecord, ...]:
-    """Undo all standing lessons of the teacher `taught_by`, the newest first, in one transaction.
-
-    Returns them in that order. As `undo_lesson`; nothing at all is changed where somebody else's later lesson stands
-    in the way of one of them.
-    """
-    with open_again(path) as journal:
-        system = fold_journal(journal, radius=math.inf)
-        return _undo(journal, system, lessons_to_undo(system, taught_by, path), teacher, stamp)
-
-
-def lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:
-    """Command ids of all standing lessons of a teacher, newest first. Raises KnowledgeError where there is none."""
+def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:
+    """Command ids of all standing lessons of a teacher, newest first."""
     standing = [record for record in system.lessons if not record.undone]
     own = [record.event.origin.command_id for record in standing if record.event.origin.teacher == taught_by]
     if not own:
@@ -62,60 +127,24 @@ def lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:
     return own[::-1]
 
 
-def redo_lesson(path: Path, lesson: str | None, *, teacher: str, stamp: str) -> LessonRecord:
-    """Let the lesson of that command id stand again, None: the one undone last; durable on return. Returns it.
-
-    Values as in `undo_lesson`. Raises KnowledgeError, and changes nothing, where there is no such lesson, its RLA is
-    not as the lesson found it, or a robot runs on the file.
-    """
-    with open_again(path) as journal:
-        system = fold_journal(journal, radius=math.inf)
-        command_id = lesson if lesson is not None else system.last_undone_lesson
-        if command_id is None:
-            raise KnowledgeError(f"{path}: holds no lesson that was undone; there is nothing to redo")
-        problem = system.why_not_redo(command_id)
-        if problem is not None:
-            raise KnowledgeError(f"{path}: {problem}; kurt2rt knowledge lessons shows their ids")
-        event = LessonRedone(command_id, new_origin("redo", teacher))
-        system.apply(event)
-        write(journal, [JournalEntry(event, stamp)])
-        return _record(system, command_id)
+def _lesson_to_redo(system: RlaSystem, lesson: str | None, path: Path) -> str:
+    command_id = lesson if lesson is not None else system.last_undone_lesson
+    if command_id is None:
+        raise KnowledgeError(f"{path}: holds no lesson that was undone; there is nothing to redo")
+    problem = system.why_not_redo(command_id)
+    if problem is not None:
+        raise KnowledgeError(f"{path}: {problem}; kurt2rt knowledge lessons shows their ids")
+    return command_id
 
 
-def redo_lessons_of(
-    path: Path, taught_by: str, *, teacher: str, stamp: str
-) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
-    """Let all undone lessons of the teacher `taught_by` stand again, the one undone last first, in one transaction.
-
-    Returns them in that order, and why others stay undone, a sentence each: something else stands in their place.
-    As `redo_lesson`; raises KnowledgeError where none can stand again.
-    """
-    with open_again(path) as journal:
-        system = fold_journal(journal, radius=math.inf)
-        events, reasons = list[LessonRedone](), list[str]()
-        for command_id in _undone_by_time(journal, system, taught_by):
-            problem = system.why_not_redo(command_id)
-            if problem is not None:
-                reasons.append(problem)
-                continue
-            event = LessonRedone(command_id, new_origin("redo", teacher))
-            system.apply(event)
-            events.append(event)
-        if not events:
-            why = f": {reasons[0]}" if reasons else ""
-            raise KnowledgeError(f"{path}: holds no undone lesson by {taught_by} that can stand again{why}")
-        write(journal, [JournalEntry(event, stamp) for event in events])
-        return tuple(_record(system, event.lesson) for event in events), tuple(reasons)
-
-
-def _undone_by_time(journal: Journal, system: RlaSystem, taught_by: str) -> list[str]:
+def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
     """Command ids of a teacher's lessons that do not stand, the one undone last first: as they came off, they go on."""
     undone = dict[str, None]()
-    for event in journal.events():
+    for event in reading.events:
         if isinstance(event, LessonUndone):
             undone.pop(event.lesson, None)
             undone[event.lesson] = None
-    records = ((command_id, system.lesson(command_id)) for command_id in reversed(undone))
+    records = ((command_id, reading.system.lesson(command_id)) for command_id in reversed(undone))
     return [
         command_id
         for command_id, record in records
@@ -123,32 +152,14 @@ def _undone_by_time(journal: Journal, system: RlaSystem, taught_by: str) -> list
     ]
 
 
-def undos_of(
-    system: RlaSystem, command_ids: Iterable[str], teacher: str, refuse: Callable[[str], KnowledgeError]
-) -> list[LessonUndone]:
-    """The events that undo lessons in this order, applied to `system`. Raises what `refuse` makes of a problem."""
-    events = []
-    for command_id in command_ids:
-        problem = system.why_not_undo(command_id)
+def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], refusal: str) -> None:
+    """Raises KnowledgeError, which begins with `refusal`, at the first one that does not fit."""
+    for change in changes:
+        undoes = isinstance(change, LessonUndone)
+        problem = system.why_not_undo(change.lesson) if undoes else system.why_not_redo(change.lesson)
         if problem is not None:
-            raise refuse(problem)
-        event = LessonUndone(command_id, new_origin("undo", teacher))
-        system.apply(event)
-        events.append(event)
-    return events
-
-
-def _undo(
-    journal: Journal, system: RlaSystem, command_ids: Iterable[str], teacher: str, stamp: str
-) -> tuple[LessonRecord, ...]:
-    """Undo lessons in this order, all or none."""
-
-    def refused(problem: str) -> KnowledgeError:
-        return KnowledgeError(f"{journal.path}: nothing was undone: {problem}")
-
-    events = undos_of(system, command_ids, teacher, refused)
-    write(journal, [JournalEntry(event, stamp) for event in events])
-    return tuple(_record(system, event.lesson) for event in events)
+            raise KnowledgeError(f"{refusal}: {problem}")
+        system.apply(change)
 
 
 def _record(system: RlaSystem, command_id: str) -> LessonRecord:

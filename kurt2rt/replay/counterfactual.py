@@ -39,7 +39,7 @@ class Counterfactual:
     """What would have been otherwise."""
 
     ticks: int
-    """Of the run."""
+    """Of the run, which were compared."""
     decided: int
     """Ticks in which knowledge had a say: no teacher drove, and nothing else had the robot stand."""
     other_action: int
@@ -66,20 +66,20 @@ def counterfactual(
     would_be: Shadow,
     was: Shadow | None = None,
     on_tick: Callable[[ReplayedTick], None] | None = None,
+    from_s: float = 0.0,
 ) -> Counterfactual:
     """Replay a run and compare what two sets of knowledge say of each situation.
 
-    `was`: None: what the robot knew then. `on_tick` is called for each tick, to show how far it is.
-    Raises RecordingError.
+    `was`: None: what the robot knew then. `on_tick` is called for each tick, to show how far it is. `from_s`: ticks
+    that began earlier, since the first one, are replayed and not compared. Raises RecordingError.
     """
     replay = Replay(run)
     before: Look = answers_then if was is None else was.look
     count = _Count()
     for tick in replay:
-        at_s = run.second_of(tick.entry)
-        count.take_in(
-            at_s, tick.record, before(tick.record, replay.runtime), would_be.look(tick.record, replay.runtime)
-        )
+        at_s, record, runtime = run.second_of(tick.entry), tick.record, replay.runtime
+        if at_s >= from_s:
+            count.take_in(at_s, record, before(record, runtime), would_be.look(record, runtime))
         if on_tick is not None:
             on_tick(tick)
     found = count.result(run.trouble)

@@ -1,5 +1,6 @@
 """Changes of knowledge are tried on a recorded run before anything is changed."""
 
+import io
 import re
 import shutil
 from dataclasses import replace
@@ -9,15 +10,15 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.care.compacting import TEACHER, Compaction, compact
-from kurt2rt.care.preview import preview_undo
-from kurt2rt.care.trial import Known, answers, runs_to_try
+from kurt2rt.care.preview import preview, preview_on_newest
+from kurt2rt.care.trial import Known, answers, newest_to_try, runs_to_try
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.undo import undo_lessons_of
+from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
@@ -35,7 +36,7 @@ def nobody(scene: Scene, record: TickRecord) -> None:
     """Says nothing to the robot."""
 
 
-def quietly(run: str, ticks: int) -> None:
+def quietly(run: str, done_s: float, whole_s: float) -> None:
     """Nobody watches the progress."""
 
 
@@ -100,7 +101,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
 
     again = compacted(knowledge, recordings)
     assert (again.deleted, again.kept) == ((), done.kept)
-    undo_lessons_of(knowledge, TEACHER, teacher="command line", stamp=STAMP)
+    carry_out(plan_undo(knowledge, of=TEACHER, teacher="command line"), STAMP)
     assert folded(knowledge).rlas == before.rlas
 
 
@@ -148,23 +149,69 @@ def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
 
 def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, lessons: list[TeachingEvent]) -> None:
     before = folded(knowledge)
-    nothing = preview_undo(knowledge, "far-2", None, recordings, quietly)
-    assert [record.text for record in nothing.lessons] == [f"RLA {before.rlas[-1].rla_id} taught: forward"]
-    (tried,) = nothing.runs
+    planned = plan_undo(knowledge, "far-2", teacher="Ann")
+    assert [record.text for record in planned.lessons] == [f"RLA {before.rlas[-1].rla_id} taught: forward"]
+    shown = preview(planned, recordings, quietly)
+    (tried,) = shown.runs
     assert tried.found.same
-    assert nothing.notes == ()
+    assert (tried.from_s, tried.found.ticks, shown.notes) == (0.0, 1000, ())
+    assert preview_on_newest(planned, recordings, quietly) == shown
 
     first = next(event for event in lessons if isinstance(event, RlaCreated))
-    all_of_one = preview_undo(knowledge, None, first.origin.teacher, recordings, quietly)
-    (tried,) = all_of_one.runs
-    assert len(all_of_one.lessons) == len(lessons)
+    planned = plan_undo(knowledge, of=first.origin.teacher, teacher="Ann")
+    assert len(planned.lessons) == len(lessons)
+    (tried,) = preview(planned, recordings, quietly).runs
     # nothing would be left but what is far off
     assert (tried.found.other_action, tried.found.would_drive) == (0, 0)
     assert 0 < tried.found.would_ask <= tried.found.decided
     assert any(each.was.rla == folded(knowledge).get(first.rla.rla_id) for each in tried.found.stretches)
     assert folded(knowledge).rlas == before.rlas
     with pytest.raises(KnowledgeError, match="there is no lesson 'far-9'"):
-        preview_undo(knowledge, "far-9", None, recordings, quietly)
+        plan_undo(knowledge, "far-9", teacher="Ann")
+
+    carry_out(planned, STAMP)
+    (back,) = preview(plan_redo(knowledge, of=first.origin.teacher, teacher="Ann"), recordings, quietly).runs
+    assert (back.found.would_ask, back.found.would_drive) == (0, tried.found.would_ask)
+
+
+@pytest.fixture
+def runs(recordings: Path, tmp_path: Path) -> Path:
+    """A folder of recordings of one's own, which holds the run."""
+    return Path(shutil.copytree(recordings, tmp_path / "runs"))
+
+
+def test_the_newest_run_is_tried_that_can_be(knowledge: Path, runs: Path) -> None:
+    with Journal.read_only(knowledge) as journal:
+        binding = journal.binding
+    assert newest_to_try(runs / "nowhere", binding, knowledge).runs == ()
+    assert newest_to_try(runs, replace(binding, feature_hash="another"), knowledge).runs == ()
+    stood = record_story("walls", runs, seconds=1, other=nobody).rename(runs / "20260321T094640Z-wall_following")
+    torn = runs / "20260322T114640Z-torn"
+    torn.mkdir()
+    (torn / "0001.mcap").write_bytes(b"nonsense")
+
+    found = newest_to_try(runs, binding, knowledge)
+    assert [run.name for run in found.runs] == [str(stood)]
+    (note,) = found.notes
+    assert torn.name in note
+    shown = preview_on_newest(plan_undo(knowledge, teacher="Ann"), runs, quietly)
+    assert [tried.run for tried in shown.runs] == [str(stood)]
+    assert shown.notes == (note,)
+
+
+def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    (whole,) = preview(planned, recordings, quietly).runs
+    (end,) = preview_on_newest(planned, recordings, quietly, last_s=2.0).runs
+    assert end.from_s == pytest.approx(7.99)
+    assert end.found.ticks == 201
+    assert 0 < end.found.would_ask < whole.found.would_ask
+    assert all(each.from_s >= end.from_s for each in end.found.stretches)
+
+    very_long = preview_on_newest(planned, recordings, quietly, longest_s=9.0)
+    assert very_long.runs == ()
+    (note,) = very_long.notes
+    assert "lasts 0 min, which takes long; name it with --runs to try it" in note
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
@@ -179,15 +226,81 @@ def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordi
     assert "20260320T114640Z-torn" in note
 
 
-def test_on_the_command_line(
-    knowledge: Path, recordings: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+@pytest.fixture
+def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
+    """The command line, in a temporary folder."""
+    monkeypatch.chdir(tmp_path)
+    return CommandLine(monkeypatch, capfd)
+
+
+def test_an_undo_shows_on_the_newest_run_of_the_file_what_it_changes(
+    kurt2rt: CommandLine, knowledge: Path, recordings: Path
 ) -> None:
-    kurt2rt = CommandLine(monkeypatch, capfd)
-    said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--preview", "--runs", recordings).out
+    assert kurt2rt("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", knowledge).exit_code == 0
+    (own,) = Path("var/runs").iterdir()
+    later = Path("var/runs/20991231T094640Z-wall_following")  # of another file
+    shutil.copytree(next(recordings.iterdir()), later)
+    before = folded(knowledge)
+
+    dry = kurt2rt("knowledge", "undo", knowledge, "--dry-run").out.splitlines()
+    assert dry[0].startswith(f"{knowledge}: would be undone: RLA ")
+    assert dry[1].startswith(f"{own}: not one of ")
+    assert dry[2:] == ["nothing was changed: --dry-run"]
+    assert folded(knowledge).rlas == before.rlas
+    tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
+    assert tried == dry[1]
+    assert undone.startswith(f"{knowledge}: undone: RLA ")
+    assert undone.endswith("(lesson far-2 by Ann)")
+    tried, again = kurt2rt("knowledge", "redo", knowledge).out.splitlines()
+    assert tried == dry[1]
+    assert again.startswith(f"{knowledge}: stands again: RLA ")
+    assert folded(knowledge).rlas == before.rlas
+    (undone,) = kurt2rt("knowledge", "undo", knowledge, "--no-preview").out.splitlines()
+    assert undone.endswith("(lesson far-2 by Ann)")
+
+
+def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
+    said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--dry-run", "--runs", recordings).out
+    assert "20260320T094640Z-wall_following: of 400 decisions: 400 times ask where it drove; the longest:\n" in said
     assert " s  asks, instead of " in said
-    assert said.endswith("nothing was changed\n")
-    said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--preview", "--runs", recordings).out
+    said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--dry-run", "--runs", recordings).out
     assert "20260320T094640Z-wall_following: not one of " in said
+    assert "holds no recorded run" in kurt2rt.refused("knowledge", "undo", knowledge, "--runs", "nowhere")
+    assert folded(knowledge).last_standing_lesson == "far-2"
+
+
+def test_where_nothing_was_recorded_an_undo_says_so_and_goes_on(kurt2rt: CommandLine, knowledge: Path) -> None:
+    not_tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
+    assert not_tried == "not tried: var/runs holds no recorded run of such knowledge"
+    assert undone.endswith("(lesson far-2 by Ann)")
+
+
+class Typed(io.StringIO):
+    """What a user types at a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_at_a_terminal_an_undo_asks_first(kurt2rt: CommandLine, knowledge: Path) -> None:
+    for answer in ("n\n", "\n"):
+        refused = kurt2rt("knowledge", "undo", knowledge, typed=Typed(answer))
+        assert refused.exit_code == 1
+        assert refused.err.strip() == "Undo lesson far-2? [y/N]:"
+        assert "would be undone: RLA " in refused.out
+        assert refused.out.endswith("nothing was changed\n")
+        assert folded(knowledge).last_standing_lesson == "far-2"
+    agreed = kurt2rt("knowledge", "undo", knowledge, "--of", "Ann", typed=Typed("y\n"))
+    assert agreed.err.strip() == "Undo these 2 lessons? [y/N]:"
+    assert agreed.out.endswith("2 lessons of Ann undone\n")
+    agreed = kurt2rt("knowledge", "redo", knowledge, typed=Typed("y\n"))
+    assert agreed.err.strip() == "Redo lesson far-1? [y/N]:"
+    for quick in ("--yes", "--no-preview"):
+        assert kurt2rt("knowledge", "redo", knowledge, quick, typed=Typed()).err == ""
+        kurt2rt("knowledge", "undo", knowledge, quick, typed=Typed())
+
+
+def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
     dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
     assert "would delete: RLA " in dry
     done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out

@@ -32,9 +32,10 @@ class CommandLine:
         self._monkeypatch = monkeypatch
         self._capfd = capfd
 
-    def __call__(self, *words: str | Path) -> Said:
+    def __call__(self, *words: str | Path, typed: io.StringIO | None = None) -> Said:
+        """`typed`: what stands at its standard input; nothing, and no terminal, unless given."""
         self._monkeypatch.setattr(sys, "argv", ["kurt2rt", *map(str, words)])
-        self._monkeypatch.setattr(sys, "stdin", io.StringIO())
+        self._monkeypatch.setattr(sys, "stdin", typed or io.StringIO())
         self._capfd.readouterr()
         exit_code: int | str | None = 0
         try:

@@ -11,7 +11,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
-from kurt2rt.knowledge.undo import redo_lesson, redo_lessons_of, undo_lesson, undo_lessons_of
+from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
@@ -29,11 +29,23 @@ def rlas(path: Path) -> tuple[Rla, ...]:
 
 
 def undo(path: Path, lesson: str | None = None) -> LessonRecord:
-    return undo_lesson(path, lesson, teacher="command line", stamp=STAMP)
+    planned = plan_undo(path, lesson, teacher="command line")
+    carry_out(planned, STAMP)
+    (record,) = planned.lessons
+    return record
+
+
+def undo_all_of(path: Path, of: str) -> tuple[LessonRecord, ...]:
+    planned = plan_undo(path, of=of, teacher="command line")
+    carry_out(planned, STAMP)
+    return planned.lessons
 
 
 def redo(path: Path, lesson: str | None = None) -> LessonRecord:
-    return redo_lesson(path, lesson, teacher="command line", stamp=STAMP)
+    planned = plan_redo(path, lesson, teacher="command line")
+    carry_out(planned, STAMP)
+    (record,) = planned.lessons
+    return record
 
 
 def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: Path) -> None:
@@ -81,11 +93,26 @@ def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
         with pytest.raises(KnowledgeError, match=why):
             redo(path, lesson)
     with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
-        redo(path)
+        redo(path, "create-3")
+
+
+def test_what_was_planned_is_made_as_it_was_planned_or_not_at_all(path: Path) -> None:
+    begun(path, lessons=2)
+    planned = plan_undo(path, teacher="command line")
+    assert [record.event for record in planned.lessons] == [created(2)]
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(3), STAMP)])
+    carry_out(planned, STAMP)  # not the lesson that came meanwhile
+    assert rlas(path) == (created(1).rla, created(3).rla)
+    with pytest.raises(KnowledgeError, match=f"^{path}: nothing was changed: lesson 'create-2' was undone already"):
+        carry_out(planned, STAMP)
+    assert rlas(path) == (created(1).rla, created(3).rla)
 
 
 def redo_all_of(path: Path, of: str) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
-    return redo_lessons_of(path, of, teacher="command line", stamp=STAMP)
+    planned = plan_redo(path, of=of, teacher="command line")
+    carry_out(planned, STAMP)
+    return planned.lessons, planned.stay
 
 
 def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
@@ -98,7 +125,7 @@ def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
         )
         journal.append([JournalEntry(event, STAMP) for event in taught])
     before = rlas(path)
-    undo_lessons_of(path, "Hertha", teacher="command line", stamp=STAMP)
+    undo_all_of(path, "Hertha")
     assert rlas(path) == ()
     redone, reasons = redo_all_of(path, "Hertha")
     assert [record.event for record in redone] == [*(created(number) for number in (1, 2, 3)), *taught]
@@ -161,6 +188,7 @@ def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: 
 
 
 def test_nothing_is_undone_under_a_running_robot(path: Path) -> None:
+    begun(path)
     with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
         undo(path)
 
@@ -184,7 +212,7 @@ def with_a_critics_work(path: Path) -> Path:
 
 
 def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays(path: Path) -> None:
-    told = undo_lessons_of(with_a_critics_work(path), CRITIC, teacher="command line", stamp=STAMP)
+    told = undo_all_of(with_a_critics_work(path), CRITIC)
 
     assert [record.event.origin.command_id for record in told] == ["replace-3-left", "praise-3", "delete-2", "blame-1"]
     assert all(record.undone for record in told)
@@ -194,11 +222,11 @@ def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays
         assert [event.lesson for event in undos] == [record.event.origin.command_id for record in told]
         assert len({event.origin.command_id for event in undos}) == 4
     with pytest.raises(KnowledgeError, match=r"holds no lesson by critic that stands; those that stand are by Hertha$"):
-        undo_lessons_of(path, CRITIC, teacher="command line", stamp=STAMP)
+        undo_all_of(path, CRITIC)
 
 
 def test_an_undone_reward_takes_its_credits_off_the_values(path: Path) -> None:
-    undo_lessons_of(with_a_critics_work(path), CRITIC, teacher="command line", stamp=STAMP)
+    undo_all_of(with_a_critics_work(path), CRITIC)
     with Journal.read_only(path) as journal:
         statistics = journal.statistics()
     assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
@@ -263,7 +291,7 @@ def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(p
         KnowledgeError,
         match=f"^{path}: nothing was undone: lesson 'praise-of-hertha' came after 'blame-1' .*; undo that one first",
     ):
-        undo_lessons_of(path, CRITIC, teacher="command line", stamp=STAMP)
+        undo_all_of(path, CRITIC)
     with Journal.read_only(path) as journal:
         assert (journal.events(), journal.statistics()) == before
 
@@ -271,4 +299,4 @@ def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(p
 def test_in_a_file_without_lessons_there_is_nothing_to_undo_of_anybody(path: Path) -> None:
     Journal.open(path, BINDING).close()
     with pytest.raises(KnowledgeError, match=r"holds no lesson by Ann that stands; there is nothing to undo$"):
-        undo_lessons_of(path, "Ann", teacher="command line", stamp=STAMP)
+        undo_all_of(path, "Ann")

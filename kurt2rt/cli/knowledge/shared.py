@@ -1,13 +1,15 @@
 """What the commands of `kurt2rt knowledge` share."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from kurt2rt.care.trial import Report
 
 WIDE = 140
 TEACHER = "command line"
@@ -20,16 +22,18 @@ Recordings = Annotated[
 
 
 @contextmanager
-def replaying() -> Iterator[Callable[[str, int], None]]:
-    """Tells on standard error, while it lasts, which run is replayed and how far."""
+def replaying() -> Iterator[Report]:
+    """A bar on standard error, while it lasts and where that is a terminal: which run is replayed, and how far."""
     columns = (
         TextColumn("replaying {task.description}"),
-        TextColumn("{task.completed:.0f} ticks"),
-        TimeElapsedColumn(),
+        BarColumn(bar_width=20),
+        TextColumn("{task.completed:.0f} of {task.total:.0f} s"),
+        TimeRemainingColumn(),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        line = progress.add_task("")
-        yield lambda run, ticks: progress.update(line, description=run, completed=ticks)
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        line = progress.add_task("", total=0.0)
+        yield lambda run, done_s, whole_s: progress.update(line, description=run, completed=done_s, total=whole_s)
 
 
 def say(text: str) -> None:
