@@ -45,14 +45,19 @@ LONGEST_S = 60.0
 YOUNGEST_SHARE = 0.3
 """Of the programs that are killed while they start."""
 START_S = 0.6
-"""About how long that takes."""
+"""How long that may take, before it is known how long it takes here and now."""
 DRIVING_SHARE = 0.6
 """Of the others that are killed not before the robot drives by what it was taught."""
+IN_A_LESSON_SHARE = 0.4
+"""Of the others that are killed not before the next lesson is sent, and soon after it."""
+MOST_INTO_A_LESSON_S = 0.03
+"""About how long it takes until it is acknowledged."""
 LONGEST_LIFE_S = 1.5
 MOST_LESSONS = 5
 REPLAYED_EVERY = 3
 MOST_FURTHER_S = 0.4
 CYCLE_S = load_robot().can.cycle_s
+_TOO_MANY_CYCLES = 10 * (WATCHDOG_CYCLES + BRAKING_CYCLES)
 _LOOK_S = 0.005
 
 
@@ -65,6 +70,8 @@ class Tally:
     """Killed while they started."""
     driving: int = 0
     """Killed while the wheels turned."""
+    asked: int = 0
+    """Killed after a lesson was sent and before its teacher was answered."""
     acknowledged: int = 0
     stored: int = 0
     """Lessons in the file in the end."""
@@ -91,7 +98,8 @@ class Tally:
     def __str__(self) -> str:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.kinds.items()))
         return (
-            f"{self.kills} kills ({self.young} while it started, {self.driving} while it drove), "
+            f"{self.kills} kills ({self.young} while it started, {self.driving} while it drove, "
+            f"{self.asked} while a lesson was on its way), "
             f"{self.acknowledged} lessons acknowledged ({kinds}), "
             f"{self.stored} stored, {self.unacknowledged} of them unacknowledged; "
             f"at most {self.most_cycles_to_rest} cycles to rest; {self.recorded_ticks} ticks recorded, "
@@ -108,12 +116,19 @@ class Life:
         self._chance = chance
         self.told: dict[int, tuple[str, str]] = {}
         """Command id and kind of the lesson of each row that was acknowledged."""
+        self.asks = False
+        """Whether a lesson is sent and not answered yet."""
+        self._next_lesson = anyio.Event()
 
     @property
     def drives(self) -> bool:
         """Whether the robot drove when it was last seen."""
         state = self._we.state
         return state is not None and state.rla is not None and abs(state.left_m_s) + abs(state.right_m_s) > 0.1
+
+    async def next_lesson(self) -> None:
+        """Wait until one is sent."""
+        await self._next_lesson.wait()
 
     async def teach(self) -> None:
         """Go on for ever: take, resume, answer, correct, praise, undo."""
@@ -130,13 +145,13 @@ class Life:
             await self._we.resume()
         elif state.cause == "unknown":
             await self._lesson(state, "answer")
-        elif state.phase == Phase.SUPERVISED and self._chance.random() < 0.05:
+        elif state.phase == Phase.SUPERVISED and self._chance.random() < 0.2:
             await self._we.set_phase(Phase.CORRECTIONS)
-        elif state.rla is not None and state.phase == Phase.CORRECTIONS and self._chance.random() < 0.2:
+        elif state.rla is not None and state.phase == Phase.CORRECTIONS and self._chance.random() < 0.4:
             await self._lesson(state, self._chance.choice(["correct", "correct", "correct", "undo"]))
-        elif self._chance.random() < 0.02:
+        elif self._chance.random() < 0.04:
             await self._we.set_phase(self._chance.choice([Phase.SUPERVISED, Phase.REINFORCEMENT]))
-        elif state.rla is not None and state.phase == Phase.REINFORCEMENT and self._chance.random() < 0.2:
+        elif state.rla is not None and state.phase == Phase.REINFORCEMENT and self._chance.random() < 0.4:
             await self._lesson(state, "reward")
 
     async def _lesson(self, state: State, kind: str) -> None:
@@ -153,7 +168,13 @@ class Life:
                 request = RewardRequest(boot, command_id, tick, value=value, decision_tick=tick)
             case _:
                 request = UndoRequest(boot, command_id, tick, lesson=None)
-        answer = await self._we._asking.ask(request)
+        self._next_lesson.set()
+        self._next_lesson = anyio.Event()
+        self.asks = True
+        try:
+            answer = await self._we._asking.ask(request)
+        finally:
+            self.asks = False
         row = answer.extra.get("row")
         if answer.accepted and row is not None:
             self.told[row] = (f"{self._we.name}-{command_id.hex()}", kind)
@@ -175,6 +196,7 @@ class KillStory:
         self._acknowledged: set[int] = set()
         self._recordings = KilledRecordings(folder / "runs")
         self._nursery = Nursery()
+        self._start_s = START_S
 
     async def run(self, kills: int) -> Tally:
         """Kill so many programs. Raises AssertionError for what must not be."""
@@ -195,16 +217,19 @@ class KillStory:
     async def _one_life(self) -> None:
         log = self._folder / "run.log"
         log.unlink(missing_ok=True)
+        began_s = time.monotonic()
         words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), "--record", "runs")
         program = self._nursery.start("run", *words, *self._words, folder=self._folder, log=log)
         told: dict[int, tuple[str, str]] = {}
         if self._chance.random() < YOUNGEST_SHARE:
             self.tally.young += 1
-            await anyio.sleep(self._chance.uniform(0.0, START_S))
+            await anyio.sleep(self._chance.uniform(0.0, self._start_s))
             before = self._heard()
-            program.kill()
+            await program.killed()
         else:
-            told, before = await self._taught_and_killed(program)
+            line = await program.says("teachers are listened to on UDP port")
+            self._start_s = time.monotonic() - began_s
+            told, before = await self._taught_and_killed(program, int(line.split()[-1]))
         killed_at_s = time.monotonic()
         assert "Traceback" not in program.said, program.said
         self.tally.kills += 1
@@ -213,9 +238,10 @@ class KillStory:
         self._look_at_the_knowledge(told)
         await anyio.to_thread.run_sync(self._look_at_the_recording, killed_at_s)
 
-    async def _taught_and_killed(self, program: Program) -> tuple[dict[int, tuple[str, str]], list[can.Message]]:
-        line = await program.says("teachers are listened to on UDP port")
-        async with TeacherClient(self._folder / "var/devices/local", port=int(line.split()[-1])) as we:
+    async def _taught_and_killed(
+        self, program: Program, port: int
+    ) -> tuple[dict[int, tuple[str, str]], list[can.Message]]:
+        async with TeacherClient(self._folder / "var/devices/local", port=port) as we:
             life = Life(we, self._chance)
             state = await we._pictures.first()
             assert state is not None
@@ -224,6 +250,7 @@ class KillStory:
             async with anyio.create_task_group() as tasks:
                 tasks.start_soon(life.teach)
                 lessons, further_s = self._chance.randint(0, MOST_LESSONS), self._chance.uniform(0, MOST_FURTHER_S)
+                in_a_lesson = self._chance.random() < IN_A_LESSON_SHARE
                 while_driving = self._chance.random() < DRIVING_SHARE
                 until_s = time.monotonic() + self._longest_life_s
                 while len(life.told) < lessons or (while_driving and not life.drives):
@@ -231,9 +258,14 @@ class KillStory:
                     assert program.lives, program.said
                     if time.monotonic() > until_s:
                         break
+                if in_a_lesson:
+                    with anyio.move_on_after(MOST_FURTHER_S):
+                        await life.next_lesson()
+                    further_s = self._chance.uniform(0, MOST_INTO_A_LESSON_S)
                 await anyio.sleep(further_s)
                 before = self._heard()
-                program.kill()
+                self.tally.asked += life.asks
+                await program.killed()
                 tasks.cancel_scope.cancel()
         return life.told, before
 
@@ -249,7 +281,8 @@ class KillStory:
                     cycles.clear()  # some that the program sent before came late
                 elif turns(frame) or stands(frame):
                     cycles.append(turns(frame))
-            assert len(cycles) < 10 * (WATCHDOG_CYCLES + BRAKING_CYCLES), "it did not come to rest"
+            # Of a story that had to wait for a processor many cycles come at once, most of them at rest.
+            assert len(cycles) < _TOO_MANY_CYCLES or not cycles[-1], "it did not come to rest"
             await anyio.sleep(CYCLE_S)
         cycles_to_rest = max((number for number, turning in enumerate(cycles, start=1) if turning), default=0)
         assert cycles_to_rest <= WATCHDOG_CYCLES + BRAKING_CYCLES

@@ -11,7 +11,7 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
-_PRELOADED = ["kurt2rt.cli.main", "kurt2rt.cli.run", "kurt2rt.service", "aiocoap.oscore", "aiocoap.transports.udp6"]
+_PRELOADED = ["tests.crash.preloaded"]
 _LOOK_S = 0.005
 
 
@@ -65,6 +65,11 @@ class Program:
         await anyio.to_thread.run_sync(self._process.join)
         assert self._process.exitcode is not None
         return self._process.exitcode
+
+    async def killed(self) -> None:
+        """Kill it and wait for its end, while others go on."""
+        self._process.kill()
+        await self.ended()
 
     def kill(self) -> None:
         """Kill it and wait for its end."""

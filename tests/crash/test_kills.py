@@ -1,5 +1,6 @@
 """The robot program is killed at random moments while it is taught: the robot stands, and no lesson is lost."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ KILLS_OF_A_SHARD = 50
 async def test_a_robot_whose_program_is_killed_stands_asks_before_it_drives_and_has_lost_no_lesson(
     tmp_path: Path,
 ) -> None:
-    tally = await KillStory(tmp_path, "shared:killed-twice", seed=7, longest_life_s=50.0).run(kills=2)
+    tally = await KillStory(tmp_path, f"shared:killed-twice-{os.getpid()}", seed=7, longest_life_s=50.0).run(kills=2)
     assert tally.kills == 2
     assert tally.stored >= tally.acknowledged > 0
 
@@ -22,7 +23,7 @@ async def test_a_robot_whose_program_is_killed_stands_asks_before_it_drives_and_
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize("shard", range(4))
 async def test_it_is_so_in_two_hundred_kills(tmp_path: Path, shard: int) -> None:
-    tally = await KillStory(tmp_path, f"shared:killed-{shard}", seed=2004 + shard).run(KILLS_OF_A_SHARD)
+    tally = await KillStory(tmp_path, f"shared:killed-{shard}-{os.getpid()}", seed=2004 + shard).run(KILLS_OF_A_SHARD)
     print(tally)
     assert tally.kills == KILLS_OF_A_SHARD
     assert tally.stored >= tally.acknowledged > KILLS_OF_A_SHARD // 2
