@@ -16,16 +16,13 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.teaching.answer import Answer
-from kurt2rt.teaching.asking import Asking, facts_of
+from kurt2rt.teaching.asking import facts_of
+from kurt2rt.teaching.connected import Connected
 from kurt2rt.teaching.lesson_line import LessonLine, lesson_lines_of
 
 
-class Lessons:
+class Lessons(Connected):
     """The lessons of a `TeacherClient`. Each raises NoAnswerError when nobody answers."""
-
-    @property
-    def _asking(self) -> Asking:
-        raise NotImplementedError  # whoever gives lessons has a robot to ask
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
         """The newest lessons, up to 20, newest first."""
