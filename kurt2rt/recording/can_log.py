@@ -1,7 +1,5 @@
 """The CAN log: what the robot's program hears and sends, written beside it and never at its cost."""
 
-import queue
-import threading
 import time
 from pathlib import Path
 from types import TracebackType
@@ -10,10 +8,10 @@ from typing import NamedTuple, Self
 import can
 
 from kurt2rt.recording.frame_writer import FrameWriter, LogFile
+from kurt2rt.recording.writing_thread import WritingThread
 
 CAPACITY_FRAMES = 20_000
 """That wait for the writer: some 25 s of a disk that does not answer, 5 MB."""
-_PERIOD_S = 0.1
 _PATIENCE_S = 2.0
 _CHANNEL = "can0"
 """Name of a bus in the file that is no interface of the kernel: a log of it can be played on one."""
@@ -41,21 +39,16 @@ class CanLog:
         """Frames so far."""
         self._writer = writer
         self._channel = _CHANNEL if ":" in bus or bus == "sim" else bus
-        self._capacity_frames = capacity_frames
-        # A SimpleQueue's put never waits for the thread at its other end, and a signal handler may interrupt it.
-        self._waiting: queue.SimpleQueue[_Noted] = queue.SimpleQueue()
+        self._thread = WritingThread[_Noted]("CAN log", capacity_frames, self._run)
         self._failure = ""
-        # Counted apart, for two threads count.
-        self._without_room = self._not_written = 0
-        self._ending = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="CAN log", daemon=True)
+        self._not_written = 0
         # The wall clock may be set meanwhile; the stamps go on evenly.
         self._began_at_s = time.time() - time.monotonic()
 
     @property
     def lost(self) -> int:
         """Frames that are not in the file: the writer was too slow, or failed."""
-        return self._without_room + self._not_written
+        return self._thread.without_room + self._not_written
 
     @property
     def trouble(self) -> str:
@@ -66,15 +59,15 @@ class CanLog:
 
     def heard(self, frame: can.Message, age_s: float) -> None:
         """A frame that came in."""
-        self._note(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
+        self._thread.put(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
 
     def sent(self, frame: can.Message) -> None:
         """A frame that went out."""
-        self._note(_Noted(self._began_at_s + time.monotonic(), False, frame))
+        self._thread.put(_Noted(self._began_at_s + time.monotonic(), False, frame))
 
     def write_waiting(self) -> None:
         """Write all that waits; what the thread does again and again, and a run in simulated time by itself."""
-        noted = [self._waiting.get_nowait() for _ in range(self._waiting.qsize())]
+        noted = list(self._thread.take())
         if not noted:
             return
         try:
@@ -92,9 +85,7 @@ class CanLog:
 
     def close(self, patience_s: float = _PATIENCE_S) -> None:
         """Write the rest and close the file; gives a writer that hangs up after a while. `trouble` tells what came."""
-        self._ending.set()
-        self._thread.join(patience_s)
-        if self._thread.is_alive():
+        if not self._thread.end(patience_s):
             self._failure = "the disk does not answer; the end is missing"
 
     def __enter__(self) -> Self:
@@ -106,16 +97,10 @@ class CanLog:
     ) -> None:
         self.close()
 
-    def _note(self, noted: _Noted) -> None:
-        if self._waiting.qsize() < self._capacity_frames:
-            self._waiting.put(noted)
-        else:
-            self._without_room += 1
-
     def _run(self) -> None:
         ended = False
         while not ended:
-            ended = self._ending.wait(_PERIOD_S)
+            ended = self._thread.pause()
             self.write_waiting()
         try:
             self._writer.close()

@@ -1,7 +1,5 @@
 """The run recorder: all that a run sees, decides and is taught, written beside the loop and never at its cost."""
 
-import queue
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -23,13 +21,13 @@ from kurt2rt.recording.notes import Asked, Note, NoteLog, Ticked
 from kurt2rt.recording.run_files import Budget, RunFiles
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead, encode_head
 from kurt2rt.recording.topics import Topics
+from kurt2rt.recording.writing_thread import WritingThread
 from kurt2rt.tick import TickRecord
 
 CAPACITY = 3000
 """Notes that wait for the disk: half a minute of ticks, some 20 MB."""
 SEGMENT_METADATA = "segment"
 """Name of what tells each segment's number, beside the head of the run."""
-_PERIOD_S = 0.1
 _ROUNDS_PER_SECOND = 10
 _PLACE_EVERY_TICKS = 5
 _WORLD_EVERY_TICKS = 100
@@ -62,21 +60,16 @@ class RunRecorder:
         self._files, self._kept = files, kept
         self._live, self._shown = live, shown
         self._ground = ground
-        self._capacity = capacity
-        # A SimpleQueue's put never waits for the thread at its other end, and a signal handler may interrupt it.
-        self._waiting: queue.SimpleQueue[Note] = queue.SimpleQueue()
+        self._thread = WritingThread[Note]("run recorder", capacity, self._run)
         self._held: deque[Note] = deque()
         """Was shown already, and waits for a file."""
         self._began_at_ns = began_at_ns
-        # Counted apart, for two threads count.
-        self._without_room = self._not_written = 0
+        # Of the thread, and of who closes when it hangs: counted apart from what found no room, for two threads count.
+        self._not_written = self._left_behind = 0
         self._failure = ""
         self._unsaved = self._ticks = 0
         self.written = 0
         """Ticks that the disk has."""
-        self._ending = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="run recorder", daemon=True)
-        self._started = False
 
     @property
     def run(self) -> Path | None:
@@ -86,7 +79,7 @@ class RunRecorder:
     @property
     def dropped(self) -> int:
         """Notes that are not in the files: the disk was too slow, or failed."""
-        return self._without_room + self._not_written
+        return self._thread.without_room + self._left_behind + self._not_written
 
     @property
     def trouble(self) -> str:
@@ -133,12 +126,11 @@ class RunRecorder:
 
     def start(self) -> None:
         """Begin to write; once only. Without, whoever records calls `write_waiting` and `tend`."""
-        self._started = True
         self._thread.start()
 
     def write_waiting(self) -> None:
         """Show all that waits, and log it to a file; while there is none, it goes on waiting."""
-        for note in politely(self._waiting.get_nowait() for _ in range(self._waiting.qsize())):
+        for note in politely(self._thread.take()):
             if self._shown is not None and self._live is not None and self._live.is_open:
                 self._log(self._shown, note)
             if self._files is not None:
@@ -158,14 +150,11 @@ class RunRecorder:
 
     def close(self, patience_s: float = 2.0) -> None:
         """Write the rest and end the files; gives a disk that hangs up after a while. `trouble` tells what came."""
-        self._ending.set()
-        if not self._started:
+        if not self._thread.started:
             self._end()
-            return
-        self._thread.join(patience_s)
-        if self._thread.is_alive():
+        elif not self._thread.end(patience_s):
             self._failure = "the disk does not answer; the end is missing"
-            self._without_room += self._waiting.qsize() + len(self._held) + self._unsaved
+            self._left_behind += len(self._thread) + len(self._held) + self._unsaved
 
     def __enter__(self) -> Self:
         self.start()
@@ -177,10 +166,7 @@ class RunRecorder:
         self.close()
 
     def _note(self, note: Note) -> None:
-        if self._waiting.qsize() + len(self._held) < self._capacity:
-            self._waiting.put(note)
-        else:
-            self._without_room += 1
+        self._thread.put(note, held=len(self._held))
 
     def _log(self, log: NoteLog, note: Note) -> bool:
         """Whether it could be logged."""
@@ -229,7 +215,7 @@ class RunRecorder:
                     if rounds_of_files % _ROUNDS_PER_SECOND == 0:
                         self._safely(self._tend_files)
                     rounds_of_files += 1
-                ended = self._ending.wait(_PERIOD_S)
+                ended = self._thread.pause()
                 self._safely(self.write_waiting)
                 rounds += 1
         finally:
@@ -251,7 +237,7 @@ class RunRecorder:
                     self._is_saved()
         finally:
             if self._ticks:
-                self._not_written += self._waiting.qsize() + len(self._held) + self._unsaved
+                self._not_written += len(self._thread) + len(self._held) + self._unsaved
             self._held.clear()
             self._unsaved = 0
             if self._live is not None:
