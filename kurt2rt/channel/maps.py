@@ -2,9 +2,15 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final, Generic, TypeVar
 
 from kurt2rt.channel.schema import Check, Flag, ManyOf, OrNone, Real, Text, Whole, WireError
+
+COUNT: Final = Whole(0, 2**53)
+NAME: Final = Text(128)
+LINE: Final = Text(512)
+
+ToldT = TypeVar("ToldT")
 
 
 class MapOf:
@@ -38,20 +44,39 @@ class OrNotFinite:
         return self.stands_for if value is None else self.check(what, value)
 
 
-def plainly(value: Any, check: Check) -> Any:
+class Form(Generic[ToldT]):
+    """How a dataclass is told as plain values, for JSON and CBOR, and read again. Names are those of its fields."""
+
+    def __init__(self, what: str, shape: MapOf) -> None:
+        """`what`: what is told, in words."""
+        self._what = what
+        self._shape = shape
+
+    def plain_of(self, value: ToldT) -> dict[str, Any]:
+        """Maps, lists, texts and numbers; texts are cut and tidied as `read` wants them, none of it is infinite."""
+        plain: dict[str, Any] = _plainly(value, self._shape)
+        return plain
+
+    def read(self, plain: object) -> ToldT:
+        """What was told. Raises kurt2rt.channel.schema.WireError."""
+        value: ToldT = self._shape(self._what, plain)
+        return value
+
+
+def _plainly(value: Any, check: Check) -> Any:
     """A dataclass, tuple, text or number as the check wants to see it on the other side.
 
     Texts are cut and tidied, lists are no longer than they may be.
     """
     match check:
         case MapOf(checks=checks):
-            return {name: plainly(getattr(value, name), inner) for name, inner in checks.items()}
+            return {name: _plainly(getattr(value, name), inner) for name, inner in checks.items()}
         case ManyOf(check=Real() | Whole() | Flag(), most=most):  # a condition has 72: they are as they should be
             return list(value[:most])
         case ManyOf(check=inner, most=most):
-            return [plainly(each, inner) for each in value[:most]]
+            return [_plainly(each, inner) for each in value[:most]]
         case OrNone(check=inner) if value is not None:
-            return plainly(value, inner)
+            return _plainly(value, inner)
         case OrNotFinite():
             return value if abs(value) < float("inf") else None
         case Text():

@@ -1,11 +1,11 @@
-"""The facts of a decision as plain values, for CBOR, and back. Names are those of the fields."""
+"""The facts of a decision as plain values, for CBOR, and back."""
 
 import math
 from typing import Any
 
 from hal.robot import WheelSpeeds
-from kurt2rt.channel.maps import MapOf, OrNotFinite, plainly
-from kurt2rt.channel.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Text, Whole
+from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
+from kurt2rt.channel.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Whole
 from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause
 
@@ -14,48 +14,44 @@ MOST_OTHERS = 12
 _MOST_ACTS = 32
 _MOST_FEATURES = 512
 
-_COUNT = Whole(0, 2**53)
-_NAME, _LINE = Text(128), Text(512)
 _REAL = Real(1e12)
 _DISTANCE = OrNotFinite(_REAL, math.inf)
 _SPEEDS = Row((_REAL, _REAL))
 _VECTOR = ManyOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
 _STORY = MapOf(
     RlaStory,
-    rla_id=_COUNT,
-    title=_NAME,
-    action=_NAME,
+    rla_id=COUNT,
+    title=NAME,
+    action=NAME,
     condition=ManyOf(_REAL, most=_MOST_FEATURES),
     distance=_DISTANCE,
     radius=_REAL,
     acts=ManyOf(
-        MapOf(
-            Act, text=_LINE, teacher=_NAME, phase=Whole(1, 5), tick=_COUNT, stamp=_NAME, undone=Flag(), changes=Flag()
-        ),
+        MapOf(Act, text=LINE, teacher=NAME, phase=Whole(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()),
         most=_MOST_ACTS,
     ),
-    uses=_COUNT,
-    uses_since=OrNone(_COUNT),
-    rewards=_COUNT,
-    punishments=_COUNT,
+    uses=COUNT,
+    uses_since=OrNone(COUNT),
+    rewards=COUNT,
+    punishments=COUNT,
     value=OrNone(_REAL),
     asks=Flag(),
     leads=Flag(),
 )
 _LEVEL = MapOf(
     LevelFacts,
-    level=_NAME,
-    behaviour=_NAME,
-    names=ManyOf(_NAME, most=_MOST_FEATURES),
+    level=NAME,
+    behaviour=NAME,
+    names=ManyOf(NAME, most=_MOST_FEATURES),
     vector=_VECTOR,
     weights=ManyOf(_REAL, most=_MOST_FEATURES),
     euclidean=Flag(),
     nearest=OrNone(_STORY),
     driver=OrNone(_STORY),
     others=ManyOf(_STORY, most=MOST_OTHERS),
-    count=_COUNT,
-    words=ManyOf(_NAME, most=_MOST_FEATURES),
-    nearest_words=ManyOf(_NAME, most=_MOST_FEATURES),
+    count=COUNT,
+    words=ManyOf(NAME, most=_MOST_FEATURES),
+    nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
 )
 
 
@@ -65,41 +61,34 @@ def _facts(decided: tuple[float, float], granted: tuple[float, float], **others:
 
 _FACTS = MapOf(
     _facts,
-    tick=_COUNT,
+    tick=COUNT,
     now_s=_REAL,
-    robot=_NAME,
-    task=_NAME,
+    robot=NAME,
+    task=NAME,
     phase=Whole(1, 5),
     cause=OneWord(tuple(cause.value for cause in Cause)),
-    action=OrNone(_NAME),
-    asks_at=_NAME,
+    action=OrNone(NAME),
+    asks_at=NAME,
     decided=_SPEEDS,
     granted=_SPEEDS,
-    reasons=ManyOf(_NAME, most=16),
+    reasons=ManyOf(NAME, most=16),
     latched=Flag(),
-    stopped_because=_LINE,
-    trouble=_LINE,
-    teacher=_NAME,
-    infrared_counts=ManyOf(_COUNT, most=64),
+    stopped_because=LINE,
+    trouble=LINE,
+    teacher=NAME,
+    infrared_counts=ManyOf(COUNT, most=64),
     infrared_age_s=_DISTANCE,
     basic=_LEVEL,
     mid=OrNone(_LEVEL),
     overridden=Flag(),
-    plan_says=_LINE,
-    kept=_NAME,
+    plan_says=LINE,
+    kept=NAME,
     history_frozen=Flag(),
     taught_now=Flag(),
-    hindrances=ManyOf(_NAME, most=8),
+    hindrances=ManyOf(NAME, most=8),
 )
 
-
-def plain_of_facts(facts: DecisionFacts) -> dict[str, Any]:
-    """Maps, lists, texts and numbers; at most MOST_OTHERS of the RLAs behind the nearest of each level."""
-    plain: dict[str, Any] = plainly(facts, _FACTS)
-    return plain
-
-
-def facts_of_plain(plain: object) -> DecisionFacts:
-    """The facts that were told. Raises kurt2rt.channel.schema.WireError."""
-    facts: DecisionFacts = _FACTS("what the robot knows of its decision", plain)
-    return facts
+_FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)
+plain_of_facts = _FORM.plain_of
+"""At most MOST_OTHERS of the RLAs behind the nearest of each level are told."""
+facts_of_plain = _FORM.read
