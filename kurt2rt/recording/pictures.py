@@ -55,16 +55,19 @@ def pose_in(frame: str, pose: PlanePose, time_ns: int) -> PoseInFrame:
     return PoseInFrame(timestamp=timestamp(time_ns), frame_id=frame, pose=_pose(pose))
 
 
-def transform(parent: str, child: str, pose: PlanePose, time_ns: int) -> FrameTransforms:
-    """Where the child frame's origin stands in the parent's."""
-    moved = FrameTransform(
-        timestamp=timestamp(time_ns),
-        parent_frame_id=parent,
-        child_frame_id=child,
-        translation=Vector3(x=pose.x_m, y=pose.y_m, z=0.0),
-        rotation=_turned(pose.heading_rad),
-    )
-    return FrameTransforms(transforms=[moved])
+def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> FrameTransforms:
+    """For each (parent, child, pose): where the child frame's origin stands in the parent's."""
+    moved = [
+        FrameTransform(
+            timestamp=timestamp(time_ns),
+            parent_frame_id=parent,
+            child_frame_id=child,
+            translation=Vector3(x=pose.x_m, y=pose.y_m, z=0.0),
+            rotation=_turned(pose.heading_rad),
+        )
+        for parent, child, pose in moves
+    ]
+    return FrameTransforms(transforms=moved)
 
 
 class RobotPictures:

@@ -32,7 +32,7 @@ from kurt2rt.recording.pictures import (
     RobotPictures,
     pose_in,
     timestamp,
-    transform,
+    transforms,
     words_of,
     world_scene,
 )
@@ -91,11 +91,11 @@ class Topics:
         for event in record.events:
             self._taught(event, time_ns)
         self._tell(record, time_ns)
+        if truth is not None:
+            self._truly(truth, time_ns)
         if record.tick >= self._next_scan:
             self._next_scan = record.tick + self._scan_ticks
             self._where(record, time_ns)
-        if truth is not None:
-            self._truly(truth, time_ns)
         begins_to_ask = record.decision.asking and not self._asking
         self._asking = record.decision.asking
         if record.tick >= self._next_scene or begins_to_ask:
@@ -162,15 +162,18 @@ class Topics:
             self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
         pose = self._odometry.pose
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
-        self._tf.log(transform(START, ROBOT, pose, time_ns), log_time=time_ns)
+        moves = [(START, ROBOT, pose)]
+        if self._begins is not None:
+            # Reckoned and true place drift apart from the same beginning.
+            moves.append((WORLD, START, self._begins))
+        # One message holds the whole tree: after a seek a viewer has but the last one of each topic.
+        self._tf.log(transforms(moves, time_ns), log_time=time_ns)
 
     def _truly(self, truth: SimulatedPlace, time_ns: int) -> None:
         here = PlanePose(truth.x_m, truth.y_m, truth.heading_rad)
         if self._begins is None:
             self._begins = here
         self._truth.log(pose_in(WORLD, here, time_ns), log_time=time_ns)
-        # Reckoned and true place drift apart from the same beginning.
-        self._tf.log(transform(WORLD, START, self._begins, time_ns), log_time=time_ns)
 
     def _look(self, record: TickRecord, time_ns: int) -> None:
         if self._situation.has_sinks():

@@ -17,6 +17,9 @@ from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.recording.disk import RealDisk, WritableFile
 from kurt2rt.recording.entries import TickEntry, tick_entry_of
 from kurt2rt.recording.entry_code import decode_tick
+from kurt2rt.recording.odometry import PlanePose
+from kurt2rt.recording.pictures import ROBOT as ROBOT_FRAME
+from kurt2rt.recording.pictures import START, WORLD, transforms
 from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
@@ -445,3 +448,16 @@ def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Pa
     desk.recorder.close()
     assert len(messages_of(tmp_path / NAME, TRUTH)) == 120
     assert len(messages_of(tmp_path / NAME, GROUND)) == 2
+
+
+def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    standing, began = PlanePose(0.0, 0.0, 0.0), PlanePose(1.0, 2.0, 0.0)
+    said = messages_of(tmp_path / NAME, TF)
+    assert len(said) == 20
+    for each in said:
+        tree = transforms([(START, ROBOT_FRAME, standing), (WORLD, START, began)], each.time_ns)
+        assert each.data == tree.encode()
