@@ -8,12 +8,20 @@ from tests.page.classroom import Classroom, classroom
 from tests.page.phone import Phone, phone
 
 
-@pytest.fixture(scope="module")
-def a_phone() -> Iterator[Phone]:
-    """One browser for all stories of a file."""
+@pytest.fixture(scope="session")
+def the_phone() -> Iterator[Phone]:
+    """One browser for all stories: to start it takes longer than most of them."""
     folder = os.environ.get("KURT2RT_SCREENSHOTS")
     with phone(Path(folder) if folder else None) as opened:
         yield opened
+
+
+@pytest.fixture(scope="module")
+def a_phone(the_phone: Phone) -> Iterator[Phone]:
+    """It knows nothing of the file before."""
+    the_phone.forget()
+    yield the_phone
+    the_phone.open("about:blank")
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,9 @@ from typing import Any
 
 import pytest
 from selenium import webdriver
-from selenium.common.exceptions import NoSuchElementException, StaleElementReferenceException
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
-from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.wait import WebDriverWait
 
 BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
@@ -20,6 +19,8 @@ PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 
 PATIENCE_S = 10.0
 """Ends a story whose event never comes."""
 
+# Each page gets a process of its own, and the next one has its process already, unless it is told not to: starting
+# them was most of what the stories took. A transition is painted many times.
 _FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -28,8 +29,25 @@ _FLAGS = (
     "--no-first-run",
     "--disable-background-networking",
     "--disable-component-update",
+    "--disable-extensions",
     "--disable-sync",
+    "--disable-site-isolation-trials",
+    "--process-per-site",
+    "--renderer-process-limit=1",
+    "--disable-features=SpareRendererForSitePerProcess,BackForwardCache,site-per-process,IsolateOrigins",
+    "--force-prefers-reduced-motion",
 )
+
+# What WebDriver's own questions come to, each in one short command.
+_TEXT = """
+const e = document.querySelector(arguments[0]);
+return e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) ? e.innerText.trim() : "";
+"""
+_SHOWN = """
+const e = document.querySelector(arguments[0]);
+const box = e?.getBoundingClientRect();
+return Boolean(e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) && box.width && box.height);
+"""
 
 
 class Phone:
@@ -50,13 +68,25 @@ class Phone:
         """Go to an address."""
         self.driver.get(address)
 
-    def find(self, selector: str) -> WebElement:
-        """The first element of a CSS selector."""
-        return self.driver.find_element(By.CSS_SELECTOR, selector)
-
     def text(self, selector: str) -> str:
-        """What stands there."""
-        return self.find(selector).text
+        """What stands in the first element of a CSS selector; nothing where it is not seen."""
+        return str(self.run(_TEXT, selector))
+
+    def texts(self, selector: str) -> list[str]:
+        """What stands in each that is seen."""
+        return [each.text for each in self.driver.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
+
+    def shows(self, selector: str) -> bool:
+        """Whether its first element is seen."""
+        return bool(self.run(_SHOWN, selector))
+
+    def has(self, selector: str) -> bool:
+        """Whether there is such an element."""
+        return bool(self.run("return document.querySelector(arguments[0]) !== null;", selector))
+
+    def write(self, selector: str, text: str) -> None:
+        """Type into a field."""
+        self.driver.find_element(By.CSS_SELECTOR, selector).send_keys(text)
 
     def run(self, script: str, *arguments: object) -> Any:
         """What a script in the page returns."""
@@ -64,7 +94,7 @@ class Phone:
 
     def wait(self, until: Callable[[], object], what: str) -> None:
         """Wait for something to be so."""
-        waiting = WebDriverWait(self.driver, PATIENCE_S, 0.05, (NoSuchElementException, StaleElementReferenceException))
+        waiting = WebDriverWait(self.driver, PATIENCE_S, 0.05, (StaleElementReferenceException,))
         waiting.until(lambda _: until(), f"never: {what}")
 
     def touch(self, selector: str) -> None:
@@ -101,9 +131,22 @@ class Phone:
             event |= {"text": "\r", "windowsVirtualKeyCode": 13}  # else no button feels it
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", event)
 
-    def before_scripts(self, script: str) -> None:
-        """Run a script in each page that is opened from now on, before its own."""
-        self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+    @contextmanager
+    def before_scripts(self, script: str) -> Iterator[None]:
+        """Run a script in each page that is opened meanwhile, before its own."""
+        added = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+        try:
+            yield
+        finally:
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
+
+    def forget(self) -> None:
+        """Leave the page, and be as one that was never there: no cookies, nothing stored, nothing said."""
+        self.open("about:blank")
+        self.driver.execute_cdp_cmd("Network.clearBrowserCookies", {})
+        self.driver.execute_cdp_cmd("Storage.clearDataForOrigin", {"origin": "*", "storageTypes": "all"})
+        self.turn(PORTRAIT)
+        self.complaints()
 
     def show(self, name: str) -> None:
         """Keep a picture of the screen where the environment asks for it."""

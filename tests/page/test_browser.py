@@ -51,12 +51,12 @@ def lessons_shown(phone: Phone) -> int:
 
 
 def no_picture(phone: Phone) -> bool:
-    return phone.find("#no-picture").is_displayed()
+    return phone.shows("#no-picture")
 
 
 def said(phone: Phone) -> str:
-    phone.wait(lambda: phone.find("#said").get_attribute("class") != "pending", "an answer")
-    assert phone.find("#said").get_attribute("class") == "saved", phone.text("#said")
+    phone.wait(lambda: not phone.has("#said.pending"), "an answer")
+    assert phone.has("#said.saved"), phone.text("#said")
     return phone.text("#said")
 
 
@@ -69,7 +69,7 @@ def begin(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: phone.run("return innerWidth") == PORTRAIT[0], "the screen is turned")
     if room.state().teacher != "local":
         phone.touch("#claim-button")
-    phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+    phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
     room.put_robot_in_the_open()
 
 
@@ -91,12 +91,12 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     phone.show("1-nobody-teaches")
     phone.touch("#claim-button")
     phone.wait(lambda: room.state().teacher == "local", "this device teaches")
-    phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+    phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
     phone.show("2-it-asks")
 
     # Ten lessons by touching actions: answers while it asks, corrections while it drives.
     for action in itertools.cycle(ACTIONS):
-        phone.wait(lambda: phone.find("#actions").get_attribute("aria-busy") != "true", "it may be taught again")
+        phone.wait(lambda: not phone.has("#actions[aria-busy=true]"), "it may be taught again")
         before = lessons_shown(phone)
         phone.touch(f"[data-action={action}]")
         if "says" in said(phone):
@@ -128,7 +128,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     phone.show("5-by-hand")
     phone.finger_up()
     phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
-    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
     phone.show("6-let-go")
 
     # The link breaks while the circle is held: no picture, and the press is over for good.
@@ -136,9 +136,9 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
     room.cut()
     phone.wait(lambda: no_picture(phone), "the page says that it sees nothing")
-    phone.wait(lambda: "held" not in str(phone.find("#stick").get_attribute("class")), "the circle lets go")
-    assert not phone.find("#go").is_enabled()
-    assert phone.find("#stop").is_enabled()
+    phone.wait(lambda: not phone.has("#stick.held"), "the circle lets go")
+    assert phone.has("#go:disabled")
+    assert phone.has("#stop:enabled")
     phone.show("7-no-picture")
     room.mend()
     phone.wait(lambda: not no_picture(phone), "the picture is back")
@@ -150,7 +150,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     # STOP, and GO again.
     phone.touch("#stop")
     phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
-    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
     phone.touch("#go")
     phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
     assert phone.complaints() == []
@@ -163,7 +163,7 @@ def test_a_page_whose_scripts_stand_still_lets_go_of_the_robot(a_phone: Phone, r
     phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
     phone.run("setTimeout(() => { for (const end = Date.now() + 1000; Date.now() < end; ); })")
     phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
-    phone.wait(lambda: "held" not in str(phone.find("#stick").get_attribute("class")), "the circle lets go")
+    phone.wait(lambda: not phone.has("#stick.held"), "the circle lets go")
     phone.finger_up()
 
 
@@ -185,7 +185,7 @@ def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classro
     phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "the robot drives by hand")
     phone.key("keyUp", "KeyW")
     phone.wait(lambda: not room.state().by_hand, "the robot stands")
-    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
     phone.key("keyDown", "Enter")
     phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
     phone.key("keyDown", "Space")
@@ -199,7 +199,7 @@ def stand(phone: Phone, room: Classroom) -> None:
     after = room.state().tick
     phone.wait(lambda: room.state().tick > after + 20, "pictures from after it")
     assert room.state().stopped_because == "local said stop"
-    phone.wait(lambda: phone.find("#go").is_enabled(), "GO is offered")
+    phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
 
 
 def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Classroom) -> None:
@@ -209,9 +209,9 @@ def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Cl
     phone.turn(LAPTOP, touch=False)
     phone.run("document.querySelector('#show-keys').focus()")
     phone.key("keyDown", "Enter")
-    phone.wait(lambda: phone.find("#keys").is_displayed(), "the list of keys opens")
+    phone.wait(lambda: phone.shows("#keys"), "the list of keys opens")
     phone.key("keyDown", "Enter")  # its button has the focus
-    phone.wait(lambda: not phone.find("#keys").is_displayed(), "the list of keys closes")
+    phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
     assert room.state().stopped_because == "local said stop"
     phone.run("document.activeElement.blur()")
     phone.key("keyDown", "Enter")
@@ -228,16 +228,16 @@ def test_the_list_of_keys_leaves_stop_and_go_free(a_phone: Phone, room: Classroo
     begin(phone, room)
     phone.turn(size, touch=size != LAPTOP)
     phone.key("keyDown", "?")
-    phone.wait(lambda: phone.find("#keys").is_displayed(), "the list of keys opens")
+    phone.wait(lambda: phone.shows("#keys"), "the list of keys opens")
     phone.show(f"10-{size[0]}x{size[1]}-keys")
     stand(phone, room)
     phone.touch("#go")
     phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
     phone.key("keyDown", "Space")
     phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
-    assert phone.find("#keys").is_displayed()
+    assert phone.shows("#keys")
     phone.key("keyDown", "?")
-    phone.wait(lambda: not phone.find("#keys").is_displayed(), "the list of keys closes")
+    phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
 
 
 @pytest.mark.parametrize(
@@ -267,7 +267,7 @@ def test_the_arrow_keys_steer_after_the_tab_was_clicked_and_u_undoes_only_what_i
     phone.touch("#tab-drive")
     phone.key("keyDown", "ArrowLeft")
     phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
-    assert phone.find("#drive").is_displayed()
+    assert phone.shows("#drive")
     phone.key("keyUp", "ArrowLeft")
     phone.key("keyDown", "KeyU")
     phone.touch("#tab-teach")
@@ -294,7 +294,7 @@ def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Cl
     )
     assert text.startswith("curve right was not sent")
     phone.wait(lambda: lessons_shown(phone) == 1, "one lesson")
-    phone.wait(lambda: phone.find("#actions").get_attribute("aria-busy") == "false", "it may be taught again")
+    phone.wait(lambda: phone.has("#actions[aria-busy=false]"), "it may be taught again")
     assert room.state().rlas == 1
 
 
@@ -313,8 +313,8 @@ WebSocket = class extends Open {
 
 def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
-    phone.before_scripts(SHUTTER)
-    begin(phone, room)
+    with phone.before_scripts(SHUTTER):
+        begin(phone, room)
     phone.run("sockets.at(-1).close(); shut = true")
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
     room.portal.call(room.client.resume)
@@ -370,7 +370,7 @@ def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
     begin(phone, room)
     phone.turn(size, touch=size != LAPTOP)
     for tab in TABS:
-        if phone.find(f"#tab-{tab}").is_displayed():
+        if phone.shows(f"#tab-{tab}"):
             phone.touch(f"#tab-{tab}")
         phone.show(f"9-{size[0]}x{size[1]}-{tab}")
         assert_handy(phone, size, tab)
@@ -395,7 +395,7 @@ TURNS = ("straight_on", "turn_left", "turn_right")
 
 
 def pressed(phone: Phone) -> list[str]:
-    return [each.text for each in phone.driver.find_elements("css selector", "#behaviours [aria-pressed=true]")]
+    return phone.texts("#behaviours [aria-pressed=true]")
 
 
 async def show_on(robot: FakeRobot) -> None:
@@ -435,7 +435,7 @@ def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_foll
 
 def test_where_one_thing_is_taught_there_is_nothing_to_choose(a_phone: Phone, room: Classroom) -> None:
     begin(a_phone, room)
-    assert not a_phone.find("#behaviours").is_displayed()
+    assert not a_phone.shows("#behaviours")
 
 
 def test_the_critic_of_a_robot_that_drives_is_taught_by_touch(a_phone: Phone, room: Classroom) -> None:
@@ -453,4 +453,4 @@ def test_the_critic_of_a_robot_that_drives_is_taught_by_touch(a_phone: Phone, ro
     phone.show("12-critic")
     phone.touch("#tab-more")
     phone.touch("[data-phase='1']")
-    phone.wait(lambda: not phone.find("#critic").is_displayed(), "phase 1 is calm")
+    phone.wait(lambda: not phone.shows("#critic"), "phase 1 is calm")

@@ -60,7 +60,7 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     assert phone.text("#trusted") == "not trusted yet"
     assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
     fits(lesson)
-    shown = [each.text for each in phone.driver.find_elements("css selector", "#rewards button") if each.is_displayed()]
+    shown = phone.texts("#rewards button")
     assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
     phone.touch("[data-appraisal=bad]")
     lesson.reads("#said", "appraise done")
@@ -77,12 +77,12 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     assert phone.text("#agreement-text") == "agrees with you 0.87"
     assert phone.text("#trusted") == "trusted"
     lesson.reads("#opinion", "critic: thinks bad")
-    assert not phone.find("#role").is_displayed()
-    assert not phone.find("#changed").is_displayed()
+    assert not phone.shows("#role")
+    assert not phone.shows("#changed")
     look(lesson, "phase-4")
 
     lesson.show(phase=3, value=-0.001)
-    phone.wait(lambda: not phone.find("#critic").is_displayed(), "before phase 4 nobody sees it")
+    phone.wait(lambda: not phone.shows("#critic"), "before phase 4 nobody sees it")
     lesson.reads("#gauge-text", "worth 0.00")
     lesson.show(value=-0.08)
     lesson.reads("#gauge-text", "worth \N{MINUS SIGN}0.08")
@@ -110,7 +110,7 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
     lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
     lesson.reads("#trusted", "only listens")
-    assert not phone.find("#role").is_displayed()
+    assert not phone.shows("#role")
     fits(lesson)
     lesson.reads("#changed", "undone: RLA 17")
 

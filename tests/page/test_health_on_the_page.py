@@ -53,7 +53,7 @@ def test_on_a_phone_the_line_shows_all_of_it(lesson: Lesson, size: tuple[int, in
 def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) -> None:
     phone = lesson.phone
     assert phone.text("#health") == "late 0.20 ms, missed 0"
-    assert not phone.find("#health-table").is_displayed()
+    assert not phone.shows("#health-table")
     phone.touch("#link")
     lesson.reads("#health-says", "well; late 0.31 ms (p99), missed 0")
     rows = phone.text("#health-rows")
@@ -62,7 +62,7 @@ def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) ->
     phone.touch("#stop")  # which is never covered
     phone.wait(lambda: lesson.robot.told.count(("stop",)) == 1, "the robot is stopped")
     phone.touch("#close-health")
-    assert not phone.find("#health-table").is_displayed()
+    assert not phone.shows("#health-table")
 
 
 def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
@@ -91,7 +91,7 @@ def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: 
         assert_handy(phone, size, "teach")
     phone.turn(PORTRAIT)
     phone.touch("#close-health")
-    assert not phone.find("#health-table").is_displayed()
+    assert not phone.shows("#health-table")
     for size in SIZES:
         phone.turn(size, touch=size != LAPTOP)
         phone.show(f"12-bar-{size[0]}x{size[1]}")

@@ -95,10 +95,8 @@ def junction(a_phone: Phone) -> Iterator[Junction]:
 def test_the_line_says_why_the_mid_level_wants_this_way_and_what_it_has_come_by(junction: Junction) -> None:
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 2 of 12 differ, R 6")
-    assert not phone.find("#behaviours").is_displayed()
-    assert phone.find("#strip").get_attribute("aria-label") == (
-        "came by: straight, left, left, straight, right, straight, left"
-    )
+    assert not phone.shows("#behaviours")
+    assert phone.has('#strip[aria-label="came by: straight, left, left, straight, right, straight, left"]')
     arrows = phone.run("return [...document.querySelectorAll('#strip i')].map((e) => e.title);")
     assert arrows[-3:] == ["straight", "left", "turn left"]  # time goes to the right, what it wants now is last
     junction.look("way-known")
@@ -115,7 +113,7 @@ def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
         box = phone.run(f"return document.querySelector('[data-way={each}]').getBoundingClientRect().toJSON();")
         assert box["width"] > 90
         assert box["height"] > 70
-    assert not phone.find("#actions").is_displayed()
+    assert not phone.shows("#actions")
     junction.look("which-way")
     junction.touch_way("turn_right")
     phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", False)], "an answer to the mid level")
@@ -144,12 +142,12 @@ def test_the_mid_level_is_corrected_told_what_is_also_possible_and_overridden(ju
 def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junction) -> None:
     phone = junction.phone
     junction.show(cause="unknown", asks_at="basic", action=None, rla=None, distance=812.0)
-    phone.wait(lambda: phone.find("#actions").is_displayed(), "the actions are offered")
-    assert not phone.find("#ways").is_displayed()
+    phone.wait(lambda: phone.shows("#actions"), "the actions are offered")
+    assert not phone.shows("#ways")
     junction.drive_on()
-    phone.wait(lambda: phone.find("#ways").is_displayed(), "the ways are back")
+    phone.wait(lambda: phone.shows("#ways"), "the ways are back")
     phone.touch("[data-level=basic]")
-    phone.wait(lambda: phone.find("#actions").is_displayed(), "the teacher wants to teach actions")
+    phone.wait(lambda: phone.shows("#actions"), "the teacher wants to teach actions")
     phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
     phone.wait(lambda: ("back",) in junction.told("correct"), "a correction of the basic level")
@@ -159,18 +157,18 @@ def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junctio
 def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) -> None:
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left")
-    assert not phone.find("#surprise").is_displayed()
+    assert not phone.shows("#surprise")
     tick = junction.robot.show().tick
     junction.show(surprise=replace(SURPRISED, tick=tick, times=2.5))
     junction.reads("#surprise", "surprise 2.5 \N{MULTIPLICATION SIGN} after mid-level RLA 12")
-    assert "loud" not in str(phone.find("#surprise").get_attribute("class"))
+    assert not phone.has("#surprise.loud")
     phone.show("13-surprised")
     junction.show(surprise=replace(SURPRISED, tick=tick + 10, times=6.0, new=True))
     junction.reads("#surprise", "surprise 6.0 \N{MULTIPLICATION SIGN} after mid-level RLA 12, new")
-    assert "loud" in str(phone.find("#surprise").get_attribute("class"))
+    assert phone.has("#surprise.loud")
     junction.look("very-surprised", sizes=(SMALL,))
     junction.show(tick=tick + 1000)
-    phone.wait(lambda: not phone.find("#surprise").is_displayed(), "it is over")
+    phone.wait(lambda: not phone.shows("#surprise"), "it is over")
 
 
 def test_places_get_names_and_are_sought(junction: Junction) -> None:
@@ -178,7 +176,7 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     phone.touch("#tab-goals")
     junction.reads("#goal-list", "window")
     junction.reads("#goal-now", "seeks nothing")
-    phone.find("#situation-name").send_keys("lift")
+    phone.write("#situation-name", "lift")
     phone.touch("#name-situation")
     phone.wait(lambda: junction.told("name_situation") == [("lift",)], "this place has a name")
     junction.robot.named = ("door", "lift", "window")
@@ -230,9 +228,9 @@ def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> N
             for size in (PORTRAIT, LAPTOP):
                 phone.turn(size, touch=size != LAPTOP)
                 for name in ("#mid", "#levels", "#ways", "#meant", "#tab-goals", "#goals", "#surprise"):
-                    assert not phone.find(name).is_displayed(), name
-            assert phone.find("#behaviours").is_displayed()
-            assert phone.find("#actions").is_displayed()
+                    assert not phone.shows(name), name
+            assert phone.shows("#behaviours")
+            assert phone.shows("#actions")
         finally:
             pictures.cancel()
 
@@ -247,23 +245,23 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
         phone.wait(lambda: "Which way? I know none yet" in phone.text("#sentence"), "it asks which way")
         phone.complaints()  # of the page before, whose server is gone
         phone.touch("#claim-button")
-        phone.wait(lambda: not phone.find("#claim").is_displayed(), "the pad is open")
+        phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
         phone.show("14-which-way")
         phone.touch("[data-way=turn_left]")
         phone.wait(lambda: "I know nothing of turn left yet" in phone.text("#sentence"), "now it asks how")
         assert phone.text("#mid-sentence") == "turn left because mid-level RLA 1: 0 of 12 differ, R 6"
-        phone.wait(lambda: phone.find("#actions").is_displayed(), "the actions are offered")
+        phone.wait(lambda: phone.shows("#actions"), "the actions are offered")
         phone.wait(lambda: phone.run(READY), "it may be taught again")
         phone.touch("[data-action=forward]")
         phone.wait(lambda: "RLA 2 of turn left does forward" in phone.text("#sentence"), "it drives")
         phone.show("14-it-drives")
-        phone.wait(lambda: phone.find("#ways").is_displayed() and phone.run(READY), "the ways are back")
+        phone.wait(lambda: phone.shows("#ways") and phone.run(READY), "the ways are back")
         phone.touch("[data-meant=once]")
         phone.touch("[data-way=straight_on]")
         phone.wait(lambda: "a teacher said so" in phone.text("#mid-sentence"), "the teacher overrides it")
         assert phone.text("#said") == "straight_on is wanted until the next junction is passed"
         phone.touch("#tab-goals")
-        phone.find("#situation-name").send_keys("home")
+        phone.write("#situation-name", "home")
         phone.touch("#name-situation")
         phone.wait(lambda: "home" in phone.text("#goal-list"), "the place has a name")
         phone.touch("[aria-label='Seek home']")
