@@ -105,6 +105,12 @@ def test_a_machine_that_does_not_come_up_is_told_with_its_last_words() -> None:
 
 
 @boots
+def test_systemd_is_its_first_process_where_that_is_wanted_and_nothing_of_it_fails() -> None:
+    done = in_uml("--systemd", "--", "sh", "-c", "cat /proc/1/comm; systemctl is-system-running --wait; exit 7")
+    assert (done.returncode, done.stdout, done.stderr) == (7, "systemd\nrunning\n", "")
+
+
+@boots
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_the_machine_and_leaves_nothing(tmp_path: Path, number: signal.Signals) -> None:
     words = [*MACHINE, "--way", "uml", "--", "sh", "-c", "echo up; sleep 1000"]

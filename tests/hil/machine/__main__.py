@@ -53,6 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         cpu=options.cpu,
         kernel=options.kernel,
         kernel_arguments=tuple(options.kernel_argument),
+        systemd=options.systemd,
     )
     try:
         if options.simulated_time:
@@ -72,7 +73,7 @@ def _find(order: Order, way: str, *, install: bool) -> tuple[str, Callable[[], i
     """What runs the order, and its name. Raises MachineError."""
     need(_TOOLS, install=install)
     why_not_native = ""
-    if way == "native" or (way == "auto" and order.kernel is None):
+    if way == "native" or (way == "auto" and order.kernel is None and not order.systemd):
         try:
             native = find_native(order)
         except MachineError as error:
@@ -95,6 +96,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--way", choices=("auto", "native", "uml"), default="auto", help="auto: native where possible")
     add("--install", action="store_true", help="install missing Debian packages, as root or by sudo -n")
     add("--simulated-time", action="store_true", help="uml, on the small kernel, which is built when it is not there")
+    add("--systemd", action="store_true", help="uml, with systemd as its first process, which runs COMMAND as a unit")
     add("--limit", type=_positive, default=900, metavar="S", help="seconds for COMMAND (%(default)s)")
     add("--interface", action="append", type=_interface, metavar="NAME", help="to bring up, again for more (vcan0)")
     add("--no-echo", action="store_true", help="vcan with its short cut past the queue to local listeners")

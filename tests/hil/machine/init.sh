@@ -1,8 +1,10 @@
 #!/bin/sh
 # First process of the uml machine, on a read-only view of the outer machine's root:  init.sh
-# Makes a root that can be written to and thrown away, loads the modules, and lets inside.py do the rest.
+# Makes a root that can be written to and thrown away, loads the modules, and lets inside.py do the rest; it becomes
+# systemd first, whose unit that is, where the order says so.
 # Beside this file, in the control directory: shared (directories to write to, one a line), start (a shell script that
-# runs inside.py), module_arguments. It says what went wrong on the console, which is the kernel log of the run.
+# runs inside.py), module_arguments, systemd (a link to it, or nothing). It says what went wrong on the console, which is
+# the kernel log of the run.
 control=${0%/*}
 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 export PATH
@@ -43,6 +45,7 @@ fi
 while IFS= read -r directory; do
     mount -t hostfs -o "$directory" none "$root$directory" || bad "cannot share $directory"
 done <"$control/shared"
+[ ! -e "$control/systemd" ] || mount -t tmpfs -o mode=755 tmpfs $root/run || bad "no tmpfs"
 mkdir -p "$root/run/machine"
 mount -t hostfs -o "$control" none $root/run/machine || bad "cannot share $control"
 
@@ -51,6 +54,21 @@ cd $root && pivot_root . . && umount -l . && cd / || bad "cannot change the root
 hostname localhost
 if [ -d "$modules" ]; then
     modprobe can-raw && modprobe vcan $(cat /run/machine/module_arguments) || bad "cannot load the CAN modules"
+fi
+if [ -e /run/machine/systemd ]; then
+    # Nothing of what the outer machine starts, mounts or waits for.
+    mount -t tmpfs -o mode=755 tmpfs /etc/systemd/system && : >/etc/fstab || bad "no tmpfs"
+    # It would empty /tmp, and directories there may be shared.
+    ln -s /dev/null /etc/systemd/system/systemd-tmpfiles-setup.service
+    cat >/etc/systemd/system/machine.service <<END
+[Unit]
+Description=What the machine is for
+[Service]
+ExecStart=/bin/sh /run/machine/start
+ExecStopPost=/bin/sh -c "sync; echo o >/proc/sysrq-trigger"
+LimitNOFILE=4096
+END
+    exec /run/machine/systemd --unit=machine.service
 fi
 ulimit -n 4096
 /bin/sh /run/machine/start

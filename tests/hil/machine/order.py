@@ -25,3 +25,6 @@ class Order:
     kernel: Path | None = None
     """A User-Mode Linux kernel with CAN built in; None takes Debian's with its modules."""
     kernel_arguments: tuple[str, ...] = ()
+    systemd: bool = False
+    """Whether systemd is the first process of a uml machine, as of a robot's computer; else a script that does no more
+    than it must."""

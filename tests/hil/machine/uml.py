@@ -23,6 +23,7 @@ from tests.hil.machine.trouble import MachineError
 
 _INIT = Path(__file__).with_name("init.sh")
 _DEBIAN_KERNEL = "linux.uml"
+_SYSTEMD = "/lib/systemd/systemd"
 _CONTROL_INSIDE = "/run/machine"
 """Where the machine finds the control directory."""
 _SPARE_S = 30.0
@@ -45,6 +46,8 @@ class Uml:
         signs = {"ip": "iproute2", "setpriv": "util-linux", "taskset": "util-linux"}
         if order.kernel is None:
             signs |= {_DEBIAN_KERNEL: "user-mode-linux", "insmod": "kmod", "modprobe": "kmod"}
+        if order.systemd:
+            signs |= {_SYSTEMD: "systemd", "journalctl": "systemd"}
         need(signs, install=install)
         found = program(str(order.kernel or _DEBIAN_KERNEL))
         if found is None:
@@ -96,6 +99,8 @@ class Uml:
         directories = [Path.cwd(), *(each.resolve() for each in self._order.shared)]
         (control / "shared").write_text("".join(f"{each}\n" for each in directories), encoding="utf-8")
         (control / "module_arguments").write_text("echo=1" if self._order.echo else "", encoding="ascii")
+        if self._order.systemd:
+            (control / "systemd").symlink_to(_SYSTEMD)
         shutil.copy(INSIDE, control)
         inside = shlex.join([*INTERPRETER, f"{_CONTROL_INSIDE}/{INSIDE.name}", f"{_CONTROL_INSIDE}/task.json"])
         (control / "start").write_text(f"exec {inside} >>{_CONTROL_INSIDE}/complaints 2>&1\n", encoding="utf-8")
