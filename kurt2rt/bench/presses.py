@@ -4,7 +4,8 @@ import random
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, Grant, Robot, WheelSpeeds
+from hal.robot_between import RobotBetween
 from kurt2rt.timing.clock import Clock
 
 SPEED_M_S = 0.05
@@ -55,19 +56,15 @@ def waits_ns(presses: Sequence[Press], starts: Sequence[Start]) -> list[int]:
     return waits
 
 
-class WitnessedRobot:
-    """A robot (hal.robot.Robot) of which is noted when its wheels are told to start."""
+class WitnessedRobot(RobotBetween):
+    """A robot of which is noted when its wheels are told to start."""
 
     def __init__(self, robot: Robot, clock: Clock) -> None:
         """`clock` is the machine's monotonic one."""
+        super().__init__(robot)
         self.starts: list[Start] = []
-        self._robot = robot
         self._clock = clock
         self._stood = True
-
-    def sense(self, now_s: float) -> Senses:
-        """As the robot does."""
-        return self._robot.sense(now_s)
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         """As the robot does; when it returns the frame is on the bus."""
@@ -77,15 +74,3 @@ class WitnessedRobot:
             self.starts.append(Start(round(self._clock.now_s() * 1e9), grant.wheel_speeds.left_m_s > 0.0))
         self._stood = stands
         return grant
-
-    def emergency_stop(self, reason: str) -> None:
-        """As the robot does."""
-        self._robot.emergency_stop(reason)
-
-    def release(self) -> None:
-        """As the robot does."""
-        self._robot.release()
-
-    def close(self) -> None:
-        """As the robot does."""
-        self._robot.close()

@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, Robot, Senses
+from hal.robot_between import RobotBetween
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.place import Place
 from kurt2rt.tick import TickRecord
@@ -15,17 +16,17 @@ class Stand(NamedTuple):
     to_s: float
 
 
-class Witness:
-    """Sees both ends of the bus (and is, for the tick, the robot: hal.robot.Robot)."""
+class Witness(RobotBetween):
+    """Sees both ends of the bus, and is the robot for the tick."""
 
     def __init__(self, place: Place, envelope: Envelope, controller_watchdog_s: float) -> None:
+        super().__init__(place.robot)
         self.envelope = envelope
         self.latched: tuple[float, str] | None = None
         """When the guard first stopped for good, and its word."""
         self.drove_at_s: list[float] = []
         """Times of ticks whose set points moved the robot."""
         self._place = place
-        self._robot: Robot = place.robot
         self._begin_s = place.disturbance.begin_s
         self._controller_watchdog_s = controller_watchdog_s
         self._sensed_at_s = 0.0
@@ -78,18 +79,6 @@ class Witness:
         """A tick begins: from here on its decision ages."""
         self._sensed_at_s = self._place.time.now_s()
         return self._robot.sense(now_s)
-
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
-        """As the robot does."""
-        return self._robot.drive(wanted, decided_at_s, now_s)
-
-    def emergency_stop(self, reason: str) -> None:
-        """As the robot does."""
-        self._robot.emergency_stop(reason)
-
-    def release(self) -> None:
-        """As the robot does."""
-        self._robot.release()
 
     def close(self) -> None:
         """Left to the place."""

@@ -1,14 +1,15 @@
 """A robot of which one infra-red sensor goes on telling what it told once."""
 
-from hal.robot import Grant, Robot, Senses, WheelSpeeds
+from hal.robot import Robot, Senses
+from hal.robot_between import RobotBetween
 
 
-class StuckSensor:
-    """Another robot (hal.robot.Robot), its senses but for one."""
+class StuckSensor(RobotBetween):
+    """Another robot, its senses but for one."""
 
     def __init__(self, robot: Robot, sensor: int, from_s: float) -> None:
         """`sensor`: its place in the robot's table; it is stuck from `from_s` of the runtime's clock on."""
-        self._robot = robot
+        super().__init__(robot)
         self._sensor = sensor
         self._from_s = from_s
         self._counts: int | None = None
@@ -23,19 +24,3 @@ class StuckSensor:
             self._counts = readings[self._sensor]
         stuck = (*readings[: self._sensor], self._counts, *readings[self._sensor + 1 :])
         return senses._replace(infrared_counts=stuck)
-
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
-        """As the robot."""
-        return self._robot.drive(wanted, decided_at_s, now_s)
-
-    def emergency_stop(self, reason: str) -> None:
-        """As the robot."""
-        self._robot.emergency_stop(reason)
-
-    def release(self) -> None:
-        """As the robot."""
-        self._robot.release()
-
-    def close(self) -> None:
-        """As the robot."""
-        self._robot.close()
