@@ -127,7 +127,8 @@ def build_runtime(
     period_s = settings.can.cycle_s
     recent = RecentDecisions(definition.dimensions)
     reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
-    reinforcement.recall(events, saved)
+    # The rest of what was saved is kept by those who count on from it, and would be kept twice.
+    reinforcement.recall(events, saved and replace(saved, uses={}, transitions={}, expectations={}))
     repertoire = repertoire_of(task, settings)
     wanted = wanted or Wanted(task.behaviours)
     level = BasicLevel(

@@ -197,7 +197,7 @@ class _Reader:
             rla_id=rla.rla_id,
             title=rla.title,
             action=rla.action,
-            condition=rla.condition,
+            condition=tuple(rla.condition),
             distance=distance,
             radius=radius,
             acts=acts,

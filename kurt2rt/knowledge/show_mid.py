@@ -10,7 +10,8 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
 from kurt2rt.mid.settings import MidSettings
 from kurt2rt.mid.shipped import shipped_mid
-from kurt2rt.rla.rla import Condition, Rla
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import Rla
 
 _FOLLOW_UPS = 3
 

@@ -15,7 +15,7 @@ from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.situation import MidSituation, MidSituationSettings
 from kurt2rt.mid.symbols.source import Transitions
-from kurt2rt.rla.rla import Condition
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.space import Metric
 from kurt2rt.steady import steady
 

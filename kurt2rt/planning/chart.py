@@ -13,7 +13,8 @@ import networkx as nx
 import numpy as np
 
 from kurt2rt.planning.target import GroupAt, Vector
-from kurt2rt.rla.rla import Condition, Rla
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import Rla
 
 Charting = Generator[None, None, "Chart"]
 """A chart in the making: each piece of the work looks at one RLA, whose situation is matched at most once in it."""

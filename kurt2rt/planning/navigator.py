@@ -13,7 +13,8 @@ from kurt2rt.planning.goal import Goal, NamedGoal, RlaGoal
 from kurt2rt.planning.seeking import Seeking
 from kurt2rt.planning.step import Course, PlanStep
 from kurt2rt.planning.target import NoSuchGoalError, Target, Vector, target_of
-from kurt2rt.rla.rla import MID, Condition, Rla
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import MID, Rla
 
 _BEFORE_THE_NEXT_M = 0.3
 """Way behind a junction within which a plan may still say what is done at the next one: farther on the robot may be in

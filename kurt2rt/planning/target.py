@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.rla.rla import Condition, Rla
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import Rla
 
 Vector = NDArray[np.float64]
 Distance = Callable[[Vector, Vector], float]

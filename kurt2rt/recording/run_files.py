@@ -1,6 +1,7 @@
 """The files of the run that is being recorded, one after the other, within a budget, on a disk that may fail."""
 
 import contextlib
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -63,7 +64,8 @@ class RunFiles:
         self._name = name
         self._budget = budget
         self._describe = describe
-        self._attachments = attachments
+        # What a run began with is needed once more where somebody deletes its folder: it waits for that in little room.
+        self._attachments = {name: zlib.compress(data) for name, data in attachments.items()}
         self._now_ns = now_ns
         self._disk = disk or RealDisk()
         self._held: HeldFolder | None = None
@@ -147,7 +149,7 @@ class RunFiles:
             segment.describe(name, dict(metadata))
         for attached, data in self._attachments.items():
             if not self._attached or attached in _IN_EACH:
-                segment.attach(attached, data, self._now_ns())
+                segment.attach(attached, zlib.decompress(data), self._now_ns())
         segment.save()
         self._attached = True
         self.trouble = ""

@@ -5,7 +5,7 @@ and undo are about. That of phase 5 begins anew whenever phase 5 begins and is d
 and blame stand on another scale. What a teacher says in phase 5 is booked in both.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -68,8 +68,9 @@ class Reinforcement:
         )
         self._repair = Repair(system, self.worth, settings)
         self._repair.count_from(self._worths)
-        self._bookings: dict[str, tuple[Booking, ...]] = {}
-        """Of each reward in the journal, by its command id: what an undo takes off the teacher's account."""
+        self._depths: dict[str, tuple[int, ...]] = {}
+        """Of each reward in the journal, by its command id: to which actions of their RLAs its credits belong, so that
+        an undo takes them off the teacher's account there."""
         self._alone_bookings: dict[str, tuple[Booking, ...]] = {}
         """Of each reward that a teacher gave in this phase 5: what an undo takes off its account."""
         self._since: dict[int, int] = {}
@@ -144,7 +145,7 @@ class Reinforcement:
         match event:
             case RlaRewarded(_, value, decided_at_tick, origin):
                 trace = self._trace(decided_at_tick, None)
-                self._bookings[origin.command_id] = _booked(self.rule, event.credits)
+                self._depths[origin.command_id] = _depths(self.rule, event.credits)
                 self.rule.take(value, trace)
                 if self._alone is not None:
                     credits_alone = self._alone.credits_of(value, trace)
@@ -187,9 +188,8 @@ class Reinforcement:
             self._system.apply(event)
             if isinstance(event, RlaRewarded):
                 self.rows += 1
-                bookings = _booked(self.rule, event.credits)
-                self._bookings[event.origin.command_id] = bookings
-                self.rule.book(bookings, 1)
+                depths = self._depths[event.origin.command_id] = _depths(self.rule, event.credits)
+                self.rule.book(map(Booking, event.credits, depths), 1)
             else:
                 self.hear(event)
 
@@ -259,8 +259,8 @@ class Reinforcement:
         record = self._system.lesson(lesson)
         assert record is not None
         match record.event:
-            case RlaRewarded():
-                self.rule.book(self._bookings.pop(lesson), -1)
+            case RlaRewarded(credits=credits_):
+                self.rule.book(map(Booking, credits_, self._depths.pop(lesson)), -1)
                 if self._alone is not None:
                     self._alone.book(self._alone_bookings.pop(lesson, ()), -1)
                 self.choice.forget()
@@ -286,8 +286,8 @@ class Reinforcement:
         assert record is not None
         match record.event:
             case RlaRewarded(credits=credits_):
-                self._bookings[lesson] = _booked(self.rule, credits_)
-                self.rule.book(self._bookings[lesson], 1)
+                depths = self._depths[lesson] = _depths(self.rule, credits_)
+                self.rule.book(map(Booking, credits_, depths), 1)
                 self.choice.forget()
             case event:
                 self._hear_of_an_rla(event, origin.tick)
@@ -308,6 +308,11 @@ class Reinforcement:
                 self._repair.there(rla)
 
 
+def _depths(account: ReinforcementRule, credits_: Iterable[Credit]) -> tuple[int, ...]:
+    """To which actions credits belong: to those that their RLAs have now."""
+    return tuple(account.depth(credit.rla_id) for credit in credits_)
+
+
 def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[Booking, ...]:
     """Credits as they belong to the actions that their RLAs have now."""
-    return tuple(Booking(credit, account.depth(credit.rla_id)) for credit in credits_)
+    return tuple(map(Booking, credits_, _depths(account, credits_)))

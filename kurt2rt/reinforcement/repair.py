@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.matching import exact_square
 from kurt2rt.rla.rla import (
     ActionWithdrawn,
-    Condition,
     Lesson,
     Origin,
     Rla,

@@ -5,8 +5,8 @@ from bisect import bisect_left
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.matching import ConditionIndex
-from kurt2rt.rla.rla import Condition
 from kurt2rt.rla.space import Space
 from kurt2rt.rla.symbol_index import SymbolIndex
 
@@ -26,7 +26,7 @@ class Contest:
         if len(condition) != dimensions:
             raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
         position = bisect_left(self.ids, rla_id)
-        self.index.insert(position, tuple(self._weighted(condition).tolist()))
+        self.index.insert(position, self._weighted(condition))
         self.ids.insert(position, rla_id)
 
     def leave(self, rla_id: int) -> None:

@@ -54,7 +54,7 @@ def exact_square(difference: NDArray[np.float64]) -> float:
     return float(_sum(difference * difference))
 
 
-def fitting_row(condition: tuple[float, ...], dimensions: int) -> NDArray[np.float64]:
+def fitting_row(condition: tuple[float, ...] | NDArray[np.float64], dimensions: int) -> NDArray[np.float64]:
     """A condition as an array (d,). Raises ValueError for a wrong length or a number that is not finite."""
     row = np.array(condition, dtype=np.float64)
     if row.shape != (dimensions,):
@@ -86,11 +86,11 @@ class ConditionIndex:
     def __len__(self) -> int:
         return self._count
 
-    def append(self, condition: tuple[float, ...]) -> None:
+    def append(self, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition behind all others. Raises ValueError for a wrong length or a number that is not finite."""
         self.insert(self._count, condition)
 
-    def insert(self, position: int, condition: tuple[float, ...]) -> None:
+    def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
         row = fitting_row(condition, self._dimensions)
         if self._count == len(self._exact):

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from kurt2rt.rla.rla import Condition, SituationNamed
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import SituationNamed
 
 
 class NamedSituations:

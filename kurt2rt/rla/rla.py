@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
+from kurt2rt.rla.condition import Condition, packed
+
 ASK = "ask"
 """Instead of an action: the RLA's was withdrawn, so where it is nearest the robot asks. No repertoire has this name."""
 
@@ -25,10 +27,6 @@ class Phase(IntEnum):
     REINFORCEMENT = 3
     CRITIC = 4
     AUTONOMOUS = 5
-
-
-Condition = tuple[float, ...]
-"""A point in feature space, one float64 per feature of the situation definition."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +64,9 @@ class Rla:
     """The taught behaviour it belongs to: it answers only while that one is wanted. Empty where a task has only one."""
     level: str = BASIC
     """Whose situations it answers: the features of its condition are that level's."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "condition", packed(self.condition))
 
     @property
     def title(self) -> str:

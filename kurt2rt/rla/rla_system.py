@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.rla.competitors import CompetitorGroups
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.contest import Contest
 from kurt2rt.rla.fingerprint import knowledge_hash_of
 from kurt2rt.rla.lesson_book import LessonBook, LessonRecord
@@ -25,7 +26,6 @@ from kurt2rt.rla.rla import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    Condition,
     KnowledgeMerged,
     Lesson,
     LessonRedone,

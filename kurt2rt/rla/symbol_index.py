@@ -52,11 +52,11 @@ class SymbolIndex:
     def __len__(self) -> int:
         return len(self._rows)
 
-    def append(self, condition: tuple[float, ...]) -> None:
+    def append(self, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition behind all others. Raises ValueError for a wrong length or a number that is not finite."""
         self.insert(len(self), condition)
 
-    def insert(self, position: int, condition: tuple[float, ...]) -> None:
+    def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
         self._rows = np.insert(self._rows, position, fitting_row(condition, self._dimensions), axis=0)
 

@@ -15,7 +15,7 @@ from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.perception import Situation
-from kurt2rt.rla.rla import Condition
+from kurt2rt.rla.condition import Condition
 from kurt2rt.simulated import SimulatedArena
 from kurt2rt.tasks.settings import load_task
 from simbridge.pose import Pose

@@ -8,7 +8,8 @@ from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.perception.perception import Perception
 from kurt2rt.repertoire.of_task import repertoire_of
-from kurt2rt.rla.rla import Condition, TeachingEvent
+from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.behaviors.helpers import ROBOT, SENSORS, sensed
 
