@@ -9,6 +9,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How
 from kurt2rt.experiments.errands.robot import teach_and_send
+from kurt2rt.experiments.kept.by_stem import KeptByStem
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
@@ -19,7 +20,7 @@ from kurt2rt.tasks.settings import TaskSettings
 
 
 @dataclass(frozen=True, slots=True)
-class ErrandsJob:
+class ErrandsJob(KeptByStem):
     """Lead one robot about, and send it to goals."""
 
     stage: StudyStage
@@ -38,14 +39,9 @@ class ErrandsJob:
         return f"{self.task.name}, seed {self.seed}"
 
     @property
-    def file(self) -> str:
-        """Path within the folder of results."""
-        return f"results/{self.task.name}-{self.seed}.json"
-
-    @property
-    def knowledge(self) -> Path:
-        """Where what it was taught is kept."""
-        return self.results.folder / self._kept
+    def stem(self) -> str:
+        """Name of its files, with folders and without ending."""
+        return f"{self.task.name}-{self.seed}"
 
     @property
     def outcome(self) -> type[ErrandsOutcome]:
@@ -76,9 +72,5 @@ class ErrandsJob:
                 report=RobotTime(tell).report,
                 made_of=self.made_of,
             )
-            self.results.keep(knowledge, self._kept)
+            self.keep(knowledge)
         self.results.write(self, outcome)
-
-    @property
-    def _kept(self) -> str:
-        return f"knowledge/{self.task.name}-{self.seed}.knowledge"

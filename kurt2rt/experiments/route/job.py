@@ -7,6 +7,7 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.curriculum import Report, run_lesson
+from kurt2rt.experiments.kept.by_stem import KeptByStem
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.kept.stage import StudyStage
@@ -21,7 +22,7 @@ _BASIC = "basic"
 
 
 @dataclass(frozen=True, slots=True)
-class BasicJob:
+class BasicJob(KeptByStem):
     """The task that teaches the streets, with its own lesson."""
 
     stage: StudyStage
@@ -37,14 +38,9 @@ class BasicJob:
         return f"{self.task.name}, seed {self.seed}"
 
     @property
-    def file(self) -> str:
-        """Path within the folder of results."""
-        return f"results/{_BASIC}/{self.task.name}-{self.seed}.json"
-
-    @property
-    def knowledge(self) -> Path:
-        """Where what it was taught is kept."""
-        return self.results.folder / self._kept
+    def stem(self) -> str:
+        """Name of its files, with folders and without ending."""
+        return f"{_BASIC}/{self.task.name}-{self.seed}"
 
     @property
     def outcome(self) -> type[BasicOutcome]:
@@ -64,7 +60,7 @@ class BasicJob:
         with self.results.scratch() as folder:
             knowledge = folder / "knowledge"
             lesson, _ = await run_lesson(self.stage, self.robot, self.task, knowledge, seed=self.seed, report=report)
-            self.results.keep(knowledge, self._kept)
+            self.keep(knowledge)
         outcome = BasicOutcome(
             made_of=self.made_of,
             seed=self.seed,
@@ -74,13 +70,9 @@ class BasicJob:
         )
         self.results.write(self, outcome)
 
-    @property
-    def _kept(self) -> str:
-        return f"knowledge/{_BASIC}/{self.task.name}-{self.seed}.knowledge"
-
 
 @dataclass(frozen=True, slots=True)
-class RouteJob:
+class RouteJob(KeptByStem):
     """One route, taught in one way to one robot, and driven by it."""
 
     stage: StudyStage
@@ -105,14 +97,9 @@ class RouteJob:
         return f"{self.task.name} of {self.decisions}, {self.variant.name}, seed {self.seed}"
 
     @property
-    def file(self) -> str:
-        """Path within the folder of results."""
-        return f"results/{self._stem}.json"
-
-    @property
-    def knowledge(self) -> Path:
-        """Where what it was taught is kept."""
-        return self.results.folder / self._kept
+    def stem(self) -> str:
+        """Name of its files, with folders and without ending."""
+        return f"{self.variant.name}/{self.task.name}-{self.decisions}-{self.seed}"
 
     @property
     def outcome(self) -> type[RouteOutcome]:
@@ -136,13 +123,5 @@ class RouteJob:
             taught = await teach_route(
                 self.stage, self.robot, self.task, self.variant, knowledge, seed=self.seed, report=report
             )
-            self.results.keep(knowledge, self._kept)
+            self.keep(knowledge)
         self.results.write(self, taught.outcome(self.made_of))
-
-    @property
-    def _stem(self) -> str:
-        return f"{self.variant.name}/{self.task.name}-{self.decisions}-{self.seed}"
-
-    @property
-    def _kept(self) -> str:
-        return f"knowledge/{self._stem}.knowledge"
