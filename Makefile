@@ -24,8 +24,9 @@ test: $(INSTALLED)
 	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types compiled
 	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
 
+# A test that waits for a processor has not failed: six times what the quick ones have.
 test-deep: $(INSTALLED) guard
-	$(PYTEST) -n 2 -q -m deep
+	$(PYTEST) -n 2 -q -m deep --timeout 1800
 
 # Every line and branch of the guard and of what it stands on, by the tests of hal alone.
 guard: $(INSTALLED)

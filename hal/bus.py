@@ -158,7 +158,8 @@ class CanBus:
     def _send(self, frame: can.Message, *, is_control: bool) -> None:
         end = self._usable()
         awaited = is_control and end.confirms
-        if awaited and self._forgotten and self._first_since is None:
+        first_since = awaited and self._forgotten and self._first_since is None
+        if first_since:
             self._first_since = bytes(frame.data)
         if awaited:
             self._sent_controls += 1  # before it is out, for it may be back at once
@@ -167,6 +168,8 @@ class CanBus:
         except (can.CanError, OSError, ValueError) as error:
             if awaited:
                 self._sent_controls -= 1
+            if first_since:
+                self._first_since = None  # a frame that did not go out is never confirmed
             raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
         if self.tap is not None:
             self.tap.sent(frame)

@@ -12,6 +12,7 @@ from tests.hal.bus_conformance import BUS_OFF, RESTARTED
 from tests.hal.helpers import cycle
 
 SLOW = Frame(CONTROL_ID, bytes((0, 2, 0, 1, 0, 1, 0, 1)))
+FAST = Frame(CONTROL_ID, bytes((0, 2, 0, 9, 0, 1, 0, 9)))
 
 
 class HeldEnd:
@@ -185,6 +186,21 @@ def test_once_a_newer_one_has_come_nothing_that_was_forgotten_is_waited_for(
         end.carry()
         bus.drain()
         assert port.unconfirmed == 0
+
+
+def test_a_frame_that_the_bus_did_not_take_is_not_the_first_since(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+    port.send(encode_brake())
+    port.forget_unconfirmed()
+    end.is_full = True
+    with pytest.raises(BusError):
+        port.send(SLOW)
+    end.is_full = False
+    for frame in (encode_brake(), FAST, FAST):
+        port.send(frame)
+        end.carry()
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 0
 
 
 @pytest.mark.parametrize("happens", ["restarted", "lost", "reopened"])
