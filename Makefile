@@ -38,7 +38,7 @@ mutants: $(INSTALLED)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[mutants]'
 	$(BIN)/python -m tests.hal.mutants
 
-# The robot program is killed 10 000 times while it is taught: 6 hours of one processor; SHARD=2/8 is the second of eight.
+# The robot program is killed 10 000 times while it is taught: an hour of one processor; SHARD=2/8 is the second of eight.
 SHARD ?= 1/1
 KILLS ?= 10000
 kills: $(INSTALLED)

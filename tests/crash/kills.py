@@ -32,9 +32,8 @@ def main() -> None:
     shard, shards = (int(number) for number in arguments.shard.split("/"))
     if not 1 <= shard <= shards:
         parser.error(f"there is no shard {arguments.shard}")
-    kills = Kills(
-        arguments.after + arguments.kills * (shard - 1) // shards, kills_of_shard(arguments.kills, shard, shards)
-    )
+    before = arguments.after + sum(kills_of_shard(arguments.kills, each, shards) for each in range(1, shard))
+    kills = Kills(before, kills_of_shard(arguments.kills, shard, shards))
     anyio.run(kills.run, arguments.at_once)
     print(kills.tally)
     print(f"{kills.tally.kills} passed, {kills.failed} failed")
@@ -46,18 +45,22 @@ def kills_of_shard(kills: int, shard: int, shards: int) -> int:
     return kills * shard // shards - kills * (shard - 1) // shards
 
 
+def stories(first: int, count: int) -> Iterator[tuple[int, int]]:
+    """Seeds and kills of so many kills in all; a seed is the number of its first kill, so that no two are the same."""
+    for begin in range(first, first + count, OF_A_STORY):
+        yield begin, min(OF_A_STORY, first + count - begin)
+
+
 class Kills:
     """Those of one shard, in stories."""
 
     def __init__(self, first: int, count: int) -> None:
-        """`first`: number of the first kill among all; a story's seed is that of its first."""
+        """`first`: number of the first kill among all."""
         self.tally = Tally()
         self.failed = 0
         """Stories that did not go as they should."""
         self._count = count
-        self._stories: Iterator[tuple[int, int]] = (
-            (first + done, min(OF_A_STORY, count - done)) for done in range(0, count, OF_A_STORY)
-        )
+        self._stories = stories(first, count)
         self._memory = _MEMORY if _MEMORY.is_dir() else None
         self._began_s = time.monotonic()
 
