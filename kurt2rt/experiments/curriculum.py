@@ -1,6 +1,7 @@
 """A lesson and its exams, for one seed: what a demonstration shows once and a study repeats."""
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,13 +56,7 @@ async def run_lesson(
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
-
-        def on_progress(done_s: float) -> None:
-            keeping.look()
-            report(f"teaching in world {world}", done_s, whole_s)
-
-        arena = stage.open(world, seed, plan.purpose)
-        try:
+        with closing(stage.open(world, seed, plan.purpose)) as arena:
             lesson = await teach(
                 arena,
                 settings,
@@ -69,13 +64,11 @@ async def run_lesson(
                 keeping.writer,
                 keeping.opened.events,
                 seed=seed,
-                on_progress=on_progress,
+                on_progress=keeping.telling(report, f"teaching in world {world}", whole_s),
                 statistics=keeping.opened.counter,
                 saved=keeping.opened.saved,
                 plan=plan,
             )
-        finally:
-            arena.close()
         keeping.end(lesson.saved)
         report(f"teaching in world {world}", whole_s, whole_s)
     return lesson, read_lessons(knowledge, settings, task)
@@ -95,8 +88,7 @@ async def run_exams(
 
     async def drive(world: str, *, by_teacher: bool) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
-        arena = stage.open(world, seed, "exam")
-        try:
+        with closing(stage.open(world, seed, "exam")) as arena:
             return await examine(
                 arena,
                 settings,
@@ -107,8 +99,6 @@ async def run_exams(
                 on_progress=lambda done_s: report(f"{who}, world {world}", done_s, task.exam.duration_s),
                 by_teacher=by_teacher,
             )
-        finally:
-            arena.close()
 
     results = []
     for world in worlds:

@@ -32,6 +32,17 @@ class LessonKeeping:
                 raise LessonLostError(f"{self._file}: {acknowledgement.error}")
             self._on_saved(acknowledgement)
 
+    def telling(
+        self, report: Callable[[str, float, float], None], what: str, whole_s: float
+    ) -> Callable[[float], None]:
+        """To be called with the seconds of a lesson that are done: it looks, and reports."""
+
+        def on_progress(done_s: float) -> None:
+            self.look()
+            report(what, done_s, whole_s)
+
+        return on_progress
+
     def end(self, counted: Statistics) -> None:
         """Keep what was counted, and wait until all is durable. Raises LessonLostError."""
         self.writer.submit_statistics(counted)

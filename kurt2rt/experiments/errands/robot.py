@@ -2,6 +2,7 @@
 
 import random
 from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
@@ -41,13 +42,7 @@ async def teach_and_send(
     world, exam_world = task.teaching.world, task.exam.worlds[0]
     whole_s = task.teaching.duration_s
     with lessons_kept(knowledge, settings, task) as keeping:
-
-        def on_progress(done_s: float) -> None:
-            keeping.look()
-            report(f"led about world {world}", done_s, whole_s)
-
-        arena = stage.open(world, seed, "errands")
-        try:
+        with closing(stage.open(world, seed, "errands")) as arena:
             led = await lead_about(
                 arena,
                 settings,
@@ -55,12 +50,10 @@ async def teach_and_send(
                 keeping.writer,
                 keeping.opened.events,
                 seed=seed,
-                on_progress=on_progress,
+                on_progress=keeping.telling(report, f"led about world {world}", whole_s),
                 statistics=keeping.opened.counter,
                 saved=keeping.opened.saved,
             )
-        finally:
-            arena.close()
         keeping.end(led.saved)
         report(f"led about world {world}", whole_s, whole_s)
     events = read_lessons(knowledge, settings, task)
@@ -70,8 +63,7 @@ async def teach_and_send(
     goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
     runs = []
     for how in hows:
-        arena = stage.open(exam_world, seed, "errands without teacher")
-        try:
+        with closing(stage.open(exam_world, seed, "errands without teacher")) as arena:
             run = await run_errands(
                 arena,
                 settings,
@@ -86,8 +78,6 @@ async def teach_and_send(
                     f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s
                 ),
             )
-        finally:
-            arena.close()
         runs.append(run)
     return ErrandsOutcome(
         made_of=made_of,

@@ -1,6 +1,7 @@
 """Exams of one stage."""
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
@@ -70,8 +71,7 @@ class Examiner:
         on_record: Callable[[TickRecord], None] = lambda _: None,
     ) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
-        arena = self.stage.open(world, self.seed, "exam")
-        try:
+        with closing(self.stage.open(world, self.seed, "exam")) as arena:
             return await examine(
                 arena,
                 self.robot,
@@ -87,8 +87,6 @@ class Examiner:
                 # A robot that knows nothing only stands, and that is soon seen.
                 stuck_ends=not events and not by_teacher,
             )
-        finally:
-            arena.close()
 
 
 def _outcome(exam: ExamResult, *, succeeded: bool) -> ExamOutcome:

@@ -1,6 +1,7 @@
 """Teaches a route to a robot that knows the streets, and examines it there."""
 
 from collections.abc import Iterable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -96,8 +97,7 @@ async def teach_route(
         )
         lessons.append(lesson)
     watching = Watching()
-    arena = stage.open(world, seed, "exam of a route")
-    try:
+    with closing(stage.open(world, seed, "exam of a route")) as arena:
         exam = await examine(
             arena,
             settings,
@@ -108,8 +108,6 @@ async def teach_route(
             on_progress=lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
             on_course=watching.look,
         )
-    finally:
-        arena.close()
     watching.end()
     route = route_of_task(task).route_in(stage.plan_of(world), task.behaviours)
     return TaughtRoute(route, tuple(lessons), exam, tuple(watching.wrong))
