@@ -1,10 +1,13 @@
 """What all tests share: property tests that draw the same examples every time, on any machine."""
 
 import gc
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from tests.forked_program import nursery
 
 # No deadline per example: it would be a wall-clock assertion, and the machine that runs the tests is shared.
 # Fifty examples, for the same ones are drawn each time: what they find they have found at the first run.
@@ -13,6 +16,14 @@ settings.load_profile("repeatable")
 
 _WAIT = {"page", "cli", "service", "channel", "teaching", "commission", "crash"}
 """Folders whose stories wait most: browsers, programs, real time."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """One nursery for all workers of a session; on the kernel's own CAN programs start as they start on a robot."""
+    if not hasattr(config, "workerinput") and not config.option.markexpr.startswith(("hil", "boots")):
+        around = ExitStack()
+        around.enter_context(nursery())
+        config.add_cleanup(around.close)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -14,6 +14,9 @@ from types import MappingProxyType
 import pytest
 
 from kurt2rt.cli.main import main
+from tests.forked_program import ForkedProgram, there_is_a_nursery
+
+ROOT = Path(__file__).parents[2]
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ class CommandLine:
 class Running:
     """A `kurt2rt ...` that runs as a process of its own."""
 
-    def __init__(self, process: "subprocess.Popen[str]") -> None:
+    def __init__(self, process: "subprocess.Popen[str] | ForkedProgram") -> None:
         self.process = process
         self._seen: list[str] = []
 
@@ -103,18 +106,33 @@ class Running:
 
 
 @contextmanager
-def running(*words: str, folder: Path, environment: Mapping[str, str] = MappingProxyType({})) -> Iterator[Running]:
-    """Start `kurt2rt ...` in a folder, with this in its environment, too; what is left of it at the end is killed."""
-    with subprocess.Popen(
-        [sys.executable, "-m", "kurt2rt.cli.main", *words],
+def running(
+    *words: str, folder: Path, environment: Mapping[str, str] = MappingProxyType({}), fresh: bool = False
+) -> Iterator[Running]:
+    """Start `kurt2rt ...` in a folder, with this in its environment, too; what is left of it at the end is killed.
+
+    `fresh`: with an interpreter of its own; else it is forked from one that has imported everything, if there is one.
+    """
+    with started("kurt2rt.cli.main", *words, folder=folder, environment=environment, fresh=fresh) as process:
+        try:
+            yield Running(process)
+        finally:
+            process.kill()
+
+
+def started(
+    module: str, *words: str, folder: Path, environment: Mapping[str, str] = MappingProxyType({}), fresh: bool = False
+) -> "subprocess.Popen[str] | ForkedProgram":
+    """Start `python -m MODULE ...`; the rest as `running` says."""
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1", **environment}
+    if there_is_a_nursery() and not fresh:
+        return ForkedProgram(module, words, folder, environment)
+    return subprocess.Popen(
+        [sys.executable, "-m", module, *words],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         cwd=folder,
-        env={**os.environ, "PYTHONUNBUFFERED": "1", **environment},
-    ) as process:
-        try:
-            yield Running(process)
-        finally:
-            process.kill()
+        env={"PYTHONPATH": str(ROOT), **environment},
+    )

@@ -2,7 +2,6 @@
 
 import resource
 import signal
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -123,9 +122,9 @@ def test_a_public_address_without_tls_is_refused(kurt2rt: CommandLine) -> None:
     assert "give https:// and a name" in kurt2rt.refused("teach", "--public-address", "http://robot.example")
 
 
-def limit_files(process: "subprocess.Popen[str]", size_bytes: int) -> None:
-    """No file of that process may grow beyond: writes fail for real, as they do on a full disk."""
-    resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (size_bytes, resource.RLIM_INFINITY))
+def limit_files(program: Running, size_bytes: int) -> None:
+    """No file of that program may grow beyond: writes fail for real, as they do on a full disk."""
+    resource.prlimit(program.process.pid, resource.RLIMIT_FSIZE, (size_bytes, resource.RLIM_INFINITY))
 
 
 def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
@@ -133,7 +132,7 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
     person.type("stand")
     person.wait_for("RLA 1 taught")
     robot.wait_for("  1 RLAs")
-    limit_files(robot.process, log_of(knowledge).stat().st_size)
+    limit_files(robot, log_of(knowledge).stat().st_size)
     person.type("replace 1 back")
     line = robot.wait_for("1 lessons not saved yet")
     assert "stands: unsaved" in line
@@ -145,7 +144,7 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
 def test_a_full_disk_is_said_and_the_robot_goes_on_when_there_is_room(tmp_path: Path) -> None:
     with lesson(tmp_path) as (robot, person, knowledge):
         fill_the_disk(robot, person, knowledge)
-        limit_files(robot.process, resource.RLIM_INFINITY)
+        limit_files(robot, resource.RLIM_INFINITY)
         robot.wait_for("back by RLA 1")
         said = robot.end(signal.SIGINT)
     assert (said.exit_code, said.err) == (0, "")
@@ -222,7 +221,7 @@ def test_a_log_that_cannot_be_written_is_told_of_and_the_robot_drives_on(tmp_pat
         log = tmp_path / "drive.log"
         while not log.exists() or log.stat().st_size < 200_000:  # so that the limit leaves the knowledge file room
             robot.wait_for("late")
-        limit_files(robot.process, log.stat().st_size)
+        limit_files(robot, log.stat().st_size)
         line = robot.wait_for("CAN log drive.log: writing failed ([Errno 27] File too large), ")
         assert "missed" in line
         said = robot.end(signal.SIGTERM)

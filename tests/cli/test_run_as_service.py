@@ -42,7 +42,7 @@ def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
     environment = systemd.environment(0.5)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
-    with running(*words, folder=tmp_path, environment=environment) as program:
+    with running(*words, folder=tmp_path, environment=environment, fresh=True) as program:
         assert systemd.wait_for("READY=1")[0] == "READY=1"
         program.wait_for("teachers are listened to on UDP port")
         program.wait_for("stands until Go: the robot program was started")

@@ -1,9 +1,6 @@
 """SIGTERM brakes the wheels and ends the program, also where disk, recorder, network or the loop hang for ever."""
 
-import os
 import signal
-import subprocess
-import sys
 import uuid
 from pathlib import Path
 
@@ -11,7 +8,7 @@ import anyio.to_thread
 import can
 import pytest
 
-from config import CONFIG_DIR
+from tests.cli.helpers import started
 from tests.cli.three_programs import brakes, is_control, onlooker
 
 SAYS = {
@@ -29,29 +26,19 @@ def is_from_the_tick(frame: can.Message) -> bool:
     return is_control(frame) and not brakes(frame)
 
 
-def start(thing: str, folder: Path, bus: str) -> "subprocess.Popen[str]":
-    words = ("run", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge", "--service")
-    return subprocess.Popen(
-        [sys.executable, "-m", "tests.service.hanging_program", thing, *words],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(CONFIG_DIR.parent), "PYTHONUNBUFFERED": "1"},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-
-
 @pytest.mark.parametrize("thing", [pytest.param(each, marks=pytest.mark.deep if each in RARE else ()) for each in SAYS])
 async def test_the_wheels_are_braked_and_the_program_ends(thing: str, tmp_path: Path) -> None:
     bus = f"shared:ending-{uuid.uuid4().hex[:8]}"
-    with onlooker(bus) as ear, start(thing, tmp_path, bus) as program:
+    words = ("run", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge", "--service")
+    hanging = started("tests.service.hanging_program", thing, *words, folder=tmp_path)
+    with onlooker(bus) as ear, hanging as program:
         try:
             if thing != "start":
                 await ear.until(is_from_the_tick)
             if thing in ("start", "loop"):
                 await ear.until(brakes)
             program.send_signal(signal.SIGTERM)
-            said, _ = await anyio.to_thread.run_sync(program.communicate)  # comes back only when it has ended
+            said = "".join(await anyio.to_thread.run_sync(program.communicate))  # comes back only when it has ended
         finally:
             program.kill()
         ear.look()

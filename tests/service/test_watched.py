@@ -1,10 +1,8 @@
 """A service manager kills what falls silent and starts it anew: the robot then stands until Go."""
 
 import math
-import os
 import signal
 import subprocess
-import sys
 import uuid
 from contextlib import ExitStack
 from pathlib import Path
@@ -13,9 +11,8 @@ import anyio
 import anyio.to_thread
 import pytest
 
-from config import CONFIG_DIR
 from kurt2rt.teaching import TeacherClient
-from tests.cli.helpers import Running, running
+from tests.cli.helpers import Running, running, started
 from tests.cli.three_programs import (
     STARTED,
     Onlooker,
@@ -28,26 +25,20 @@ from tests.cli.three_programs import (
     turns,
     until_it_drives,
 )
+from tests.forked_program import ForkedProgram
 from tests.systemd.manager import Manager, manager
 
 WATCHDOG_S = 1.0
 LOOKED_ON_TICKS = 50
 
 
-def start(systemd: Manager, folder: Path, bus: str, *command: str) -> "subprocess.Popen[str]":
-    environment = {**os.environ, "PYTHONPATH": str(CONFIG_DIR.parent), "PYTHONUNBUFFERED": "1"}
-    environment |= systemd.environment(WATCHDOG_S)
+def start(
+    systemd: Manager, folder: Path, bus: str, module: str, *hangs: str
+) -> "subprocess.Popen[str] | ForkedProgram":
+    environment = systemd.environment(WATCHDOG_S)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge")
-    return subprocess.Popen(
-        [sys.executable, "-m", *command, *words],
-        cwd=folder,
-        env=environment,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    return started(module, *hangs, *words, folder=folder, environment=environment)
 
 
 @pytest.mark.deep

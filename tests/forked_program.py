@@ -1,0 +1,129 @@
+"""A program forked by the session's nursery: with the words of subprocess.Popen, as far as stories need them."""
+
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import uuid
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Self
+
+from tests.nursery import ADDRESS, NUMBER
+
+_ROOT = Path(__file__).parents[1]
+
+
+def there_is_a_nursery() -> bool:
+    """Whether this session has one."""
+    return ADDRESS in os.environ
+
+
+@contextmanager
+def nursery() -> Iterator[None]:
+    """For this session and the workers that it starts."""
+    address = f"kurt2rt-nursery-{uuid.uuid4().hex}"
+    theirs, ours = os.pipe()
+    with subprocess.Popen(
+        [sys.executable, "-m", "tests.nursery", address, str(theirs)],
+        cwd=_ROOT,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        pass_fds=[theirs],
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.read(1)  # it listens
+        os.close(theirs)
+        os.environ[ADDRESS] = address
+        try:
+            yield
+        finally:
+            del os.environ[ADDRESS]
+            os.close(ours)
+
+
+class ForkedProgram:
+    """A program that runs, as `python -m MODULE WORDS` does."""
+
+    def __init__(self, module: str, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
+        """Raises KeyError where there is no nursery, and OSError where it has gone."""
+        with socket.socket(socket.AF_UNIX) as caller:
+            caller.connect(f"\0{os.environ[ADDRESS]}")
+            keyboard, stdin = os.pipe()
+            stdout, printed = os.pipe()
+            stderr, complained = os.pipe()
+            self._told, tells = os.pipe()
+            self.stdin: IO[str] = os.fdopen(stdin, "w", encoding="utf-8")
+            self.stdout: IO[str] = os.fdopen(stdout, encoding="utf-8")
+            self.stderr: IO[str] = os.fdopen(stderr, encoding="utf-8")
+            order = json.dumps([module, list(words), str(folder), dict(environment)]).encode()
+            theirs = [keyboard, printed, complained, tells]
+            sent = socket.send_fds(caller, [order], theirs)
+            caller.sendall(order[sent:])
+            caller.shutdown(socket.SHUT_WR)
+            for each in theirs:
+                os.close(each)
+            self.pid = self._number()
+            self.returncode: int | None = None
+
+    def _number(self) -> int:
+        data = os.read(self._told, NUMBER.size)
+        if len(data) != NUMBER.size:
+            raise OSError("the nursery of this session has gone, or cannot import what it should")
+        (number,) = NUMBER.unpack(data)
+        return int(number)
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for its end; its exit code, less than 0 for the signal that killed it."""
+        if self.returncode is None:
+            if not select.select([self._told], [], [], timeout)[0]:
+                raise subprocess.TimeoutExpired(str(self.pid), timeout or 0.0)
+            self.returncode = self._number()
+        return self.returncode
+
+    def poll(self) -> int | None:
+        """Its exit code, if it has ended."""
+        return self.wait() if select.select([self._told], [], [], 0.0)[0] else self.returncode
+
+    def send_signal(self, number: signal.Signals) -> None:
+        """Send it a signal, if it is still there."""
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """Ask it to end."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """Kill it."""
+        self.send_signal(signal.SIGKILL)
+
+    def communicate(self) -> tuple[str, str]:
+        """All that it still says until it has ended, on both outputs."""
+        self.stdin.close()
+        with ThreadPoolExecutor(1) as aside:
+            complaints = aside.submit(self.stderr.read)
+            said = self.stdout.read()
+        self.wait()
+        return said, complaints.result()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for each in (self.stdin, self.stdout, self.stderr):
+            try:
+                each.close()
+            except BrokenPipeError:  # what was typed last it did not read any more
+                continue
+        self.wait()
+        os.close(self._told)

@@ -1,0 +1,57 @@
+"""What is forked is a program like one with an interpreter of its own."""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+from tests.cli.helpers import started
+from tests.forked_program import ForkedProgram
+
+LOOKS = """
+import atexit, os, sys
+atexit.register(lambda: print("the end is told"))
+print(__name__, sys.argv[1:], os.getcwd(), os.environ["GREETING"], input())
+print("a complaint", file=sys.stderr)
+sys.exit(3)
+"""
+
+
+def test_it_has_words_folder_environment_and_keyboard_and_ends_as_an_interpreter_does(tmp_path: Path) -> None:
+    (tmp_path / "looks.py").write_text(LOOKS, encoding="utf-8")
+    with started("looks", "one", "two", folder=tmp_path, environment={"GREETING": "hello"}) as program:
+        assert isinstance(program, ForkedProgram)
+        assert program.poll() is None
+        program.stdin.write("typed\n")
+        said, complaints = program.communicate()
+        assert program.wait() == program.returncode == 3
+    assert said.splitlines() == [f"__main__ ['one', 'two'] {tmp_path} hello typed", "the end is told"]
+    assert complaints == "a complaint\n"
+
+
+def test_it_can_be_killed_and_others_live_on(tmp_path: Path) -> None:
+    (tmp_path / "waits.py").write_text("input()", encoding="utf-8")
+    with started("waits", folder=tmp_path) as one, started("waits", folder=tmp_path) as other:
+        assert one.pid != other.pid != os.getpid()
+        one.kill()
+        assert one.wait(60) == one.poll() == -signal.SIGKILL
+        assert other.poll() is None
+        other.terminate()
+        assert other.wait(60) == -signal.SIGTERM
+
+
+def test_what_it_does_not_catch_is_told_as_ever(tmp_path: Path) -> None:
+    (tmp_path / "fails.py").write_text("1 / 0", encoding="utf-8")
+    with started("fails", folder=tmp_path) as forked, started("fails", folder=tmp_path, fresh=True) as fresh:
+        for program in (forked, fresh):
+            said, complaints = program.communicate()
+            assert (said, program.returncode) == ("", 1)
+            assert complaints.endswith("ZeroDivisionError: division by zero\n")
+
+
+def test_it_does_not_change_this_program(tmp_path: Path) -> None:
+    (tmp_path / "changes.py").write_text("import os, sys; os.chdir('/'); sys.path.clear()", encoding="utf-8")
+    before = Path.cwd(), list(sys.path)
+    with started("changes", folder=tmp_path) as program:
+        assert program.wait(60) == 0
+    assert (Path.cwd(), list(sys.path)) == before
