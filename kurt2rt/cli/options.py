@@ -2,7 +2,7 @@
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -43,6 +43,20 @@ Changes = Annotated[
         "repeat for several. Teach and examine with the same ones.",
     ),
 ]
+
+
+def seeds_option(whole: str, quick: str) -> Any:
+    """--seeds of a study, and those that are taken unless it is given."""
+    return typer.Option(
+        help=f"One robot per seed, e.g. {whole}, which is the default; with --quick {quick}.", show_default=False
+    )
+
+
+def results_option(default: str) -> Any:
+    """--out of a study; `default` says where its results go else."""
+    return typer.Option(
+        "--out", help=f"Folder for what is made; created when absent. Default: {default}.", show_default=False
+    )
 
 
 def changes_of(words: list[str] | None) -> dict[str, str]:

@@ -7,7 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -23,13 +23,7 @@ def paper(
     quick: Annotated[
         bool, typer.Option("--quick", help="A small part in under a minute: fewer tasks and seeds, short lessons.")
     ] = False,
-    seeds: Annotated[
-        str | None,
-        typer.Option(
-            help=f"One robot per seed, e.g. {_SEEDS}, which is the default; with --quick {_QUICK_SEEDS}.",
-            show_default=False,
-        ),
-    ] = None,
+    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
     task: Annotated[
         list[str] | None,
         typer.Option(
@@ -39,13 +33,7 @@ def paper(
         ),
     ] = None,
     jobs: Jobs = ALL_PROCESSORS,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help=f"Folder for what is made; created when absent. Default: {_FOLDER}, with --quick {_QUICK_FOLDER}.",
-            show_default=False,
-        ),
-    ] = None,
+    out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None,
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
     ] = True,

@@ -7,7 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of
+from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -24,22 +24,9 @@ def phases(
     quick: Annotated[
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
     ] = False,
-    seeds: Annotated[
-        str | None,
-        typer.Option(
-            help=f"One robot per seed, e.g. {_SEEDS}, which is the default; with --quick {_QUICK_SEEDS}.",
-            show_default=False,
-        ),
-    ] = None,
+    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
     jobs: Jobs = ALL_PROCESSORS,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help=f"Folder for what is made; created when absent. Default: {_FOLDER}/ and the task's name, with "
-            "-quick behind it.",
-            show_default=False,
-        ),
-    ] = None,
+    out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None,
 ) -> None:
     """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
 
