@@ -1,7 +1,7 @@
 """Takes lessons back, or lets them stand again, in a knowledge file that no robot runs on."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,7 +42,11 @@ def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     """
     reading = _read(path)
     system = reading.system
-    command_ids = [_lesson_to_undo(system, lesson, path)] if of is None else _lessons_to_undo(system, of, path)
+    if of is not None:
+        command_ids = _lessons_to_undo(system, of, path)
+    else:
+        nothing = "stands; there is nothing to undo"
+        command_ids = [_lesson_meant(path, lesson, system.last_standing_lesson, system.why_not_undo, nothing)]
     changes = [LessonUndone(command_id, new_origin("undo", teacher)) for command_id in command_ids]
     _apply(system, changes, f"{path}: nothing was undone")
     return reading.planned(changes)
@@ -57,7 +61,12 @@ def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     reading = _read(path)
     system = reading.system
     changes, reasons = list[LessonRedone](), list[str]()
-    for command_id in [_lesson_to_redo(system, lesson, path)] if of is None else _undone_by_time(reading, of):
+    if of is not None:
+        command_ids = _undone_by_time(reading, of)
+    else:
+        nothing = "was undone; there is nothing to redo"
+        command_ids = [_lesson_meant(path, lesson, system.last_undone_lesson, system.why_not_redo, nothing)]
+    for command_id in command_ids:
         problem = system.why_not_redo(command_id)
         if problem is not None:
             reasons.append(problem)
@@ -106,11 +115,14 @@ def _read(path: Path) -> _Reading:
         return _Reading(path, journal.binding, tuple(entry.event for entry in entries), statistics, system)
 
 
-def _lesson_to_undo(system: RlaSystem, lesson: str | None, path: Path) -> str:
-    command_id = lesson if lesson is not None else system.last_standing_lesson
+def _lesson_meant(
+    path: Path, lesson: str | None, last: str | None, why_not: Callable[[str], str | None], nothing: str
+) -> str:
+    """The command id that was given, else the `last` one. Raises KnowledgeError where it cannot be done with that."""
+    command_id = lesson if lesson is not None else last
     if command_id is None:
-        raise KnowledgeError(f"{path}: holds no lesson that stands; there is nothing to undo")
-    problem = system.why_not_undo(command_id)
+        raise KnowledgeError(f"{path}: holds no lesson that {nothing}")
+    problem = why_not(command_id)
     if problem is not None:
         raise KnowledgeError(f"{path}: {problem}; kurt2rt knowledge lessons shows their ids")
     return command_id
@@ -125,16 +137,6 @@ def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]
         others = f"those that stand are by {teachers}" if teachers else "there is nothing to undo"
         raise KnowledgeError(f"{path}: holds no lesson by {taught_by} that stands; {others}")
     return own[::-1]
-
-
-def _lesson_to_redo(system: RlaSystem, lesson: str | None, path: Path) -> str:
-    command_id = lesson if lesson is not None else system.last_undone_lesson
-    if command_id is None:
-        raise KnowledgeError(f"{path}: holds no lesson that was undone; there is nothing to redo")
-    problem = system.why_not_redo(command_id)
-    if problem is not None:
-        raise KnowledgeError(f"{path}: {problem}; kurt2rt knowledge lessons shows their ids")
-    return command_id
 
 
 def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
