@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 from typing import Any
 
 from kurt2rt.knowledge.error import KnowledgeError
@@ -147,7 +148,7 @@ def _event(content: object) -> TeachingEvent:
         raise ValueError(f"{kind} has no {', '.join(map(repr, foreign))}")
     origin = Origin(
         _text(content, "command_id"),
-        _text(content, "teacher"),
+        _word(content, "teacher"),
         Phase(_whole(content, "phase", least=1)),
         _whole(content, "tick", least=0),
     )
@@ -161,7 +162,7 @@ def _event(content: object) -> TeachingEvent:
             return KnowledgeMerged(_text(content, "source"), rows, _text(content, "last"), origin)
         case "appraised":
             value = _opinion(content, "value")
-            return Appraised(_text(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)
+            return Appraised(_word(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)
         case "named":
             return SituationNamed(
                 _text(content, "name"), _numbers(content, "situation"), _text(content, "level"), origin
@@ -191,12 +192,12 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
             numbers = _numbers(content, "condition")
             radius = _value(content, "radius")
             own_radius = None if radius is None else _number(radius, "radius")
-            behaviour, level = _text(content, "behaviour"), _text(content, "level")
-            return RlaCreated(Rla(rla_id, numbers, _text(content, "action"), own_radius, origin, behaviour, level))
+            behaviour, level = _word(content, "behaviour"), _word(content, "level")
+            return RlaCreated(Rla(rla_id, numbers, _word(content, "action"), own_radius, origin, behaviour, level))
         case "replaced":
-            return ActionReplaced(rla_id, _text(content, "action"), _text(content, "instead_of"), origin)
+            return ActionReplaced(rla_id, _word(content, "action"), _word(content, "instead_of"), origin)
         case "withdrawn":
-            return ActionWithdrawn(rla_id, _text(content, "instead_of"), origin)
+            return ActionWithdrawn(rla_id, _word(content, "instead_of"), origin)
         case "rewarded":
             value = _whole(content, "value", least=-1)
             if value not in (1, -1):
@@ -242,6 +243,12 @@ def _text(content: dict[str, Any], key: str) -> str:
         raise ValueError(f"{key} must be a text")  # noqa: TRY004
     value.encode()  # half a surrogate pair is fine for JSON, not for SQLite; UnicodeEncodeError is a ValueError
     return value
+
+
+def _word(content: dict[str, Any], key: str) -> str:
+    """A text that many events have, which is then held once."""
+    value = _text(content, key)
+    return sys.intern(value) if type(value) is str else value
 
 
 def _whole(content: dict[str, Any], key: str, least: int) -> int:

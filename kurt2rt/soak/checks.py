@@ -33,6 +33,28 @@ def memory_check(minutes: Sequence[Minute], limits: LimitSettings) -> Check:
     return Check(what, grown_mb <= limits.memory_mb, f"{grown_mb:+.1f} MB at most, {end_mb:+.1f} MB at the end")
 
 
+def memory_told(minutes: Sequence[Minute], starts: Sequence[Start]) -> str:
+    """What memory grew by after the first hour, apart: what programs left behind, and what knowledge takes.
+
+    Empty for a soak that has not had an hour and two programs.
+    """
+    base_mb = memory_base_mb(minutes)
+    first = [each.left_mb for each in starts if each.at_s + each.lasted_s <= HOUR_S]
+    if base_mb is None or not first or len(first) == len(starts):
+        return ""
+    then = next(each for each in minutes if each.at_s > HOUR_S - _ABOUT_S / 2)
+    now = minutes[-1]
+    end_mb = median(each.resident_mb for each in minutes[-10:]) - base_mb
+    left_mb = starts[-1].left_mb - first[-1]
+    lessons, rlas = now.lessons - then.lessons, now.rlas - then.rlas
+    each_kb = f", {(end_mb - left_mb) * 1000 / lessons:.1f} kB for each lesson" if lessons > 0 else ""
+    return (
+        f"Of {end_mb:+.1f} MB since the first hour {left_mb:+.1f} MB stay when the program ends, after "
+        f"{len(starts) - len(first)} more starts; {end_mb - left_mb:+.1f} MB are for what it knows: "
+        f"{lessons:+d} lessons and {rlas:+d} RLAs{each_kb}."
+    )
+
+
 def steady_check(minutes: Sequence[Minute]) -> Check:
     """As many files and threads at the end as after the first minutes."""
     what = "open files and threads do not become more"

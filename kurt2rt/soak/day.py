@@ -24,7 +24,7 @@ from kurt2rt.soak.checks import (
 from kurt2rt.soak.faults import SoakFaults
 from kurt2rt.soak.life import Life
 from kurt2rt.soak.log import MinuteLog
-from kurt2rt.soak.meters import objects_by_type
+from kurt2rt.soak.meters import objects_by_type, used_mb
 from kurt2rt.soak.odometry import OdometryCheck
 from kurt2rt.soak.person import Person
 from kurt2rt.soak.place import SoakPlace
@@ -101,14 +101,16 @@ class Day:
         if self._by_module:
             tracemalloc.start(1)
         while clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED:
-            await self._live(min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s)), on_progress)
+            until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
+            start = await self._live(until_s, on_progress)
             # On a robot the end of the program takes all that it knew along; two at a time would count twice.
             gc.collect()
+            self._starts.append(start._replace(left_mb=round(used_mb(), 3)))
             # A fault that ended the program is over before somebody starts it anew.
             clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
         return self._result(clock.now_s(), time.monotonic() - begun_s)
 
-    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> None:
+    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> Start:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
         begun_s = self._place.time.now_s()
@@ -152,7 +154,7 @@ class Day:
             self._troubles.append(life.recorder.trouble)
         self._most_waiting = max(self._most_waiting, life.most_waiting)
         lasted_s = self._place.time.now_s() - begun_s
-        self._starts.append(Start(begun_s, lasted_s, wire, life.ended_by, complaint))
+        return Start(begun_s, lasted_s, wire, life.ended_by, complaint)
 
     def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
         now_s = self._place.time.now_s()

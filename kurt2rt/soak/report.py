@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.faults.table import TARGETS
+from kurt2rt.soak.checks import memory_told
 from kurt2rt.soak.faults import FaultSeen
 from kurt2rt.soak.result import SoakResult
 
@@ -91,6 +92,9 @@ def _print_day(result: SoakResult, console: Console) -> None:
         f"{last.resident_mb:.1f} MB at the end.",
         highlight=False,
     )
+    told = memory_told(minutes, result.starts)
+    if told:
+        console.print(told, highlight=False)
     console.print(", ".join(f"{count} {what}" for what, count in result.counted.items()) + ".\n", highlight=False)
 
 

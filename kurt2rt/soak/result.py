@@ -38,6 +38,8 @@ class Start(NamedTuple):
     """The error that ended it; empty where it was told to."""
     complaint: str
     """What was wrong with what it left."""
+    left_mb: float = 0.0
+    """What objects took when it was over, with all that it knew: what grows here is no knowledge."""
 
 
 class Check(NamedTuple):
