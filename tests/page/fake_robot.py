@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import AsyncIterator
-from dataclasses import dataclass, field, replace
+from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
 import anyio
@@ -97,8 +97,8 @@ class FakeRobot:
     decided: DecisionFacts | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
     link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
-    _news: anyio.Event = field(default_factory=anyio.Event)
-    _heard: anyio.Event = field(default_factory=anyio.Event)
+    _news: anyio.Event = field(default_factory=anyio.Event, init=False)
+    _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
 
     def show(self, **changes: Any) -> State:
         """A new picture, changed from the last one, two ticks later unless told otherwise."""
@@ -108,6 +108,13 @@ class FakeRobot:
         self._news.set()
         self._news = anyio.Event()
         return self.state
+
+    def begin_anew(self) -> None:
+        """As one that was told nothing yet and has shown nothing."""
+        for each in fields(self):
+            if each.init and each.name != "link":
+                new = each.default if each.default_factory is MISSING else each.default_factory()
+                setattr(self, each.name, new)
 
     async def is_told(self, name: str) -> None:
         """Wait until it is."""

@@ -2,23 +2,43 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 
+import anyio
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from tests.page.fake_robot import A_PLACE, FakeRobot
 from tests.page.phone import PORTRAIT, Phone
-from tests.page.test_browser import show_on
-from tests.page.test_served_page import TOKEN, served
+from tests.page.test_served_page import TOKEN, Served, served
+
+_SHOWN = "return ['#robot-name', '#clock'].map((each) => document.querySelector(each)?.textContent ?? '');"
 
 
 class Lesson:
     """A robot, and the page that its teacher has open."""
 
-    def __init__(self, phone: Phone, portal: BlockingPortal, robot: FakeRobot) -> None:
+    def __init__(self, phone: Phone, portal: BlockingPortal, page: Served) -> None:
         self.phone = phone
-        self.robot = robot
+        self.robot = page.robot
         self._portal = portal
+        self._address = f"http://127.0.0.1:{page.port}/pair?token={TOKEN}"
+        self._begun = 0
+
+    def begin(self, prepare: Callable[[FakeRobot], None], **shown: object) -> None:
+        """Another robot comes up, prepared so, and drives by its RLA 1; the page has nothing open from the one before.
+
+        A page introduces itself to a robot that was started anew; to load it anew for each story takes far longer.
+        """
+        self._begun += 1
+        boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
+        self._portal.call(self.robot.begin_anew)
+        prepare(self.robot)
+        self.robot.greeting = replace(self.robot.greeting, boot=boot, robot=name)
+        self.show(**{"boot": boot, "clock_s": 60.0 * self._begun, "teacher": "local", "place": A_PLACE, **shown})
+        self.phone.turn(PORTRAIT)
+        self.phone.come_to(self._address)
+        self.phone.wait(self._is_shown, "the page shows this robot")
 
     def show(self, **changes: object) -> None:
         """From the next picture on."""
@@ -32,19 +52,26 @@ class Lesson:
         """What the robot was told of one kind."""
         return [each[1] for each in self.robot.told if each[0] == name]
 
+    def _is_shown(self) -> bool:
+        name, clock = self.phone.run(_SHOWN)
+        return str(name).startswith(f"robot {self._begun},") and clock == f"{self._begun}:00"
+
+
+async def show_on(robot: FakeRobot) -> None:
+    """A picture of it each 100 ms; what changes is shown at once."""
+    while True:
+        await anyio.sleep(0.1)
+        if robot.state is not None:
+            robot.show()
+
 
 @contextmanager
-def a_lesson(phone: Phone, prepare: Callable[[FakeRobot], None], **shown: object) -> Iterator[Lesson]:
-    """The robot drives by its RLA 1, shows a picture each 50 ms, and the page is open; `prepare` comes first."""
+def lessons(phone: Phone) -> Iterator[Lesson]:
+    """A page's server and the robot behind it, for one lesson after another."""
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        prepare(page.robot)
-        lesson = Lesson(phone, portal, page.robot)
-        lesson.show(teacher="local", place=A_PLACE, **shown)
         pictures = portal.start_task_soon(show_on, page.robot)
         try:
-            phone.turn(PORTRAIT)
-            phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            lesson.reads("#sentence", "RLA 1 does forward")
-            yield lesson
+            yield Lesson(phone, portal, page)
         finally:
+            phone.leave()
             pictures.cancel()

@@ -49,6 +49,12 @@ const box = e?.getBoundingClientRect();
 return Boolean(e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) && box.width && box.height);
 """
 
+_TIDY = """
+for (const each of document.querySelectorAll("dialog[open]")) each.close();
+document.querySelector("#tab-teach").click();
+document.activeElement?.blur();
+"""
+
 
 class Phone:
     """The page in its browser."""
@@ -56,6 +62,7 @@ class Phone:
     def __init__(self, driver: webdriver.Chrome, screenshots: Path | None) -> None:
         self.driver = driver
         self._screenshots = screenshots
+        self._at: str | None = None
 
     def turn(self, size: tuple[int, int], *, touch: bool = True) -> None:
         """Give the screen another size."""
@@ -66,7 +73,20 @@ class Phone:
 
     def open(self, address: str) -> None:
         """Go to an address."""
+        self._at = None
         self.driver.get(address)
+        self._at = address
+
+    def come_to(self, address: str) -> None:
+        """Go to an address. Is it open already, the page is only tidied: most of a story's time is to load it."""
+        if self._at != address:
+            self.open(address)
+        else:
+            self.run(_TIDY)
+
+    def leave(self) -> None:
+        """Go where there is nothing."""
+        self.open("about:blank")
 
     def text(self, selector: str) -> str:
         """What stands in the first element of a CSS selector; nothing where it is not seen."""
@@ -142,7 +162,7 @@ class Phone:
 
     def forget(self) -> None:
         """Leave the page, and be as one that was never there: no cookies, nothing stored, nothing said."""
-        self.open("about:blank")
+        self.leave()
         self.driver.execute_cdp_cmd("Network.clearBrowserCookies", {})
         self.driver.execute_cdp_cmd("Storage.clearDataForOrigin", {"origin": "*", "storageTypes": "all"})
         self.turn(PORTRAIT)

@@ -2,16 +2,13 @@
 
 import itertools
 from dataclasses import replace
-from functools import partial
 
-import anyio
 import pytest
-from anyio.from_thread import start_blocking_portal
 
 from tests.page.classroom import Classroom
-from tests.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
+from tests.page.fake_robot import A_HELLO, FakeRobot
+from tests.page.lesson import Lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.page.test_served_page import TOKEN, served
 
 ACTIONS = ("along_left_wall", "forward", "curve_right", "spin_right", "bear_left")
 TABS = ("teach", "drive", "lessons", "more")
@@ -64,7 +61,7 @@ def begin(phone: Phone, room: Classroom) -> None:
     """Open the page and be the teacher."""
     room.mend()
     phone.turn(PORTRAIT)
-    phone.open(room.address)
+    phone.come_to(room.address)
     phone.wait(lambda: not no_picture(phone), "a picture")
     phone.wait(lambda: phone.run("return innerWidth") == PORTRAIT[0], "the screen is turned")
     if room.state().teacher != "local":
@@ -279,12 +276,9 @@ def test_the_arrow_keys_steer_after_the_tab_was_clicked_and_u_undoes_only_what_i
 def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     begin(phone, room)
-    while room.state().lessons:
-        before = room.state().lessons
-        phone.touch("#undo-last")
-        phone.touch("#undo-last")
-        phone.wait(lambda: room.state().lessons == before - 1, "one lesson less")  # noqa: B023 - called at once
-        phone.wait(lambda: lessons_shown(phone) == before - 1, "the page knows")  # noqa: B023
+    for _ in range(room.state().lessons):
+        assert room.portal.call(room.client.undo).accepted
+    phone.wait(lambda: lessons_shown(phone) == 0, "the page knows")
     stand(phone, room)
     phone.touch("#go")
     phone.wait(lambda: "nothing yet" in phone.text("#sentence"), "the robot asks")
@@ -314,7 +308,8 @@ WebSocket = class extends Open {
 def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     with phone.before_scripts(SHUTTER):
-        begin(phone, room)
+        phone.open(room.address)
+    begin(phone, room)
     phone.run("sockets.at(-1).close(); shut = true")
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
     room.portal.call(room.client.resume)
@@ -398,39 +393,26 @@ def pressed(phone: Phone) -> list[str]:
     return phone.texts("#behaviours [aria-pressed=true]")
 
 
-async def show_on(robot: FakeRobot) -> None:
-    """A picture of it each 50 ms."""
-    while True:
-        robot.show()
-        await anyio.sleep(0.05)
-
-
-def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_follow(a_phone: Phone) -> None:
-    phone = a_phone
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        robot = page.robot
+def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_follow(a_lesson: Lesson) -> None:
+    def prepare(robot: FakeRobot) -> None:
         robot.greeting = replace(A_HELLO, behaviours=TURNS)
-        portal.call(partial(robot.show, teacher="local", behaviour="straight_on", place=A_PLACE))
-        pictures = portal.start_task_soon(show_on, robot)
-        try:
-            phone.turn(PORTRAIT)
-            phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            phone.wait(lambda: pressed(phone) == ["straight on"], "what is wanted is marked")
-            assert phone.text("#sentence").startswith("RLA 1 of straight on does forward")
-            phone.touch("[data-behaviour=turn_left]")
-            phone.wait(lambda: phone.text("#said") == "pursue done", "the robot has taken it")
-            assert [each[1:] for each in robot.told if each[0] == "pursue"] == [("turn_left",)]
-            assert pressed(phone) == ["straight on"]  # what it is told counts, not what was touched
-            portal.call(partial(robot.show, behaviour="turn_left"))
-            phone.wait(lambda: pressed(phone) == ["turn left"], "the robot follows it")
-            for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
-                phone.turn(size, touch=size != LAPTOP)
-                phone.show(f"8-behaviours-{size[0]}x{size[1]}")
-                assert_handy(phone, size, "teach")
-            portal.call(partial(robot.show, teacher="ann"))
-            phone.wait(lambda: phone.run("return document.querySelector('#behaviours').inert"), "it is the teacher's")
-        finally:
-            pictures.cancel()
+
+    a_lesson.begin(prepare, behaviour="straight_on")
+    phone = a_lesson.phone
+    phone.wait(lambda: pressed(phone) == ["straight on"], "what is wanted is marked")
+    assert phone.text("#sentence").startswith("RLA 1 of straight on does forward")
+    phone.touch("[data-behaviour=turn_left]")
+    phone.wait(lambda: phone.text("#said") == "pursue done", "the robot has taken it")
+    assert a_lesson.told("pursue") == ["turn_left"]
+    assert pressed(phone) == ["straight on"]  # what it is told counts, not what was touched
+    a_lesson.show(behaviour="turn_left")
+    phone.wait(lambda: pressed(phone) == ["turn left"], "the robot follows it")
+    for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
+        phone.turn(size, touch=size != LAPTOP)
+        phone.show(f"8-behaviours-{size[0]}x{size[1]}")
+        assert_handy(phone, size, "teach")
+    a_lesson.show(teacher="ann")
+    phone.wait(lambda: phone.run("return document.querySelector('#behaviours').inert"), "it is the teacher's")
 
 
 def test_where_one_thing_is_taught_there_is_nothing_to_choose(a_phone: Phone, room: Classroom) -> None:

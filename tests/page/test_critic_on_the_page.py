@@ -1,6 +1,5 @@
 """The inner critic on the page: a teacher teaches it in phase 4, and watches it in phase 5."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -8,8 +7,8 @@ import pytest
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
 from tests.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
-from tests.page.lesson import Lesson, a_lesson
-from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.lesson import Lesson
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.page.test_browser import assert_handy
 
 ACTIONS = (
@@ -45,13 +44,13 @@ def look(lesson: Lesson, name: str) -> None:
 
 
 @pytest.fixture
-def lesson(a_phone: Phone) -> Iterator[Lesson]:
+def lesson(a_lesson: Lesson) -> Lesson:
     def prepare(robot: FakeRobot) -> None:
         robot.greeting = replace(A_HELLO, actions=ACTIONS, appraisals=APPRAISALS, trusted_from=0.8)
         robot.newest_lessons = (A_LESSON,)
 
-    with a_lesson(a_phone, prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2)) as lesson:
-        yield lesson
+    a_lesson.begin(prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
+    return a_lesson
 
 
 def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it_agrees(lesson: Lesson) -> None:

@@ -1,6 +1,5 @@
 """How the robot's program is, on the page: a small line that opens to a table."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
@@ -8,8 +7,8 @@ import pytest
 from kurt2rt.health.report import HealthReport
 from tests.health.reports import ILL, SILENT, WELL
 from tests.page.fake_robot import FakeRobot
-from tests.page.lesson import Lesson, a_lesson
-from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.lesson import Lesson
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.page.test_browser import assert_handy
 
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
@@ -17,12 +16,12 @@ CLASS = "return document.querySelector(arguments[0]).className;"
 
 
 @pytest.fixture
-def lesson(a_phone: Phone) -> Iterator[Lesson]:
+def lesson(a_lesson: Lesson) -> Lesson:
     def prepare(robot: FakeRobot) -> None:
         robot.report = replace(WELL, tick=100)
 
-    with a_lesson(a_phone, prepare) as lesson:
-        yield lesson
+    a_lesson.begin(prepare)
+    return a_lesson
 
 
 def later(lesson: Lesson, ticks: int, report: HealthReport) -> None:
@@ -52,7 +51,7 @@ def test_on_a_phone_the_line_shows_all_of_it(lesson: Lesson, size: tuple[int, in
 
 def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) -> None:
     phone = lesson.phone
-    assert phone.text("#health") == "late 0.20 ms, missed 0"
+    phone.wait(lambda: phone.text("#health") == "late 0.20 ms, missed 0", "all is well")
     assert not phone.shows("#health-table")
     phone.touch("#link")
     lesson.reads("#health-says", "well; late 0.31 ms (p99), missed 0")
@@ -89,7 +88,6 @@ def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: 
         phone.turn(size, touch=size != LAPTOP)
         phone.show(f"12-health-{size[0]}x{size[1]}")
         assert_handy(phone, size, "teach")
-    phone.turn(PORTRAIT)
     phone.touch("#close-health")
     assert not phone.shows("#health-table")
     for size in SIZES:

@@ -1,20 +1,17 @@
 """The mid level on the page: it asks which way, it is corrected and overridden; goals are named and sought."""
 
-from collections.abc import Iterator
 from dataclasses import replace
-from functools import partial
 
 import pytest
-from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from kurt2rt.teaching.hello import MidIntroduction
 from tests.channel.states import COMMANDS, SURPRISED
 from tests.page.classroom import classroom
-from tests.page.fake_robot import A_HELLO, A_LESSON, A_PLACE, FakeRobot
+from tests.page.fake_robot import A_HELLO, FakeRobot
+from tests.page.lesson import Lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.page.test_browser import assert_handy, show_on
+from tests.page.test_browser import assert_handy
 from tests.page.test_critic_on_the_page import ACTIONS
-from tests.page.test_served_page import TOKEN, served
 
 TURNS = ("straight_on", "turn_left", "turn_right")
 ASKS = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
@@ -26,14 +23,11 @@ SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 class Junction:
     """A robot with a mid level at a junction, and the page that its teacher has open."""
 
-    def __init__(self, phone: Phone, portal: BlockingPortal, robot: FakeRobot) -> None:
-        self.phone = phone
-        self.robot = robot
-        self._portal = portal
-
-    def show(self, **changes: object) -> None:
-        """From the next picture on."""
-        self._portal.call(partial(self.robot.show, **changes))
+    def __init__(self, lesson: Lesson) -> None:
+        self.phone = lesson.phone
+        self.robot = lesson.robot
+        self.show = lesson.show
+        self.reads = lesson.reads
 
     def ask_which_way(self) -> None:
         """The robot stands, for the mid level does not know this way."""
@@ -48,10 +42,6 @@ class Junction:
         near = {"nearest": 1, "nearest_action": "forward", "distance": 300.0, "radius": 700.0}
         self.show(mid=COMMANDS, asks_at="basic", **drives, **near)
         self.reads("#sentence", "RLA 1 of turn left does forward")
-
-    def reads(self, selector: str, text: str) -> None:
-        """Wait until it stands there."""
-        self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
 
     def told(self, name: str) -> list[tuple[object, ...]]:
         """What the robot was told of one kind, without the tick that was meant."""
@@ -73,23 +63,15 @@ class Junction:
 
 
 @pytest.fixture
-def junction(a_phone: Phone) -> Iterator[Junction]:
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.greeting = replace(
-            A_HELLO, actions=ACTIONS, behaviours=TURNS, mid=MidIntroduction("history", 12, 6.0), seeks=True
-        )
-        page.robot.newest_lessons = (A_LESSON,)
-        page.robot.named = ("door", "window")
-        junction = Junction(a_phone, portal, page.robot)
-        junction.show(teacher="local", place=A_PLACE, behaviour="turn_left", mid=COMMANDS)
-        pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            a_phone.turn(PORTRAIT)
-            a_phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            junction.reads("#sentence", "RLA 1 of turn left does forward")
-            yield junction
-        finally:
-            pictures.cancel()
+def junction(a_lesson: Lesson) -> Junction:
+    def prepare(robot: FakeRobot) -> None:
+        mid = MidIntroduction("history", 12, 6.0)
+        robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=TURNS, mid=mid, seeks=True)
+        robot.named = ("door", "window")
+
+    a_lesson.begin(prepare, behaviour="turn_left", mid=COMMANDS)
+    a_lesson.reads("#sentence", "RLA 1 of turn left does forward")
+    return Junction(a_lesson)
 
 
 def test_the_line_says_why_the_mid_level_wants_this_way_and_what_it_has_come_by(junction: Junction) -> None:
@@ -215,24 +197,18 @@ def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> 
     junction.look("which-way-from-a-place", sizes=(SMALL,))
 
 
-def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_phone: Phone) -> None:
-    phone = a_phone
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
-        page.robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=TURNS)
-        portal.call(partial(page.robot.show, teacher="local", behaviour="straight_on"))
-        pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            phone.turn(PORTRAIT)
-            phone.open(f"http://127.0.0.1:{page.port}/pair?token={TOKEN}")
-            phone.wait(lambda: "RLA 1" in phone.text("#sentence"), "a picture")
-            for size in (PORTRAIT, LAPTOP):
-                phone.turn(size, touch=size != LAPTOP)
-                for name in ("#mid", "#levels", "#ways", "#meant", "#tab-goals", "#goals", "#surprise"):
-                    assert not phone.shows(name), name
-            assert phone.shows("#behaviours")
-            assert phone.shows("#actions")
-        finally:
-            pictures.cancel()
+def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_lesson: Lesson) -> None:
+    def prepare(robot: FakeRobot) -> None:
+        robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=TURNS)
+
+    a_lesson.begin(prepare, behaviour="straight_on")
+    phone = a_lesson.phone
+    for size in (PORTRAIT, LAPTOP):
+        phone.turn(size, touch=size != LAPTOP)
+        for name in ("#mid", "#levels", "#ways", "#meant", "#tab-goals", "#goals", "#surprise"):
+            assert not phone.shows(name), name
+        assert phone.shows("#behaviours")
+        assert phone.shows("#actions")
 
 
 def test_a_robot_in_the_streets_is_taught_which_way_and_how(

@@ -1,13 +1,11 @@
 """Why the robot does what it does, asked from the page."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from tests.explain.helpers import facts, level, story
 from tests.page.fake_robot import FakeRobot
-from tests.page.lesson import Lesson, a_lesson
-from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
+from tests.page.lesson import Lesson
+from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.page.test_browser import assert_handy
 
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
@@ -16,12 +14,12 @@ DECIDED = facts(level((123.0, 84.0), NEAREST, RUNNER_UP))
 
 
 @pytest.fixture
-def lesson(a_phone: Phone) -> Iterator[Lesson]:
+def lesson(a_lesson: Lesson) -> Lesson:
     def prepare(robot: FakeRobot) -> None:
         robot.decided = DECIDED
 
-    with a_lesson(a_phone, prepare) as lesson:
-        yield lesson
+    a_lesson.begin(prepare)
+    return a_lesson
 
 
 def test_a_touch_on_its_sentence_tells_why_it_does_so(lesson: Lesson) -> None:
@@ -43,9 +41,10 @@ def test_a_touch_on_its_sentence_tells_why_it_does_so(lesson: Lesson) -> None:
 
 def test_it_is_asked_anew_when_the_teacher_wants_it_and_stop_stays_free(lesson: Lesson) -> None:
     phone = lesson.phone
+    lesson.robot.decided = facts(level((123.0, 84.0), NEAREST, RUNNER_UP), action="back")
     phone.key("keyDown", "KeyY")
     phone.key("keyUp", "KeyY")
-    lesson.reads("#explanation-says", "forward")
+    lesson.reads("#explanation-says", "back")
     lesson.robot.decided = facts(level((123.0, 84.0), NEAREST, RUNNER_UP), action="spin_left")
     phone.touch("#explain-again")
     lesson.reads("#explanation-says", "spin_left")
