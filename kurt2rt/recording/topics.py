@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from foxglove import Channel, Context
+from foxglove import channel as sdk_channel
 from foxglove.channels import (
     FrameTransformsChannel,
     LaserScanChannel,
@@ -67,10 +68,10 @@ class Topics:
         self._asking = False
         self._reasons: tuple[str, ...] = ()
         self._trouble: str | None = None
-        self._tick = Channel(TICK, schema=TICK_SCHEMA, context=context)
-        self._lesson = Channel(LESSON, schema=LESSON_SCHEMA, context=context)
-        self._situation = Channel(SITUATION, schema=situation_schema(features), context=context)
-        self._health = Channel(HEALTH, schema=HEALTH_SCHEMA, context=context)
+        self._tick = _channel(TICK, TICK_SCHEMA, context)
+        self._lesson = _channel(LESSON, LESSON_SCHEMA, context)
+        self._situation = _channel(SITUATION, situation_schema(features), context)
+        self._health = _channel(HEALTH, HEALTH_SCHEMA, context)
         self._scan = LaserScanChannel(SCAN, context=context)
         self._pose = PoseInFrameChannel(POSE, context=context)
         self._tf = FrameTransformsChannel(TF, context=context)
@@ -182,6 +183,14 @@ class Topics:
         if self._scene.has_sinks():
             scene = self._pictures.scene(record.senses.infrared_counts, record.decision, record.behaviour, time_ns)
             self._scene.log(scene, log_time=time_ns)
+
+
+def _channel(topic: str, schema: dict[str, Any], context: Context) -> Channel:
+    channel = Channel(topic, schema=schema, context=context)
+    # The SDK keeps each that was ever made, by its id, which is for those who look one up: here nobody does, and a
+    # process that records run after run would grow by 8 kB with each.
+    getattr(sdk_channel, "_channels_by_id", {}).pop(channel.id(), None)
+    return channel
 
 
 def _json(content: Mapping[str, Any]) -> bytes:
