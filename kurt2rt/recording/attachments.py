@@ -50,10 +50,7 @@ def attachments_of(
     attached = {
         ROBOT: _in_force(robot),
         TASK: _in_force(task),
-        KNOWLEDGE: "".join(
-            json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))}) + "\n"
-            for each in entries
-        ).encode(),
+        KNOWLEDGE: _encode_lessons(entries),
     }
     if saved is not None:
         attached[STATISTICS] = encode_statistics(saved)
@@ -119,6 +116,15 @@ def decode_statistics(data: bytes) -> Statistics:
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise RecordingError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
+
+
+def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:
+    """One by one: all lines at once, before they are joined, would be the most memory that a run ever takes."""
+    lines = bytearray()
+    for each in entries:
+        line = json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))})
+        lines += line.encode() + b"\n"
+    return bytes(lines)
 
 
 def _in_force(settings: Settings) -> bytes:
