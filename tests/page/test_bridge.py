@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import anyio
+import anyio.lowlevel
 import pytest
 
 from kurt2rt.page.bridge import Bridge
@@ -17,6 +18,15 @@ from tests.page.fake_robot import A_PLACE, FakeRobot
 
 NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over", "pursue")
 STALE = "given on an old picture; look at the robot, then say it again"
+
+
+async def settled() -> None:
+    """All that follows from what was said has been done: nothing here waits for anything but the next step of another.
+
+    anyio.wait_all_tasks_blocked looks only each 100 ms, for the bridge's watch never is blocked.
+    """
+    for _ in range(50):
+        await anyio.lowlevel.checkpoint()
 
 
 class Page:
@@ -53,13 +63,13 @@ class Page:
 
     async def order(self, name: str, /, **arguments: object) -> dict[str, Any]:
         self.say(Order(1, name, arguments, self.picture))
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         return self.last("answer")
 
     async def see(self, **changes: Any) -> None:
         """A new picture of the robot comes, and the page has it on its screen."""
         self.hall.robot.show(**changes)
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         self.beat()
         self.read()
         self.beat()
@@ -81,7 +91,7 @@ class Hall:
         for _ in range(round(seconds / 0.01)):
             self.clock.go_on(0.01)
             self.bridge.look()
-        await anyio.wait_all_tasks_blocked()
+        await settled()
 
 
 @asynccontextmanager
@@ -97,7 +107,7 @@ async def test_a_page_is_told_what_robot_this_is_and_sees_it() -> None:
     async with opened() as hall:
         page = Page(hall)
         await page.see(place=A_PLACE)
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         page.read()
         assert {each["kind"] for each in page.heard} == {"page", "hello", "world", "lessons", "health", "state"}
         assert page.last("page") == {"kind": "page", "device": "phone", "robot": "127.0.0.1:5683", "seat": "here"}
@@ -157,7 +167,7 @@ async def test_every_page_may_stop_the_robot_also_without_a_picture() -> None:
         await driver.see(teacher="phone")
         driver.press()
         watcher.say(StopNow(5))
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert watcher.last("answer")["accepted"]
         assert hall.told("stop") == [("stop",)]
         driver.press()  # the same press still comes: it is over
@@ -201,11 +211,11 @@ async def test_a_hidden_page_looks_at_nothing_and_holds_nothing() -> None:
         await page.see(teacher="phone")
         page.press()
         page.say(Hidden())
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert not hall.robot.watching
         assert hall.told("let_go") == [("let_go",)]
         hall.robot.show()
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert "state" not in {each["kind"] for each in page.read()}
 
 
@@ -256,7 +266,7 @@ async def test_a_quick_release_ends_the_old_press_and_not_the_next_one() -> None
         page.press(hold=1)
         page.say(Release())
         page.press(hold=2)  # came with the release
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         page.press(hold=2)  # 50 ms later
         assert [each[0] for each in hall.told("press", "let_go")] == ["press", "let_go", "press"]
         assert hall.robot.pressing
@@ -290,7 +300,7 @@ async def test_hiding_or_closing_the_page_stops_a_robot_that_drives(how: Callabl
         page = Page(hall)
         await page.see(**DRIVING)
         how(page)
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert hall.told("stop") == [("stop",)]
 
 
@@ -299,10 +309,10 @@ async def test_a_robot_that_begins_to_drive_just_after_is_stopped_too() -> None:
         page = Page(hall)
         await page.see(**{**DRIVING, "action": None})
         page.say(Hidden())
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert hall.told("stop") == []
         hall.robot.show(action="forward")
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert hall.told("stop") == [("stop",)]
 
 
@@ -336,7 +346,7 @@ async def test_letting_go_and_leaving_end_the_press(how: Callable[[Page], None])
         await page.see(teacher="phone")
         page.press()
         how(page)
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert hall.told("let_go") == [("let_go",)]
 
 
@@ -376,7 +386,7 @@ async def test_an_order_on_no_picture_or_on_one_of_an_earlier_robot_is_not_sent(
         assert (await page.order("answer", action="forward", level="basic", beside=False))["why"] == "stale"
         await page.see(boot=b"old!")
         hall.robot.show(boot=b"new!")
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert (await page.order("answer", action="forward", level="basic", beside=False))["why"] == "stale"
         assert hall.told("answer") == []
 
@@ -450,7 +460,7 @@ async def test_a_list_of_lessons_says_which_orders_it_knows_of() -> None:
         answer = await page.order("answer", action="forward", level="basic", beside=False)
         with anyio.fail_after(5):
             while page.last("lessons")["after"] < answer["done"]:
-                await anyio.wait_all_tasks_blocked()
+                await settled()
                 await anyio.sleep(0.01)
 
 
@@ -496,7 +506,7 @@ async def test_a_refusal_and_a_robot_that_is_silent_are_said() -> None:
         assert (await page.order("resume"))["why"] == "unknown"
         page.press()
         page.say(Release())
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert "did not answer" in page.last("let_go")["text"]
 
 
@@ -512,10 +522,10 @@ async def test_a_page_has_only_so_many_orders_under_way_but_can_always_stop() ->
         hall.robot.resume = wait_for_ever  # type: ignore[method-assign]
         for _ in range(8):
             page.say(Order(1, "resume", {}, page.picture))
-            await anyio.wait_all_tasks_blocked()
+            await settled()
         assert (await page.order("resume"))["why"] == "busy"
         page.say(StopNow(2))
-        await anyio.wait_all_tasks_blocked()
+        await settled()
         assert hall.told("stop") == [("stop",)]
 
 
@@ -539,5 +549,5 @@ async def test_a_robot_that_was_started_anew_introduces_itself_again() -> None:
         await page.see(boot=b"new!")
         with anyio.fail_after(5):
             while len(hall.told("hello")) == before:
-                await anyio.wait_all_tasks_blocked()
+                await settled()
                 await anyio.sleep(0.01)
