@@ -148,27 +148,27 @@ def test_the_files_to_be_spoilt_are_right_before(tmp_path: Path) -> None:
     assert len(PLACES) > 100
 
 
-@pytest.mark.parametrize("place", PLACES, ids=lambda place: ".".join(map(str, (place.kind, *place.path))))
-def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(place: Place, tmp_path: Path) -> None:
-    right = str(place.path[-1])
-    line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
-    if right == "kind":  # it says which schema the item has
-        assert line.startswith(f"{'.'.join(map(str, place.path[:-1]))}: the key 'kind' is missing")
-        return
-    assert named(line)[-1] == f"{right}x"
-    assert set(map(str, place.path[:-1])) <= set(named(line))
-    allowed = line.split("no such key; allowed here: ")[1].split(" (and ")[0].split(", ")
-    assert right in allowed
-    inside = CONTENTS[place.kind]
-    for part in place.path[:-1]:
-        inside = inside[part]
-    assert set(inside) <= set(allowed)
+def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(tmp_path: Path) -> None:
+    for place in PLACES:
+        right = str(place.path[-1])
+        line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
+        if right == "kind":  # it says which schema the item has
+            assert line.startswith(f"{'.'.join(map(str, place.path[:-1]))}: the key 'kind' is missing"), place
+            continue
+        assert named(line)[-1] == f"{right}x", place
+        assert set(map(str, place.path[:-1])) <= set(named(line)), place
+        allowed = line.split("no such key; allowed here: ")[1].split(" (and ")[0].split(", ")
+        assert right in allowed, place
+        inside = CONTENTS[place.kind]
+        for part in place.path[:-1]:
+            inside = inside[part]
+        assert set(inside) <= set(allowed), place
 
 
-@pytest.mark.parametrize("place", PLACES, ids=lambda place: ".".join(map(str, (place.kind, *place.path))))
-def test_a_key_without_a_value_is_named(place: Place, tmp_path: Path) -> None:
-    line = refusal(changed(place, tmp_path, value=None), SCHEMAS[place.kind])
-    assert place.path[-1] == "kind" or named(line)[-1] == place.path[-1]
+def test_a_key_without_a_value_is_named(tmp_path: Path) -> None:
+    for place in PLACES:
+        line = refusal(changed(place, tmp_path, value=None), SCHEMAS[place.kind])
+        assert place.path[-1] == "kind" or named(line)[-1] == place.path[-1], place
 
 
 # Values
@@ -468,8 +468,8 @@ def test_several_mistakes_are_counted(tmp_path: Path) -> None:
         (b"name: " + b"1" * 5000, "line 1, column 7"),
         (b"name: 0x" + b"f" * 5000, "not valid YAML: "),
         (b"[" * 600, "not valid YAML: "),
-        (b"[" * 100_000, "not valid YAML: "),
-        (b"- " * 100_000, "not valid YAML: "),
+        (b"[" * 20_000, "not valid YAML: "),
+        (b"- " * 20_000, "not valid YAML: "),
         (b"name: &x [*x]\n", "found unconstructable recursive node"),
         (b"name: [1\n", "not valid YAML: while parsing a flow sequence"),
         (b"\tname: x\n", "not valid YAML: while scanning"),

@@ -4,9 +4,11 @@
 """
 
 import asyncio
+import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -22,6 +24,8 @@ from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
 from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.replay.reading import read_run
+from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.simulated import SimulatedArena
@@ -249,18 +253,26 @@ def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
     recorder.close()
 
 
-def slim(run: Path, to: Path) -> None:
-    """Only what a replay needs of a run, in one file."""
+def stored(name: str, seconds: float = math.inf) -> Run:
+    """A stored run, or what stood in so many seconds of it from its beginning."""
+    whole = read_run(STORED / f"{name}.mcap")
+    if math.isinf(seconds):
+        return whole
+    return Run(f"the beginning of {name}", whole.head, whole._attachments, lambda: islice(whole._read(), at(seconds)))
+
+
+def slim(segment: Path, to: Path, seconds: float = math.inf) -> None:
+    """Only what a replay needs of a run's first segment, of so many seconds of it, in one file."""
     with to.open("wb") as file:
         writer = Writer(file, compression=CompressionType.ZSTD, chunk_size=1 << 24)
         writer.start(profile="kurt2rt")
-        reader = SegmentReader(run / "0001.mcap")
+        reader = SegmentReader(segment)
         head = reader.head()
         writer.add_metadata(RUN_METADATA, head.metadata[RUN_METADATA])
         for name, data in head.attachments.items():
             writer.add_attachment(0, 0, name, "application/octet-stream", data)
         channel = writer.register_channel("/tick", "json", 0)
-        for message in reader.messages({"/tick"}):
+        for message in islice(reader.messages({"/tick"}), None if math.isinf(seconds) else at(seconds)):
             writer.add_message(channel, message.time_ns, message.data, message.time_ns)
         writer.finish()  # type: ignore[no-untyped-call]
 
@@ -271,7 +283,7 @@ def main() -> None:
     for name in sys.argv[1:] or STORIES:
         with TemporaryDirectory() as folder:
             run = record_story(name, Path(folder))
-            slim(run, STORED / f"{name}.mcap")
+            slim(run / "0001.mcap", STORED / f"{name}.mcap")
         sys.stdout.write(f"{name}: {(STORED / name).with_suffix('.mcap').stat().st_size} bytes\n")
 
 

@@ -11,12 +11,11 @@ from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
-from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay, ReplayedTick
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Shadow, answers_then, shadow_of
 from kurt2rt.rla.rla import BASIC, MID, ActionReplaced, ActionWithdrawn, Origin, Phase, Rla, RlaCreated, TeachingEvent
-from tests.replay.stories import STORED, STORIES
+from tests.replay.stories import STORIES, stored
 
 ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
 
@@ -26,10 +25,6 @@ def of_every_story(first: str) -> pytest.MarkDecorator:
     return pytest.mark.parametrize(
         "name", [pytest.param(name, marks=() if name == first else pytest.mark.deep) for name in STORIES]
     )
-
-
-def stored(name: str) -> Run:
-    return read_run(STORED / f"{name}.mcap")
 
 
 def taught_in(run: Run) -> list[TeachingEvent]:
@@ -45,10 +40,10 @@ def lessons() -> dict[str, list[TeachingEvent]]:
 def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
     name: str, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
-    run = stored(name)
+    run = stored(name, 15)
     found = counterfactual(run, Shadow(run, lessons[name]), Shadow(run, lessons[name]))
     assert found.same
-    assert found.ticks == 4400
+    assert found.ticks == 1500
 
 
 @of_every_story("walls")
@@ -69,20 +64,20 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
 
 
 def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand")
+    run = stored("errand", 18)
     assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
 
 
 def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("walls")
+    run = stored("walls", 24)
     stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
-    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 4400 - stood
+    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 2400 - stood
 
 
 def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
     lessons: dict[str, list[TeachingEvent]],
 ) -> None:
-    run = stored("walls")
+    run = stored("walls", 20)
     known = lessons["walls"]
     used = Shadow(run, known)
     counted: dict[int, int] = {}
@@ -104,7 +99,7 @@ def used_action(shadow: Shadow, rla_id: int) -> str:
 
 
 def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand")
+    run = stored("errand", 20)
     known = lessons["errand"]
     whole = Shadow(run, known)
     ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
@@ -142,7 +137,7 @@ def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
     run = stored("walls")
     replay = Replay(run)
     for _entry, record in replay:
-        if record.decision.cause is Cause.RLA and record.tick > 3000:
+        if record.decision.cause is Cause.RLA and record.tick > 1200:
             break
     rla_id = record.decision.rla_id
     assert rla_id is not None
@@ -158,7 +153,7 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
     known = Shadow(run, events)
     replay = Replay(run)
     for _entry, record in replay:
-        if record.decision.cause is Cause.RLA and record.tick > 3000:
+        if record.decision.cause is Cause.RLA and record.tick > 1200:
             break
     asked = known.look(record, replay.runtime).basic
     assert asked.rla is not None
@@ -171,18 +166,18 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
 
 
 def test_each_tick_is_told_of() -> None:
-    run = stored("walls")
+    run = stored("walls", 5)
     seen: list[ReplayedTick] = []
     found = counterfactual(run, Shadow(run, ()), on_tick=seen.append)
     assert isinstance(found, Counterfactual)
-    assert [tick.entry.number for tick in seen] == list(range(1, 4401))
+    assert [tick.entry.number for tick in seen] == list(range(1, 501))
     assert not found.trouble
 
 
 def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
     tmp_path: Path, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
-    run = stored("walls")
+    run = stored("walls", 10)
     path = tmp_path / "walls.knowledge"
     with open_knowledge(path, run.robot, run.task) as journal:
         journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in lessons["walls"]])

@@ -23,13 +23,9 @@ from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.commands import Resume, Stop, Teach, Watch
 from kurt2rt.tick import TickRecord
 from tests.repertoire.helpers import keep, with_repertoire
-from tests.replay.stories import NAME, STORED, STORIES, Scene, record_story
+from tests.replay.stories import NAME, STORIES, Scene, record_story, stored
 
 HERE = Path(__file__).parents[2]
-
-
-def stored(name: str) -> Run:
-    return read_run(STORED / f"{name}.mcap")
 
 
 def differences(run: Run) -> tuple[int, list[str]]:
@@ -48,21 +44,25 @@ def test_a_stored_run_is_decided_again_as_it_was(name: str) -> None:
     assert not run.trouble
 
 
+OF_2004 = {
+    "OPENBLAS_CORETYPE": "Prescott",
+    "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
+}
+OF_2013 = {"OPENBLAS_CORETYPE": "Haswell"}
+
+
 @pytest.mark.parametrize(
-    "processor",
+    ("processor", "seconds"),
     [
-        {
-            "OPENBLAS_CORETYPE": "Prescott",
-            "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
-            "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
-        },
-        {"OPENBLAS_CORETYPE": "Haswell"},
+        pytest.param(OF_2004, 10, id="of 2004"),
+        pytest.param(OF_2004, 44, id="of 2004, whole", marks=pytest.mark.deep),
+        pytest.param(OF_2013, 44, id="of 2013, whole", marks=pytest.mark.deep),
     ],
-    ids=["of 2004", "of 2013"],
 )
-def test_on_other_processors_too(processor: dict[str, str]) -> None:
+def test_on_other_processors_too(processor: dict[str, str], seconds: int) -> None:
     told = subprocess.run(
-        [sys.executable, "-m", "tests.replay.on_this_processor"],
+        [sys.executable, "-m", "tests.replay.on_this_processor", str(seconds)],
         cwd=HERE,
         env={**os.environ, **processor},
         capture_output=True,
@@ -218,7 +218,7 @@ def test_actions_that_were_taught_themselves_are_kept_with_the_run(tmp_path: Pat
     task = load_task("wall_following")
     mine = tmp_path / "mine"
     mine.mkdir()
-    taught = (event for entry in stored("walls").entries() for event in entry.events)
+    taught = (event for entry in stored("walls", 20).entries() for event in entry.events)
     lessons = [event for event in taught if isinstance(event, RlaCreated) and event.rla.level == BASIC]
     keep(mine / "walls.knowledge", task, *lessons)
     follows = "kind: task, name: follow, task: wall_following, knowledge: walls.knowledge"
