@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from foxglove.messages import (
+    ArrowPrimitive,
     Color,
     CubePrimitive,
     CylinderPrimitive,
@@ -21,6 +22,7 @@ from foxglove.messages import (
     SceneUpdate,
     TextPrimitive,
     Timestamp,
+    TriangleListPrimitive,
     Vector3,
 )
 
@@ -39,10 +41,13 @@ _ASKS = Color(r=0.9, g=0.6, b=0.1, a=1.0)
 _STANDS = Color(r=0.7, g=0.2, b=0.2, a=1.0)
 _RAY = Color(r=0.2, g=0.45, b=0.8, a=0.9)
 _FAR_RAY = Color(r=0.6, g=0.6, b=0.6, a=0.35)
+_AHEAD = Color(r=1.0, g=1.0, b=1.0, a=0.9)
 _WALL = Color(r=0.55, g=0.55, b=0.55, a=1.0)
+_WALL_FACE = Color(r=0.55, g=0.55, b=0.55, a=0.3)
 _WALL_HEIGHT_M = 0.15
 _ROBOT_HEIGHT_M = 0.25
 _RAY_HEIGHT_M = 0.1
+_TEXT_HEIGHT_M = 0.7
 
 
 def timestamp(time_ns: int) -> Timestamp:
@@ -83,14 +88,14 @@ class RobotPictures:
         return LaserScan(
             timestamp=timestamp(time_ns),
             frame_id=ROBOT,
-            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _RAY_HEIGHT_M),
             start_angle=0.0,
             end_angle=math.radians(360 - SCAN_STEP_DEG),
             ranges=self._rays.scan_m(counts),
         )
 
     def scene(self, counts: Sequence[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
-        """The robot's outline, the rays of its sensors, and what drives it as text."""
+        """The robot's outline with an arrow ahead, the rays of its sensors, and what drives it as text."""
         points: list[Point3] = []
         colors: list[Color] = []
         for ray in self._rays.of(counts):
@@ -103,8 +108,16 @@ class RobotPictures:
             size=Vector3(x=self._length_m, y=self._width_m, z=_ROBOT_HEIGHT_M),
             color=color,
         )
+        ahead = ArrowPrimitive(
+            pose=_pose(PlanePose(-self._length_m / 4, 0.0, 0.0), _ROBOT_HEIGHT_M + 0.02),
+            shaft_length=self._length_m / 4,
+            shaft_diameter=0.04,
+            head_length=self._length_m / 4,
+            head_diameter=0.12,
+            color=_AHEAD,
+        )
         text = TextPrimitive(
-            pose=_pose(PlanePose(0.0, 0.0, 0.0), 2 * _ROBOT_HEIGHT_M),
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _TEXT_HEIGHT_M),
             billboard=True,
             font_size=14.0,
             scale_invariant=True,
@@ -124,6 +137,7 @@ class RobotPictures:
             id="robot",
             frame_locked=True,
             cubes=[body],
+            arrows=[ahead],
             lines=[rays],
             texts=[text],
         )
@@ -131,7 +145,13 @@ class RobotPictures:
 
 
 def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
-    """The simulated world: its walls and posts."""
+    """The simulated world: its walls, each a face under a line, and posts."""
+    outlines = [corners for corners in (world.outline, *(wall.corners for wall in world.walls)) if corners]
+    faces = TriangleListPrimitive(
+        pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+        points=[point for corners in outlines for point in _faces_under(corners)],
+        color=_WALL_FACE,
+    )
     lines = [
         LinePrimitive(
             type=LinePrimitiveLineType.LineLoop,
@@ -140,8 +160,7 @@ def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
             points=[Point3(x=x_m, y=y_m, z=_WALL_HEIGHT_M) for x_m, y_m in corners],
             color=_WALL,
         )
-        for corners in (world.outline, *(wall.corners for wall in world.walls))
-        if corners
+        for corners in outlines
     ]
     posts = [
         CylinderPrimitive(
@@ -159,9 +178,20 @@ def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
         id="world",
         lifetime=Duration(0, 0),
         lines=lines,
+        triangles=[faces],
         cylinders=posts,
     )
     return SceneUpdate(entities=[entity])
+
+
+def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
+    """Two triangles from the floor to the height of a wall for each side of a closed outline; x, y in metres."""
+    points = []
+    for (from_x, from_y), (to_x, to_y) in zip(corners, (*corners[1:], corners[0]), strict=True):
+        low, high = Point3(x=from_x, y=from_y, z=0.0), Point3(x=from_x, y=from_y, z=_WALL_HEIGHT_M)
+        end_low, end_high = Point3(x=to_x, y=to_y, z=0.0), Point3(x=to_x, y=to_y, z=_WALL_HEIGHT_M)
+        points += [low, end_low, end_high, low, end_high, high]
+    return points
 
 
 def words_of(decision: Decision, behaviour: str) -> str:

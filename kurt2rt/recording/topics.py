@@ -15,6 +15,7 @@ from foxglove.channels import (
 )
 from foxglove.messages import Log, LogLevel
 
+from hal.guard import SLEW_LIMIT
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.ground import WorldView
 from kurt2rt.channel.state import SimulatedPlace
@@ -152,7 +153,9 @@ class Topics:
         if record.grant.reasons != self._reasons:
             self._reasons = record.grant.reasons
             if self._reasons:
-                level = LogLevel.Error if record.grant.latched else LogLevel.Warning
+                # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
+                gently = LogLevel.Debug if self._reasons == (SLEW_LIMIT,) else LogLevel.Warning
+                level = LogLevel.Error if record.grant.latched else gently
                 self.say(f"guard: {', '.join(self._reasons)}", level, time_ns)
         if record.trouble != self._trouble:
             self._trouble = record.trouble
@@ -165,8 +168,9 @@ class Topics:
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
         moves = [(START, ROBOT, pose)]
         if self._begins is not None:
-            # Reckoned and true place drift apart from the same beginning.
-            moves.append((WORLD, START, self._begins))
+            # Reckoned and true place drift apart from the same beginning. The root comes first: a viewer takes the
+            # first parent that it hears of for the ground.
+            moves.insert(0, (WORLD, START, self._begins))
         # One message holds the whole tree: after a seek a viewer has but the last one of each topic.
         self._tf.log(transforms(moves, time_ns), log_time=time_ns)
 

@@ -7,8 +7,10 @@ import threading
 import time
 from pathlib import Path
 
+from foxglove.messages import Log, LogLevel
 from mcap.reader import make_reader
 
+from hal.guard import FRONT_BUMPER, SLEW_LIMIT
 from kurt2rt.channel.ground import Post, Wall, WorldView
 from kurt2rt.channel.state import SimulatedPlace
 from kurt2rt.health.plain import report_of
@@ -19,7 +21,7 @@ from kurt2rt.recording.entries import TickEntry, tick_entry_of
 from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.odometry import PlanePose
 from kurt2rt.recording.pictures import ROBOT as ROBOT_FRAME
-from kurt2rt.recording.pictures import START, WORLD, transforms
+from kurt2rt.recording.pictures import START, WORLD, timestamp, transforms
 from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
@@ -450,6 +452,29 @@ def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Pa
     assert len(messages_of(tmp_path / NAME, GROUND)) == 2
 
 
+def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where_each_turn_begins(
+    tmp_path: Path,
+) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second()
+    for reasons in ((SLEW_LIMIT,), (FRONT_BUMPER, SLEW_LIMIT)):
+        desk.desk.robot.refuses = reasons
+        desk.second()
+    desk.recorder.close()
+    lines = [each for each in messages_of(tmp_path / NAME, LOG) if b"guard: " in each.data]
+    said = [
+        Log(timestamp=timestamp(each.time_ns), level=level, message=message, name="kurt2rt").encode()
+        for each, level, message in zip(
+            lines,
+            (LogLevel.Debug, LogLevel.Warning),
+            ("guard: slew limit", "guard: front bumper, slew limit"),
+            strict=True,
+        )
+    ]
+    assert [each.data for each in lines] == said
+
+
 def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, ground=Elsewhere())
     desk.recorder.tend()
@@ -459,5 +484,5 @@ def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks
     said = messages_of(tmp_path / NAME, TF)
     assert len(said) == 20
     for each in said:
-        tree = transforms([(START, ROBOT_FRAME, standing), (WORLD, START, began)], each.time_ns)
+        tree = transforms([(WORLD, START, began), (START, ROBOT_FRAME, standing)], each.time_ns)
         assert each.data == tree.encode()
