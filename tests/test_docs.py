@@ -25,7 +25,7 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
-from tests.replay.stories import STORED
+from tests.replay.stories import STORED, slim
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])
@@ -64,6 +64,8 @@ def shortened_lesson(words: Sequence[str]) -> list[str]:
     return [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"]
 
 
+SOONER = 5
+"""Of the recorded run so much less is replayed; all of it in the deep suite."""
 TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
 
 
@@ -121,6 +123,19 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teach(tmp_path_factory.mktemp("demo") / "knowledge", short_task(3.0, 2.0)).knowledge
 
 
+@pytest.fixture(scope="session")
+def a_short_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    slim(STORED / "walls.mcap", segment := tmp_path_factory.mktemp("run") / "0001.mcap", 44.0 / SOONER)
+    return segment
+
+
+def sooner(words: Sequence[str]) -> list[str]:
+    """The same command for a run of which there is only the beginning."""
+    times = ("--at", "--from", "--to")
+    pairs = zip(("", *words), words, strict=False)
+    return [str(float(word) / SOONER) if option in times else word for option, word in pairs]
+
+
 @pytest.fixture
 def folder(tmp_path: Path, taught: Path) -> Path:
     """Where a reader works: a short task, what the demo leaves behind, and a recorded run."""
@@ -130,10 +145,15 @@ def folder(tmp_path: Path, taught: Path) -> Path:
     task["teaching"].update(supervised_s=5.0, corrections_s=3.0)
     task["exam"].update(duration_s=5.0)
     (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
-    recorded = tmp_path / "var/runs/20261122T031005Z-wall_following/0001.mcap"
-    recorded.parent.mkdir(parents=True)
-    shutil.copy(STORED / "walls.mcap", recorded)
+    record(tmp_path, STORED / "walls.mcap")
     return tmp_path
+
+
+def record(folder: Path, segment: Path) -> None:
+    """There is this recorded run."""
+    recorded = folder / "var/runs/20261122T031005Z-wall_following/0001.mcap"
+    recorded.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(segment, recorded)
 
 
 def run(words: Sequence[str], folder: Path) -> None:
@@ -154,14 +174,15 @@ def test_the_readme_says_what_to_type() -> None:
 
 @pytest.mark.parametrize("story", [each for each in stories() if not all(map(is_long, each.commands))], ids=told_where)
 def test_the_commands_of_the_documentation_run(
-    story: Story, folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    story: Story, folder: Path, a_short_run: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    record(folder, a_short_run)
     monkeypatch.chdir(folder)
     kurt2rt = CommandLine(monkeypatch, capfd)
     for words in story.commands:
         if is_long(words):
             continue
-        said = kurt2rt(*words)
+        said = kurt2rt(*sooner(words))
         assert said.exit_code == 0, f"kurt2rt {shlex.join(words)}: {said.err}"
 
 

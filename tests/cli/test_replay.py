@@ -1,7 +1,6 @@
 """`kurt2rt replay`, of the stored runs."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -10,9 +9,16 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.replay.reading import read_run
 from tests.cli.helpers import CommandLine
-from tests.replay.stories import STORED
+from tests.replay.stories import STORED, slim
 
 WALLS = STORED / "walls.mcap"
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The first eighteen seconds of it."""
+    slim(WALLS, segment := tmp_path_factory.mktemp("short") / "walls.mcap", 18.0)
+    return segment
 
 
 def test_a_run_is_the_same_again(kurt2rt: CommandLine) -> None:
@@ -25,44 +31,44 @@ def test_a_run_is_the_same_again(kurt2rt: CommandLine) -> None:
 def test_the_newest_run_is_meant_where_none_is_named(kurt2rt: CommandLine, tmp_path: Path) -> None:
     for name, story in (("20261122T031005Z-walls", "walls"), ("20261123T031005Z-errand", "errand")):
         (tmp_path / name).mkdir()
-        shutil.copy(STORED / f"{story}.mcap", tmp_path / name / "0001.mcap")
+        slim(STORED / f"{story}.mcap", tmp_path / name / "0001.mcap", 5.0)
     said = json.loads(kurt2rt("replay", "--runs", tmp_path, "--json").out)
-    assert (said["task"], said["same"], said["ticks"], said["trouble"]) == ("errands", True, 4400, "")
+    assert (said["task"], said["same"], said["ticks"], said["trouble"]) == ("errands", True, 500, "")
     said = json.loads(kurt2rt("replay", "20261122T031005Z-walls", "--runs", tmp_path, "--json").out)
     assert said["task"] == "wall_following"
 
 
 def test_settings_of_today_change_nothing(
-    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, short: Path
 ) -> None:
     monkeypatch.setattr("hal.settings.CONFIG_DIR", tmp_path / "there are none")
     settings = Path(__file__).parents[2] / "config" / "runtime" / "default.yaml"
-    said = kurt2rt("replay", WALLS, "--settings", settings)
+    said = kurt2rt("replay", short, "--settings", settings)
     assert said.exit_code == 0, said.err
 
 
 def test_what_comes_out_otherwise_is_named_and_ends_with_one(
-    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, short: Path
 ) -> None:
     monkeypatch.setattr("kurt2rt.teaching.tuition.Tuition.event_of", _teaches_nothing)
-    said = kurt2rt("replay", WALLS)
+    said = kurt2rt("replay", short)
     assert said.exit_code == 1
     assert "not the same: " in said.out
-    assert json.loads(kurt2rt("replay", WALLS, "--json").out)["differences"][0]["field"]
+    assert json.loads(kurt2rt("replay", short, "--json").out)["differences"][0]["field"]
 
 
-def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    run = read_run(WALLS)
+def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path, short: Path) -> None:
+    run = read_run(short)
     some = [event for entry in run.entries() for event in entry.events][:4]
     knowledge = tmp_path / "some.knowledge"
     with open_knowledge(knowledge, run.robot, run.task) as journal:
         journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in some])
-    said = kurt2rt("replay", WALLS, "--with", knowledge, "--limit", "3")
+    said = kurt2rt("replay", short, "--with", knowledge, "--limit", "3")
     assert said.exit_code == 0, said.err
     assert f"of them knowledge had a say; with {knowledge}:" in said.out
     assert "another action" in said.out
     assert "where it would have decided otherwise: the longest 3 of " in said.out
-    as_json = json.loads(kurt2rt("replay", WALLS, "--with", knowledge, "--json").out)
+    as_json = json.loads(kurt2rt("replay", short, "--with", knowledge, "--json").out)
     assert as_json["same"] is False
     assert sum(each["ticks"] for each in as_json["stretches"]) == (
         as_json["other_action"] + as_json["would_ask"] + as_json["would_drive"]

@@ -64,7 +64,7 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
 
 
 def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand", 18)
+    run = stored("errand", 30)
     assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
 
 
