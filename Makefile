@@ -26,17 +26,17 @@ test: $(INSTALLED)
 
 # A test that waits for a processor has not failed: six times what the quick ones have.
 test-deep: $(INSTALLED) guard
-	$(PYTEST) -n 2 -q -m deep --timeout 1800
+	EXAMPLES=thorough $(PYTEST) -n 2 -q -m 'deep or hypothesis' --timeout 1800
 
 # Every line and branch of the guard and of what it stands on, by the tests of hal alone.
 guard: $(INSTALLED)
-	$(BIN)/coverage run -m pytest -q tests/hal -k 'not thousand_ticks'
+	EXAMPLES=thorough $(BIN)/coverage run -m pytest -q tests/hal -k 'not thousand_ticks'
 	$(BIN)/coverage report
 
 # Every small change to them has to make a test fail; minutes.
 mutants: $(INSTALLED)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[mutants]'
-	$(BIN)/python -m tests.hal.mutants
+	EXAMPLES=thorough $(BIN)/python -m tests.hal.mutants
 
 # The robot program is killed 10 000 times while it is taught: an hour of one processor; SHARD=2/8 is the second of eight.
 SHARD ?= 1/1

@@ -5,14 +5,11 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
 
+from tests.examples import register_profiles
 from tests.forked_program import nursery
 
-# No deadline per example: it would be a wall-clock assertion, and the machine that runs the tests is shared.
-# Fifty examples, for the same ones are drawn each time: what they find they have found at the first run.
-settings.register_profile("repeatable", derandomize=True, deadline=None, print_blob=True, max_examples=50)
-settings.load_profile("repeatable")
+register_profiles()
 
 _WAIT = {"page", "cli", "service", "channel", "teaching", "commission", "crash"}
 """Folders whose stories wait most: browsers, programs, real time."""

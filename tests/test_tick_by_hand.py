@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL, WheelSpeeds
@@ -30,6 +30,7 @@ from kurt2rt.teaching.commands import (
     Watch,
 )
 from kurt2rt.tick import TickRecord
+from tests.examples import examples
 from tests.teaching.helpers import correct, resume, set_phase, stop, teach
 from tests.test_tick import FORWARD, Corridor
 
@@ -404,7 +405,7 @@ class Witness:
 
 
 @given(courses=COURSES, attended=st.booleans())
-@settings(max_examples=300)
+@examples(300)
 def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
     courses: list[tuple[int, list[tuple[Kind, str, int, int, bool]], int]], attended: bool
 ) -> None:

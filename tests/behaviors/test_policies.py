@@ -1,7 +1,7 @@
 """What the reference policies say, as the shipped tasks set them; wall following has stories of its own."""
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from behaviors.policies.finding import policy_settings
@@ -11,6 +11,7 @@ from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from kurt2rt.tasks.settings import load_task
 from tests.behaviors.helpers import ROBOT, SENSORS, counts
+from tests.examples import examples
 
 TASKS = {path.stem: load_task(path.stem) for path in sorted((CONFIG_DIR / "tasks").glob("*.yaml"))}
 POLICIES = {name: task.policy.build(ROBOT.infrared) for name, task in TASKS.items()}
@@ -47,7 +48,7 @@ def mirrored(name: str) -> str:
 
 @pytest.mark.parametrize("name", TASKS)
 @given(view=VIEWS, before=VIEWS)
-@settings(max_examples=60)
+@examples(60)
 def test_each_names_an_action_of_the_repertoire_whatever_is_seen_and_was_seen(
     name: str, view: tuple[int, ...], before: tuple[int, ...]
 ) -> None:
@@ -165,7 +166,7 @@ def columns(draw: st.DrawFn) -> dict[str, float]:
 
 
 @given(seen=columns(), in_front=st.one_of(st.none(), st.tuples(*[st.floats(0.1, 0.6)] * 3)))
-@settings(max_examples=200)
+@examples(200)
 def test_the_eight_is_the_same_to_either_side(
     seen: dict[str, float], in_front: tuple[float, float, float] | None
 ) -> None:
@@ -216,7 +217,7 @@ def test_the_streets(behaviour: str, distances_m: dict[str, float], action: str)
 
 @pytest.mark.parametrize("behaviour", TASKS["streets"].behaviours)
 @given(view=st.one_of(VIEWS, st.tuples(*[st.integers(70, 550)] * 18)))
-@settings(max_examples=200)
+@examples(200)
 def test_the_streets_are_the_same_to_either_side(behaviour: str, view: tuple[int, ...]) -> None:
     """But for a wall dead ahead on the way straight on, where one side has to be chosen."""
     ahead = [ROBOT.infrared.distance_m(view[SENSORS.index(name)]) for name in ("s9", "s10")]

@@ -10,7 +10,7 @@ from kurt2rt.channel.credentials import ONLOOKER, local_pairing
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.teaching.answer import NoAnswerError
 from tests.cli.helpers import CommandLine, running
-from tests.replay.stories import STORED
+from tests.replay.stories import STORED, slim
 
 WALLS = STORED / "walls.mcap"
 ERRAND = STORED / "errand.mcap"
@@ -40,8 +40,8 @@ def test_a_moment_is_explained_and_drawn(kurt2rt: CommandLine, tmp_path: Path) -
         ("3", "The robot was stopped: the robot program was started. It waits for Go."),
         ("6.5", "Nothing was taught yet, so the robot asks."),
         ("14.2", "Lessons cannot be saved at the moment (the disk is full): the robot stands until they can."),
-        ("28.3", "scripted teacher drives: curve_left. No RLA was asked."),
-        ("36", "whose action was withdrawn: there the robot asks."),
+        pytest.param("28.3", "scripted teacher drives: curve_left. No RLA was asked.", marks=pytest.mark.deep),
+        pytest.param("36", "whose action was withdrawn: there the robot asks.", marks=pytest.mark.deep),
     ],
 )
 def test_a_robot_that_stood_or_was_led_says_why(kurt2rt: CommandLine, at: str, said: str) -> None:
@@ -72,8 +72,9 @@ def test_a_part_of_a_run_is_told_whole(kurt2rt: CommandLine) -> None:
     assert "RLA 1 withdrawn: it asks again (scripted teacher)" in out
 
 
-def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine) -> None:
-    assert "the run ends at" in kurt2rt.misused("why", WALLS, "--at", "500")
+def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    slim(WALLS, short := tmp_path / "short.mcap", 2.0)
+    assert "the run ends at" in kurt2rt.misused("why", short, "--at", "500")
 
 
 def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine, tmp_path: Path) -> None:

@@ -1,6 +1,6 @@
 """The guard that keeps the best knowledge, told window by window."""
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.critic.best_knowledge import BestKnowledge
@@ -19,6 +19,7 @@ from kurt2rt.rla.rla import (
 )
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.critic.helpers import origin
+from tests.examples import examples
 
 
 def best(margin: float = 0.2) -> BestKnowledge:
@@ -243,7 +244,7 @@ Act = tuple[str, int]
         max_size=12,
     )
 )
-@settings(max_examples=150, deadline=None)
+@examples(150)
 def test_whatever_is_changed_by_whom_a_roll_back_fits_the_knowledge(windows: list[tuple[list[Act], int]]) -> None:
     kept, knowledge = best(margin=0.1), RlaSystem(1, 1.0)
     commands = 0

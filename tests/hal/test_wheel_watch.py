@@ -4,7 +4,7 @@ import random
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.control import set_point
@@ -12,6 +12,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
 from hal.wheel_watch import WheelWatch
 from simbridge.wheels import Wheels
+from tests.examples import examples
 from tests.hal.helpers import ROBOT, TICK_S, robot_with
 
 NO_TOLERANCE = robot_with(wheel_error_m_s=0.004, wheel_error_share=0.0, wheel_error_s=0.001)
@@ -93,7 +94,7 @@ factors = st.floats(0.5, 2.0)
 speeds = st.floats(-0.9, 0.9)
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(
     st.tuples(factors, factors, factors),
     st.lists(st.tuples(speeds, speeds, st.booleans(), st.integers(1, 60)), max_size=12),

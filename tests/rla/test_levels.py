@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.rla.space import Space
+from tests.examples import examples
 from tests.rla.helpers import created, deleted, origin, replaced, undone, withdrawn
 
 CRITICS = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))
@@ -137,7 +138,7 @@ def test_how_an_rla_is_spoken_of() -> None:
     assert rla_title(3, "", "reflex") == "reflex RLA 3"
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.lists(st.tuples(st.integers(-5, 5), st.booleans()), min_size=1, max_size=12), st.integers(-6, 6))
 def test_passing_over_those_that_ask_is_as_if_they_were_not_there(taught: list[tuple[int, bool]], place: int) -> None:
     every = [created(number, (float(x), 0.0)) for number, (x, _) in enumerate(taught, 1)]

@@ -4,11 +4,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from kurt2rt.rla.matching import ConditionIndex, exact_distances, exact_square
+from tests.examples import examples
 
 Point = tuple[float, ...]
 
@@ -66,7 +67,7 @@ def worlds(draw: st.DrawFn) -> tuple[list[tuple[Point, int] | int], list[Point]]
 
 
 @given(worlds())
-@settings(max_examples=400)
+@examples(400)
 @example(([((1.5e19,), -1), ((2.7e19,), -1)], [(1.3e19,)]))
 @example(([((0.3,), -1), ((0.6,), -1)], [(1e16,)]))
 @example(([((2.1e-22,), -1), ((1.2e-22,), -1)], [(1.7e-22,)]))
@@ -93,7 +94,7 @@ def test_winner_is_that_of_a_brute_force_after_any_inserts_and_removals(
 
 
 @given(st.integers(0, 2**32), st.sampled_from((3, 8, 9, 36, 72, 129, 200)), st.integers(1, 150))
-@settings(max_examples=100)
+@examples(100)
 def test_winner_in_as_many_dimensions_as_a_situation_has(seed: int, dimensions: int, size: int) -> None:
     """Half the values are whole counts, half are averages of up to 1000 counts, as Perception makes them."""
     chance = np.random.default_rng(seed)

@@ -1,11 +1,12 @@
 """Redo: a lesson that was taken back stands again, where its RLA is as the lesson found it."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.rla.rla import ASK, Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
+from tests.examples import examples
 from tests.rla.helpers import created, deleted, named, origin, replaced, rewarded, undone, withdrawn
 
 FIRST = created(1, (0.0, 0.0))
@@ -84,7 +85,7 @@ def test_a_merge_changes_nothing_by_itself() -> None:
     assert len(system.lessons) == 1
 
 
-@settings(max_examples=100, deadline=None)
+@examples(100)
 @given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 30)), max_size=40))
 def test_after_any_undoing_and_redoing_the_standing_lessons_alone_make_the_same_knowledge(
     steps: list[tuple[int, int]],

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
 from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
+from tests.examples import examples
 from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
 
 FIRST = created(1, (0.0, 0.0))
@@ -192,7 +193,7 @@ def lessons_and_undos(steps: list[tuple[str, int, str]], system: RlaSystem) -> I
 
 
 @given(_STEPS)
-@settings(max_examples=400)
+@examples(400)
 def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps: list[tuple[str, int, str]]) -> None:
     system, standing, undos = system_of(), dict[str, Lesson](), 0
     for event in lessons_and_undos(steps, system):

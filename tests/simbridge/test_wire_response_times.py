@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hal.frame import Frame
 from simbridge.wire.wire import Wire
+from tests.examples import examples
 from tests.simbridge.wires import BY_IDENTIFIER, US, confirmations, ends_on, quiet_wire, stamp_us
 
 SPAN_US = 30_000
@@ -105,7 +106,7 @@ def test_no_frame_waits_longer_than_the_analysis_allows(streams: list[Stream], p
 
 
 @pytest.mark.deep
-@settings(max_examples=3000, deadline=None)
+@examples(3000)
 @given(schedulable(), st.data())
 def test_no_frame_of_very_many_waits_longer_than_the_analysis_allows(
     streams: list[Stream], payloads: st.DataObject

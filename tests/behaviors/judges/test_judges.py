@@ -1,13 +1,14 @@
 """What the judges think, as the shipped tasks set them."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.finding import judge_settings
 from behaviors.judges.judge import Circumstances, Judge
 from behaviors.judges.wall_following import WallFollowingSettings
 from kurt2rt.tasks.settings import load_task
+from tests.examples import examples
 
 TASKS = ("wall_following", "fleeing", "eight")
 OPEN = Circumstances(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
@@ -49,7 +50,7 @@ def test_a_judge_is_found_by_its_name() -> None:
 
 @pytest.mark.parametrize("task", TASKS)
 @given(circumstances=anywhere)
-@settings(max_examples=100)
+@examples(100)
 def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(task: str, circumstances: Circumstances) -> None:
     assert JUDGES[task].judge(circumstances) in {-1, 0, 1}
     for trouble in (
@@ -169,7 +170,7 @@ def test_the_eight(circumstances: dict[str, float], thought: int) -> None:
 
 
 @given(circumstances=anywhere)
-@settings(max_examples=200)
+@examples(200)
 def test_the_eight_is_judged_the_same_to_either_side(circumstances: Circumstances) -> None:
     """But for what is done with neither column beside it, which has to be one side."""
     now = circumstances._replace(left_m=min(circumstances.left_m, 0.3))
