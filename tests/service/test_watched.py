@@ -4,7 +4,8 @@ import math
 import signal
 import subprocess
 import uuid
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import anyio
@@ -32,13 +33,19 @@ WATCHDOG_S = 1.0
 LOOKED_ON_TICKS = 50
 
 
-def start(
+@contextmanager
+def starting(
     systemd: Manager, folder: Path, bus: str, module: str, *hangs: str
-) -> "subprocess.Popen[str] | ForkedProgram":
+) -> "Iterator[subprocess.Popen[str] | ForkedProgram]":
+    """As a unit does; what is left of it at the end is killed, for else a story that fails would wait for it."""
     environment = systemd.environment(WATCHDOG_S)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge")
-    return started(module, *hangs, *words, folder=folder, environment=environment)
+    with started(module, *hangs, *words, folder=folder, environment=environment) as program:
+        try:
+            yield program
+        finally:
+            program.kill()
 
 
 @pytest.mark.deep
@@ -49,7 +56,7 @@ async def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_pa
         sim = around.enter_context(running("sim", "--bus", bus, "--start", "1", folder=tmp_path))
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
         ear = around.enter_context(onlooker(bus))
-        with start(systemd, tmp_path, bus, "tests.service.hanging_program", "drive") as hangs:
+        with starting(systemd, tmp_path, bus, "tests.service.hanging_program", "drive") as hangs:
             async with teacher_of(Running(hangs), tmp_path) as we:
                 assert (await we.take()).accepted
                 await until_it_turns(we, ear)
@@ -58,7 +65,7 @@ async def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_pa
                 assert await anyio.to_thread.run_sync(hangs.wait) == -signal.SIGABRT
         await ear.until(stands)
         ear.forget()
-        with start(systemd, tmp_path, bus, "kurt2rt.cli.main") as next_one:
+        with starting(systemd, tmp_path, bus, "kurt2rt.cli.main") as next_one:
             program = Running(next_one)
             async with teacher_of(program, tmp_path) as we:
                 back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
