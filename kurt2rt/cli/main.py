@@ -82,6 +82,7 @@ _COMMANDS = (
     "phases",
     "replay",
     "why",
+    "recover",
     "knowledge",
     "surprise",
     "commission",

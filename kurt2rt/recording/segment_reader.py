@@ -50,7 +50,7 @@ class SegmentReader:
     def head(self) -> SegmentHead:
         """Metadata and attachments before the first chunk, as far as they are there. Raises RecordingError."""
         head = SegmentHead()
-        for record in self._records():
+        for record in self.records():
             match record:
                 case Metadata():
                     head.metadata[record.name] = dict(record.metadata)
@@ -67,7 +67,7 @@ class SegmentReader:
         """
         schemas: dict[int, str] = {0: ""}
         channels: dict[int, Channel] = {}
-        for record in self._records():
+        for record in self.records():
             match record:
                 case Schema():
                     schemas[record.id] = record.name
@@ -78,7 +78,8 @@ class SegmentReader:
                     if topics is None or channel.topic in topics:
                         yield LoggedMessage(channel.topic, record.log_time, record.data, schemas[channel.schema_id])
 
-    def _records(self) -> Iterator[McapRecord]:
+    def records(self) -> Iterator[McapRecord]:
+        """All that is whole, from the header on, chunks taken apart; raises and sets `torn` as `messages` does."""
         self.torn = ""
         try:
             size = self.path.stat().st_size

@@ -64,6 +64,7 @@ def test_every_command_is_found() -> None:
             "faults",
             "soak",
             "why",
+            "recover",
             "bench",
             "doctor",
             "commission",
