@@ -59,8 +59,8 @@ class Order(NamedTuple):
     environment: dict[str, str]
 
 
-def _preload() -> None:
-    """As late as a first program is ordered: most of those who start tests run few."""
+def preload() -> None:
+    """Import what programs need, and set it aside for all of them."""
     for name in _MODULES:
         import_module(name)
     from hal.codec import load_codec
@@ -136,8 +136,8 @@ def serve(address: str, parent: int) -> Order | None:
             caller, _ = listener.accept()
             with caller:
                 order, descriptors = _receive(caller)
-            if not loaded:
-                _preload()
+            if not loaded:  # not before: most of those who start tests run few programs
+                preload()
                 loaded = True
             if _born(descriptors):
                 listener.close()

@@ -40,7 +40,7 @@ from tests.crash.killed_recording import KilledRecordings
 from tests.crash.programs import Nursery, Program
 
 ACTIONS = ("forward", "forward", "back", "spin_left", "whirl_right")
-LONGEST_S = 60.0
+LONGEST_S = 240.0
 """Fails a story whose event never comes."""
 YOUNGEST_SHARE = 0.3
 """Of the programs that are killed while they start."""

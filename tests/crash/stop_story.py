@@ -21,7 +21,7 @@ from tests.crash.programs import Nursery, Program
 ON_THE_SPOT = "spin_left"
 """What the robot may do for ever without coming anywhere."""
 ROBOT = load_robot()
-LONGEST_S = 60.0
+LONGEST_S = 240.0
 LOOKED_ON_S = 0.6
 """After the program goes on: six times what it takes to drive by mistake."""
 _LOOK_S = 0.005
