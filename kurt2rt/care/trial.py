@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from hal.settings import SettingsError
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import binding_of
@@ -129,9 +130,12 @@ def _recorded_in(folder: Path) -> list[Path]:
 
 
 def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
+    """Why this knowledge could not have been used in a run. Raises RecordingError for one of another kurt2rt."""
     try:
         with run.settings():
             require_same(binding, binding_of(run.robot, run.task), Path(run.name), lambda _: False)
     except KnowledgeError as error:
         return str(error)
+    except SettingsError as error:
+        raise RecordingError(f"{run.name}: its settings cannot be used by this kurt2rt: {error}") from error
     return None

@@ -3,6 +3,7 @@
 import io
 import re
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.care.compacting import TEACHER, Compaction, compact
 from kurt2rt.care.preview import preview, preview_on_newest
 from kurt2rt.care.trial import Known, answers, newest_to_try, runs_to_try
+from kurt2rt.cli.main import main
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
@@ -199,6 +201,18 @@ def test_the_newest_run_is_tried_that_can_be(knowledge: Path, runs: Path) -> Non
     assert shown.notes == (note,)
 
 
+def test_a_run_of_another_kurt2rt_stands_in_no_undos_way(knowledge: Path, runs: Path) -> None:
+    (own,) = runs.iterdir()
+    newer = Path(shutil.copytree(own, runs / "20260321T094640Z-wall_following"))
+    (segment,) = newer.iterdir()
+    segment.write_bytes(segment.read_bytes().replace(b"settings/situations/basic", b"settings/situations/later"))
+    planned = plan_undo(knowledge, teacher="Ann")
+    for shown in (preview_on_newest(planned, runs, quietly), preview(planned, runs, quietly)):
+        assert [tried.run for tried in shown.runs] == [str(own)]
+        (note,) = shown.notes
+        assert note.startswith(f"{newer}: its settings cannot be used by this kurt2rt: ")
+
+
 def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
     planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, recordings, quietly).runs
@@ -273,6 +287,16 @@ def test_where_nothing_was_recorded_an_undo_says_so_and_goes_on(kurt2rt: Command
     not_tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
     assert not_tried == "not tried: var/runs holds no recorded run of such knowledge"
     assert undone.endswith("(lesson far-2 by Ann)")
+
+
+def test_an_undo_whose_standard_input_was_closed_asks_nobody(knowledge: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(knowledge.parent)
+    monkeypatch.setattr(sys, "stdin", None)
+    monkeypatch.setattr(sys, "argv", ["kurt2rt", "knowledge", "undo", str(knowledge)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert not end.value.code
+    assert folded(knowledge).last_standing_lesson == "far-1"
 
 
 class Typed(io.StringIO):

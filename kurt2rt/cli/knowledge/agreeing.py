@@ -38,7 +38,8 @@ def agreed(
     `what`: undo or redo; `become`: what the lessons would be by it. Raises KnowledgeError, before anything is
     replayed, where a robot runs on the file; ends the program, with 1, where the user says no.
     """
-    asks = not (dry_run or yes or no_preview) and sys.stdin.isatty()
+    # Python has no standard input where it was closed.
+    asks = not (dry_run or yes or no_preview) and sys.stdin is not None and sys.stdin.isatty()
     if not dry_run and not no_preview:
         require_at_rest(planned.path)
     if dry_run or asks:
