@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.rla import (
     CRITIC,
     MID,
@@ -75,7 +76,7 @@ MERGED = KnowledgeMerged("other.knowledge", 7, "create-7", origin("merge-1", 520
 APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
 
 
-def bits(numbers: tuple[float, ...]) -> bytes:
+def bits(numbers: Condition) -> bytes:
     return struct.pack(f"{len(numbers)}d", *numbers)
 
 

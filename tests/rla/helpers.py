@@ -1,5 +1,6 @@
 """Teaching events in one line each."""
 
+from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.rla import (
     BASIC,
     ActionReplaced,
@@ -23,7 +24,7 @@ def origin(command_id: str = "lesson-1", tick: int = 1) -> Origin:
 
 def created(
     rla_id: int,
-    condition: tuple[float, ...],
+    condition: Condition,
     action: str = "forward",
     radius: float | None = None,
     command_id: str | None = None,
