@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from kurt2rt.recording.run_folder import find_run, segments_in
-from kurt2rt.recording.whole_copy import copy_whole
+from kurt2rt.recording.whole_copy import NothingWholeError, copy_whole
 from kurt2rt.service_settings import load_service
 
 
@@ -32,7 +32,14 @@ def recover(
     """
     found = find_run(run, runs or Path(load_service(settings).recordings))
     folder.mkdir(parents=True, exist_ok=True)
-    for segment in [found] if found.is_file() else segments_in(found):
-        torn = copy_whole(segment, folder / segment.name)
+    segments = [found] if found.is_file() else segments_in(found)
+    for segment in segments:
+        try:
+            torn = copy_whole(segment, folder / segment.name)
+        except NothingWholeError as error:
+            if len(segments) == 1:
+                raise
+            typer.echo(f"{error}; not copied")
+            continue
         typer.echo(torn or f"{segment} is whole")
         typer.echo(f"copied to {folder / segment.name}")

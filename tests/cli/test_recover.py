@@ -26,3 +26,16 @@ def test_a_torn_run_is_copied_and_the_copy_has_its_index(kurt2rt: CommandLine, t
     assert again.exit_code == 2
     assert "give another folder" in again.err
     assert torn.read_bytes() == content[:-100]
+
+
+def test_a_file_that_the_power_cut_left_empty_stands_in_no_others_way(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    run = tmp_path / "20260320T094640Z-wall_following"
+    run.mkdir()
+    for number in (1, 3):
+        (run / f"000{number}.mcap").write_bytes((STORED / "walls.mcap").read_bytes()[:200_000])
+    (run / "0002.mcap").touch()
+    said = kurt2rt("recover", tmp_path / "copies", run)
+    assert said.exit_code == 0, said.err
+    assert f"{run / '0002.mcap'}: is no file of a run, or nothing of it was written; not copied\n" in said.out
+    assert sorted(copy.name for copy in (tmp_path / "copies").iterdir()) == ["0001.mcap", "0003.mcap"]
+    assert "nothing of it was written" in kurt2rt.refused("recover", tmp_path / "others", run / "0002.mcap")
