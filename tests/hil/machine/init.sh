@@ -58,6 +58,8 @@ fi
 if [ -e /run/machine/systemd ]; then
     # Nothing of what the outer machine starts, mounts or waits for.
     mount -t tmpfs -o mode=755 tmpfs /etc/systemd/system && : >/etc/fstab || bad "no tmpfs"
+    # Where the outer machine is a container: this one is none.
+    rm -f /.dockerenv /run/.containerenv
     # It would empty /tmp, and directories there may be shared.
     ln -s /dev/null /etc/systemd/system/systemd-tmpfiles-setup.service
     cat >/etc/systemd/system/machine.service <<END
