@@ -182,7 +182,7 @@ def test_what_passed_on_the_bus_is_kept_in_a_log_that_other_tools_read(kurt2rt: 
         frames = list(reader)
     assert f"{len(frames)} frames are in drive.log" in said.out
     sent = [frame.arbitration_id for frame in frames if not frame.is_rx]
-    assert len(sent) >= 30
+    assert len(sent) >= 5
     assert set(sent) == {CONTROL_ID}
     heard = {frame.arbitration_id for frame in frames if frame.is_rx}
     assert {load_codec().message(name).frame_id for name in ("ADC00_03", "BDC00_03", "ENCODER", "BUMPERC")} <= heard
