@@ -12,7 +12,7 @@ STORY = "tests/hil/simulated_time/unit_story.py"
 pytestmark = pytest.mark.boots
 
 
-@pytest.mark.timeout(1800)
+@pytest.mark.timeout(3600)
 def test_the_unit_under_systemd() -> None:
     machine = [sys.executable, "-m", "tests.hil.machine", "--simulated-time", "--systemd"]
     pytest_there = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", STORY]

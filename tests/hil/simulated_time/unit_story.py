@@ -4,6 +4,7 @@
 """
 
 import json
+import shutil
 import subprocess
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
@@ -52,10 +53,11 @@ def write_settings(path: Path, **changes: object) -> None:
 
 @pytest.fixture
 def unit(kurt2rt: Path, settings: Path, vcan0: str) -> Iterator[Unit]:
-    """Installed, and not started yet."""
+    """Installed, and neither started nor taught yet."""
     subprocess.run([kurt2rt, "service", "install", "--robot", vcan0, "--settings", settings], check=True)
     yield Unit()
     subprocess.run([kurt2rt, "service", "uninstall"], check=True)
+    shutil.rmtree(STATE, ignore_errors=True)  # it is not there where the unit never started
 
 
 @contextmanager
@@ -77,10 +79,16 @@ async def until_up(unit: Unit) -> int:
     return await anyio.to_thread.run_sync(unit.wait_until_said, LISTENS)
 
 
-async def stands_and_asks_after_go(we: TeacherClient) -> None:
+async def stands_until_go(we: TeacherClient) -> None:
     stopped = await state_where(we, lambda state: state.stopped_because != "")
     assert (stopped.stopped_because, stopped.left_m_s, stopped.right_m_s) == (STARTED, 0.0, 0.0)
     assert (await we.resume()).accepted
+    await state_where(we, lambda state: state.stopped_because == "")
+
+
+async def stands_and_asks_after_go(we: TeacherClient) -> None:
+    """Which it does as long as it knows nothing."""
+    await stands_until_go(we)
     await state_where(we, lambda state: state.cause == "unknown")
 
 
@@ -159,7 +167,7 @@ async def test_however_it_falls_and_however_often_it_is_there_again_and_the_robo
         await until_up(unit)
         assert unit.shows("NRestarts") == str(START_LIMIT + 1)
         async with teacher() as we:
-            await stands_and_asks_after_go(we)
+            await stands_until_go(we)
 
 
 async def test_a_program_that_hangs_while_it_drives_is_ended_and_started_anew(unit: Unit, tmp_path: Path) -> None:
@@ -174,7 +182,7 @@ async def test_a_program_that_hangs_while_it_drives_is_ended_and_started_anew(un
         assert "Watchdog timeout (limit 5s)" in unit.journal()
         await until_up(unit)
         async with teacher() as we:
-            await stands_and_asks_after_go(we)
+            await stands_until_go(we)
 
 
 async def test_the_end_stops_the_wheels_first_and_takes_less_than_a_second(unit: Unit, tmp_path: Path) -> None:
