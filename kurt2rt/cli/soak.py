@@ -1,7 +1,11 @@
 """`kurt2rt soak`."""
 
 import shutil
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import Annotated
 
 import anyio
@@ -55,7 +59,9 @@ def soak(
     for. At the end memory must not have grown by more than 5 MB since the end of
     the first hour.
 
-    24 hours take 30 to 60 minutes. Ends with code 1 when something did not hold.
+    24 hours take 30 to 60 minutes. Ctrl-C ends it sooner, with a report of what
+    was seen until then; a second one ends it at once. Ends with code 1 when
+    something did not hold.
     """
     # Not at the top: simulator and plots are extras, and `kurt2rt run` on the robot does without them.
     from kurt2rt.soak.day import Day
@@ -77,7 +83,8 @@ def soak(
         columns = (*Progress.get_default_columns()[:-1], TimeElapsedColumn(), TimeRemainingColumn())
         with Progress(*columns, console=Console(stderr=True)) as progress:
             bar = progress.add_task("soak", total=hours * 3600.0)
-            result = anyio.run(running.run, hours, lambda now_s: progress.update(bar, completed=now_s))
+            with _at_ctrl_c(running.end):
+                result = anyio.run(running.run, hours, lambda now_s: progress.update(bar, completed=now_s))
     finally:
         place.close()
     print_report(result, Console())
@@ -87,6 +94,21 @@ def soak(
     draw_soak(result, settings.limits, out / "soak.png")
     if not result.passed:
         raise typer.Exit(1)
+
+
+@contextmanager
+def _at_ctrl_c(end: Callable[[], None]) -> Iterator[None]:
+    """What the first one does; the second one does what it did before."""
+
+    def hear(_number: int, _frame: FrameType | None) -> None:
+        signal.signal(signal.SIGINT, before)
+        end()
+
+    before = signal.signal(signal.SIGINT, hear)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _make_room(out: Path) -> None:

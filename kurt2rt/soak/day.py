@@ -82,6 +82,11 @@ class Day:
         self._recorded = self._unrecorded = 0
         self._troubles: list[str] = []
         self._session_from: int | None = None
+        self._cut_short = False
+
+    def end(self) -> None:
+        """End as soon as nothing fails; what was seen until then is judged. From a signal handler, too."""
+        self._cut_short = True
 
     async def run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
         """So many simulated hours; `on_progress` gets simulated seconds; once only.
@@ -100,7 +105,9 @@ class Day:
         clock = self._place.time
         if self._by_module:
             tracemalloc.start(1)
-        while clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED:
+        while (
+            not self._cut_short and clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED
+        ):
             until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
             start = await self._live(until_s, on_progress)
             # On a robot the end of the program takes all that it knew along; two at a time would count twice.
@@ -135,7 +142,10 @@ class Day:
             self._see(life, record, on_progress)
 
         # A program that is ended while its disk fails says what it could not save; that is no loss to look for here.
-        await life.run(until_s, on_tick, lambda: self._faults.acting is None)
+        await life.run(
+            on_tick,
+            lambda: (self._cut_short or self._place.time.now_s() >= until_s) and self._faults.acting is None,
+        )
         expected = self._faults.expects_the_end
         self._faults.life = None
         if life.ended_by and not expected:

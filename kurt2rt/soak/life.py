@@ -117,19 +117,19 @@ class Life:
         """Whether something may fail: it runs, and has run for a moment."""
         return self._started_s is not None and self._time.now_s() - self._started_s > _READY_AFTER_S
 
-    async def run(self, until_s: float, on_tick: Callable[[TickRecord], None], may_end: Callable[[], bool]) -> None:
+    async def run(self, on_tick: Callable[[TickRecord], None], is_over: Callable[[], bool]) -> None:
         """As kurt2rt.service does: whatever ends the loop, the wheels stand before anything else ends.
 
-        `may_end`: asked from `until_s` on.
+        `is_over`: asked after each tick.
         """
-        runtime, time = self.runtime, self._time
-        self._started_s = time.now_s()
+        runtime = self.runtime
+        self._started_s = self._time.now_s()
         self._begun_s = self.clock.now_s()
 
         def after_tick(record: TickRecord) -> None:
             self._after_tick(record)
             on_tick(record)
-            if time.now_s() >= until_s and may_end():
+            if is_over():
                 runtime.scheduler.end()
 
         with quiet_gc():

@@ -60,13 +60,13 @@ def started(folder: Path, place: LastingPlace, witness: SoakWitness, **moods: ob
     )
 
 
-def run(life: Life, until_s: float) -> None:
-    anyio.run(life.run, until_s, lambda _: None, lambda: True)
+def run(life: Life, place: LastingPlace, until_s: float) -> None:
+    anyio.run(life.run, lambda _: None, lambda: place.time.now_s() >= until_s)
 
 
 def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
-    run(life, 1.0)
+    run(life, place, 1.0)
     assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
     assert witness.stands
 
@@ -77,7 +77,7 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
     life = started(tmp_path, place, witness, away=AWAY)
     assert life.level.behind is not None
     life.level.behind = Careless(life.level.behind)
-    run(life, 1.0)
+    run(life, place, 1.0)
     life.close()
     assert witness.complaints.count > 80
     assert "drives though the program was started, and nobody said resume" in witness.complaints.told[0]
@@ -85,17 +85,17 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
 
 def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
-    run(life, 0.5)
+    run(life, place, 0.5)
     assert witness.complaints.count == 0
     life.runtime.ledger.missed_ticks += 1
-    run(life, 0.6)
+    run(life, place, 0.6)
     life.close()
     assert "done and 1 missed are not as many" in witness.complaints.told[0]
 
 
 def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, patient=PATIENT)
-    run(life, 3.0)
+    run(life, place, 3.0)
     life.knowledge.submitted.append("soak-999")
     assert "lessons were there and" in life.close()
 
@@ -105,7 +105,7 @@ def test_an_error_in_the_loop_ends_the_program_and_says_where(
 ) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     life.level.behind = None
-    run(life, 1.0)
+    run(life, place, 1.0)
     assert life.ended_by.startswith("AssertionError() in level.py, line ")
     assert life.close() == ""
     place.time.run_until(1.0)
