@@ -143,7 +143,7 @@ class CanBus:
             raise BusError(f"bus {self.name}: takes no receive filter ({error})") from error
 
     def _forget_unconfirmed(self) -> None:
-        self._forgotten = self._carried_controls < self._sent_controls
+        self._forgotten = self._forgotten or self._carried_controls < self._sent_controls
         self._first_since = None
         self._carried_controls = self._sent_controls
 

@@ -203,6 +203,21 @@ def test_a_frame_that_the_bus_did_not_take_is_not_the_first_since(end: HeldEnd, 
     assert port.unconfirmed == 0
 
 
+def test_what_was_forgotten_twice_with_nothing_sent_between_confirms_nothing(
+    end: HeldEnd, bus: CanBus, port: FramePort
+) -> None:
+    port.send(encode_brake())
+    port.forget_unconfirmed()
+    port.forget_unconfirmed()
+    port.send(SLOW)
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 1
+    end.carry()
+    bus.drain()
+    assert port.unconfirmed == 0
+
+
 @pytest.mark.parametrize("happens", ["restarted", "lost", "reopened"])
 def test_after_a_controller_began_anew_nothing_forgotten_is_waited_for(
     end: HeldEnd, bus: CanBus, port: FramePort, happens: str
