@@ -9,6 +9,8 @@ from config import CONFIG_DIR
 _PLACE = Path("/opt/kurt2rt")
 _PARTS = Path("/opt/kurt2rt-parts")
 _BYTECODE = Path("/opt/kurt2rt-bytecode")
+_ONCE = ("run", "--seconds", "0.1", "--no-record", "--teacher", "none")
+"""Compiles what a start takes, which the service's own user could not keep."""
 _SCRIPT = "#!{python}\nimport sys\n\nfrom kurt2rt.cli.main import main\n\nsys.exit(main())\n"
 
 
@@ -29,6 +31,8 @@ def install_for_everybody() -> Path:
     script = _PLACE / "bin" / "kurt2rt"
     script.write_text(_SCRIPT.format(python=_PLACE / "bin" / "python"), encoding="utf-8")
     script.chmod(0o755)
+    once = (*_ONCE, "--knowledge", f"{_PARTS}/once.knowledge")
+    _do("env", "--unset=PYTHONDONTWRITEBYTECODE", *words, str(script), *once)
     return script
 
 
