@@ -9,7 +9,14 @@ from tests.faults.helpers import TABLE, tried
 CASES = list(cases_of(TABLE))
 
 
-@pytest.mark.parametrize("case", CASES, ids=str)
+def is_quick(case: FaultCase) -> bool:
+    """A third of them: of each target several kinds, and of each kind several targets."""
+    return (TARGETS.index(case.target) + KINDS.index(case.kind)) % 3 == 0
+
+
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=[] if is_quick(case) else pytest.mark.deep, id=str(case)) for case in CASES]
+)
 def test_what_the_table_says_comes_of_it(case: FaultCase) -> None:
     trial = tried(case.target, case.kind)
     assert trial.verdict.passed, trial.verdict.complaints
@@ -38,6 +45,13 @@ def test_stop_times_meet_their_goals() -> None:
 )
 def test_the_same_seed_comes_to_the_same(target: Target, kind: Kind) -> None:
     assert tried(target, kind, seed=7).outcome == tried(target, kind, seed=7).outcome
+
+
+def test_the_quick_ones_leave_out_no_target_and_no_kind() -> None:
+    quick = list(filter(is_quick, CASES))
+    assert len(quick) == len(CASES) / 3
+    assert {case.target for case in quick} == set(TARGETS)
+    assert {case.kind for case in quick} == set(KINDS)
 
 
 def test_the_table_leaves_nothing_to_chance() -> None:
