@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import Circumstances
-from hal.robot import Grant, Robot, Senses
+from hal.robot import STANDSTILL, Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.expecting import Expecting
 from kurt2rt.expectations.surprise import Surprise
@@ -167,8 +167,10 @@ class Tick:
         behaviour = self._school.wanted.behaviour
         mark(Stage.DECIDE)
 
-        # The clock is read anew: a tick that was held up must not pass its old decision for a fresh one.
-        grant = self._robot.drive(decision.wheel_speeds, now_s, self._now())
+        # A layer may fail: what names no action gets no speed. The clock is read anew: a tick that was held up must not
+        # pass its old decision for a fresh one.
+        wheel_speeds = decision.wheel_speeds if decision.driving else STANDSTILL
+        grant = self._robot.drive(wheel_speeds, now_s, self._now())
         mark(Stage.GUARD)
 
         if grant.latched and not self._latched:

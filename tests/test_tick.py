@@ -10,7 +10,7 @@ from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
-from kurt2rt.layers.decision import Cause
+from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import Phase, TeachingEvent
@@ -388,3 +388,21 @@ def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) 
     for _ in range(5):
         driving.run(100)
     assert driving.statistics.uses == uses
+
+
+def test_a_layer_that_fails_does_not_drive_a_robot_that_was_stopped(
+    driving: Corridor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        return decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
+
+    driving.run(None, stop("enough"))
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    for _ in range(5):
+        record = driving.run()
+        assert record.decision.wheel_speeds == FORWARD
+        assert record.grant.wheel_speeds == STANDSTILL
+    driving.run(None, resume("go on"))
+    assert driving.run().grant.wheel_speeds == FORWARD
