@@ -201,7 +201,7 @@ class Kurt2:
             senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s
         )
         if disobedience:
-            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders and their cables")
+            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders, cables; switch the robot off and on")
         freeze = self._infrared_watch.freeze(senses.time_s, driving=self._told != STANDSTILL and not paused)
         if freeze:
             self._stop(INFRARED_FROZEN, freeze)

@@ -167,8 +167,8 @@ class Tick:
         behaviour = self._school.wanted.behaviour
         mark(Stage.DECIDE)
 
-        # A layer may fail: what names no action gets no speed. The clock is read anew: a tick that was held up must not
-        # pass its old decision for a fresh one.
+        # What names no action gets no speed. The clock is read anew: a tick that was held up must not pass its old
+        # decision for a fresh one.
         wheel_speeds = decision.wheel_speeds if decision.driving else STANDSTILL
         grant = self._robot.drive(wheel_speeds, now_s, self._now())
         mark(Stage.GUARD)
@@ -258,10 +258,12 @@ class Tick:
             unable = self._unable(blind=blind)
             aside = self._level.decide(situation, senses, unable or Cause.TEACHER)
             if unable is not None:
-                return aside
+                return _standing(aside, unable)
             name, wheel_speeds = authority.step(senses)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
         decision = self._level.decide(situation, senses, stand)
+        if stand is not None:
+            decision = _standing(decision, stand)
         if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
             return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
         return decision
@@ -284,6 +286,13 @@ class Tick:
         if self._trouble is not None:
             return Cause.UNSAVED
         return None
+
+
+def _standing(decision: Decision, cause: Cause) -> Decision:
+    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands."""
+    if decision.wheel_speeds == STANDSTILL and not decision.driving:
+        return decision
+    return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False)
 
 
 def _is_about_what_is_seen_now(command: Command) -> bool:

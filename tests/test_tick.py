@@ -390,19 +390,22 @@ def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) 
     assert driving.statistics.uses == uses
 
 
+@pytest.mark.parametrize("says_why", [False, True])
 def test_a_layer_that_fails_does_not_drive_a_robot_that_was_stopped(
-    driving: Corridor, monkeypatch: pytest.MonkeyPatch
+    driving: Corridor, monkeypatch: pytest.MonkeyPatch, says_why: bool
 ) -> None:
     decide = BasicLevel.decide
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:
-        return decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
+        decision = decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
+        return decision._replace(cause=Cause.RLA, action="ahead", rla_id=1) if says_why else decision
 
     driving.run(None, stop("enough"))
     monkeypatch.setattr(BasicLevel, "decide", runs_away)
     for _ in range(5):
         record = driving.run()
-        assert record.decision.wheel_speeds == FORWARD
-        assert record.grant.wheel_speeds == STANDSTILL
+        assert record.decision.cause is Cause.STOPPED
+        assert not record.decision.driving
+        assert record.decision.wheel_speeds == record.grant.wheel_speeds == STANDSTILL
     driving.run(None, resume("go on"))
     assert driving.run().grant.wheel_speeds == FORWARD

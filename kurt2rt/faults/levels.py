@@ -20,8 +20,8 @@ class DisturbedLevel:
     """Stands before the layer that decides (kurt2rt.layers.level.Level).
 
     off: it raises. stuck: it comes back when the fault is over. garbage: it wants what is no number. wrong: it wants
-    far too much, and turns round. slow: each decision takes longer than it may be old. delayed: each takes longer than
-    a period, but is young enough. intermittent: it hangs now and then.
+    far too much, and turns round, also when it was told to stand. slow: each decision takes longer than it may be old.
+    delayed: each takes longer than a period, but is young enough. intermittent: it hangs now and then.
     """
 
     def __init__(self, time: SimulatedTime, disturbance: Disturbance) -> None:
@@ -48,7 +48,7 @@ class DisturbedLevel:
             case "wrong":
                 turns = int((now_s - disturbance.begin_s) / _TURNS_ROUND_EVERY_S)
                 speed_m_s = _TOO_FAST_M_S if turns % 2 == 0 else -_TOO_FAST_M_S
-                return decision._replace(wheel_speeds=WheelSpeeds(speed_m_s, speed_m_s))
+                return _driving(decision)._replace(wheel_speeds=WheelSpeeds(speed_m_s, speed_m_s))
             case "slow" | "delayed":
                 self._time.run_until(now_s + disturbance.delay_s)
             case "intermittent":
@@ -57,3 +57,11 @@ class DisturbedLevel:
                     self._hung = turn
                     self._time.run_until(now_s + disturbance.delay_s)
         return decision
+
+
+def _driving(decision: Decision) -> Decision:
+    """The decision of a level that heard nobody tell it to stand."""
+    if decision.driving or decision.match is None:
+        return decision
+    rla = decision.match.rla
+    return decision._replace(cause=Cause.RLA, action=rla.action, rla_id=rla.rla_id)

@@ -208,6 +208,7 @@ class Day:
         frames = witness.envelope.frames
         counted = {
             "set down": self._person.set_down,
+            "switched off and on": self._person.switched_on,
             "controller crashes": self._place.crashes,
             "collisions": self._place.collisions,
             "refused commands": self._refused,

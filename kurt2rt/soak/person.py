@@ -1,4 +1,4 @@
-"""Somebody who looks after the robot itself: picks it up where it is stuck."""
+"""Somebody who looks after the robot itself: picks it up where it is stuck, and switches it off and on."""
 
 import math
 
@@ -7,30 +7,40 @@ from kurt2rt.soak.place import SoakPlace
 from kurt2rt.tick import TickRecord
 
 _WAY_M = 0.3
+_DRIVES = (Cause.RLA, Cause.HELD, Cause.TEACHER)
 
 
 class Person:
-    """Sets the robot down elsewhere when it has been about where it is for too long though it would drive."""
+    """Sets the robot down elsewhere when it has been about where it is for too long though it would drive.
+
+    Where that does not help he switches it off and on: a frame of noise may have switched its motors off.
+    """
 
     def __init__(self, place: SoakPlace, after_s: float, period_s: float) -> None:
-        self.set_down = 0
+        self.set_down = self.switched_on = 0
         """How often."""
         self._place = place
         self._most_ticks = round(after_s / period_s)
         self._ticks = 0
         self._from_m = place.position_m
+        self._has_moved = True
 
     def sees(self, record: TickRecord) -> bool:
         """See a tick; True where the robot was picked up after it."""
-        if record.decision.cause not in (Cause.RLA, Cause.HELD, Cause.TEACHER):
+        if record.grant.latched or record.decision.cause not in _DRIVES:
             return False
         here_m = self._place.position_m
         if math.dist(here_m, self._from_m) > _WAY_M:
             self._from_m, self._ticks = here_m, 0
+            self._has_moved = True
             return False
         self._ticks += 1
         if self._ticks < self._most_ticks:
             return False
+        if not self._has_moved:
+            self._place.switch_on()
+            self.switched_on += 1
+        self._has_moved = False
         self._place.set_down()
         self._from_m, self._ticks = self._place.position_m, 0
         self.set_down += 1

@@ -64,6 +64,10 @@ class SoakPlace(Protocol):
         """Somebody sets the robot down at a start pose."""
         ...
 
+    def switch_on(self) -> None:
+        """Somebody switches the robot's controller off and on."""
+        ...
+
     def close(self) -> None:
         """Give the bus back."""
         ...

@@ -115,6 +115,10 @@ class LastingPlace:
         """Somebody sets the robot down at a start pose."""
         self.simulation.place(self._chance.choice(self._starts))
 
+    def switch_on(self) -> None:
+        """Somebody switches the robot's controller off and on."""
+        self.simulation.controller.switch_on()
+
     @property
     def position_m(self) -> tuple[float, float]:
         """Where it really is."""
@@ -144,7 +148,7 @@ class LastingPlace:
         self.turned_m[0] += left_m_s * self._cycle_s
         self.turned_m[1] += right_m_s * self._cycle_s
         if simulation.controller.dead:
-            simulation.controller.switch_on()
+            self.switch_on()
             self.crashes += 1
 
     def _poll_watchdog(self) -> None:

@@ -254,7 +254,8 @@ def test_wheels_that_do_not_follow_stop_the_robot(ride: Ride) -> None:
     assert 19 <= [grant.latched for grant in grants].index(True) <= 21
     assert grants[-1] == stopped(WHEELS_DISOBEY)
     trouble = ride.kurt2.health.trouble
-    assert trouble == "right wheels were told 0.30 m/s and turn at 0.00; check motors, encoders and their cables"
+    told = "right wheels were told 0.30 m/s and turn at 0.00"
+    assert trouble == f"{told}; check motors, encoders, cables; switch the robot off and on"
 
 
 # Infra-red boards

@@ -7,6 +7,7 @@ import anyio
 import pytest
 
 from hal.robot import Senses, WheelSpeeds
+from kurt2rt import tick
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Situation
@@ -20,7 +21,7 @@ AWAY = PATIENT.model_copy(update={"there": False})
 
 
 class Careless:
-    """A layer that drives whatever it is told."""
+    """A layer that drives whatever it is told (and the tick would not let it)."""
 
     def __init__(self, behind: Level) -> None:
         self._behind = behind
@@ -72,8 +73,9 @@ def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: Lasting
 
 
 def test_one_that_drives_though_it_was_only_started_is_seen(
-    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+    tmp_path: Path, place: LastingPlace, witness: SoakWitness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(tick, "_standing", lambda decision, _: decision)
     life = started(tmp_path, place, witness, away=AWAY)
     assert life.level.behind is not None
     life.level.behind = Careless(life.level.behind)
@@ -81,6 +83,17 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
     life.close()
     assert witness.complaints.count > 80
     assert "drives though the program was started, and nobody said resume" in witness.complaints.told[0]
+
+
+def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
+    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    assert life.level.behind is not None
+    life.level.behind = Careless(life.level.behind)
+    run(life, place, 1.0)
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
+    assert witness.stands
 
 
 def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
