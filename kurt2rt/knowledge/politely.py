@@ -1,5 +1,6 @@
 """Long work in a thread beside the robot's loop, in small bites."""
 
+import threading
 import time
 from collections.abc import Iterable, Iterator
 from typing import TypeVar
@@ -12,7 +13,13 @@ _Item = TypeVar("_Item")
 
 
 def politely(items: Iterable[_Item]) -> Iterator[_Item]:
-    """The same items, with a pause after each bite: the loop's thread is not kept waiting for the interpreter."""
+    """The same items, with a pause after each bite: the loop's thread is not kept waiting for the interpreter.
+
+    The loop has the main thread: who works there keeps nobody waiting, and makes no pauses.
+    """
+    if threading.current_thread() is threading.main_thread():
+        yield from items
+        return
     bite_ends = time.perf_counter() + BITE_S
     for item in items:
         yield item
