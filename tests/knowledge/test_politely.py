@@ -1,10 +1,10 @@
 import threading
+import time
 from collections.abc import Callable
 
 import pytest
 
-from kurt2rt.knowledge import politely as module
-from kurt2rt.knowledge.politely import BITE_S, politely
+from kurt2rt.knowledge.politely import BITE_S, PAUSE_S, politely
 
 
 @pytest.fixture
@@ -12,12 +12,12 @@ def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """How long somebody slept; each look at the clock finds a bite over."""
     slept: list[float] = []
     looks = iter(range(1_000_000))
-    monkeypatch.setattr(module.time, "sleep", slept.append)
-    monkeypatch.setattr(module.time, "perf_counter", lambda: next(looks) * BITE_S)
+    monkeypatch.setattr(time, "sleep", slept.append)
+    monkeypatch.setattr(time, "perf_counter", lambda: next(looks) * BITE_S)
     return slept
 
 
-def in_a_thread(work: Callable[[], None]) -> None:
+def in_a_thread(work: Callable[[], object]) -> None:
     thread = threading.Thread(target=work)
     thread.start()
     thread.join()
@@ -34,6 +34,6 @@ def test_the_items_are_the_same() -> None:
 def test_a_thread_beside_the_loop_pauses_and_the_loops_own_does_not(slept: list[float]) -> None:
     list(politely(range(10)))
     assert slept == []
-    in_a_thread(lambda: list(politely(range(10))) and None)
+    in_a_thread(lambda: list(politely(range(10))))
     assert len(slept) > 5
-    assert set(slept) == {module.PAUSE_S}
+    assert set(slept) == {PAUSE_S}
