@@ -11,8 +11,9 @@ from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.planning.step import Course
 from kurt2rt.rla.lesson_book import LessonRecord
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import BASIC, MID, Rla, RlaRewarded
-from kurt2rt.rla.rla_system import Match, RlaSystem
+from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.runtime import Runtime
 from kurt2rt.tick import TickRecord
 

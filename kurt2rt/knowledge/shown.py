@@ -3,8 +3,8 @@
 from rich.text import Text
 
 from kurt2rt.knowledge.entry import StoredEntry
+from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import ActionReplaced, ActionWithdrawn, Rla
-from kurt2rt.rla.rla_system import Appraisal
 
 _ASKS = "asks again"
 

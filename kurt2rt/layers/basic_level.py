@@ -10,6 +10,7 @@ from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.choice import Choice
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.matching import exact_square
 from kurt2rt.rla.rla import (
     BASIC,
@@ -22,7 +23,7 @@ from kurt2rt.rla.rla import (
     RlaDeleted,
     TeachingEvent,
 )
-from kurt2rt.rla.rla_system import Match, RlaSystem
+from kurt2rt.rla.rla_system import RlaSystem
 
 
 class UnknownActionError(ValueError):

@@ -6,8 +6,8 @@ from typing import NamedTuple
 from hal.robot import WheelSpeeds
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.step import PlanStep
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import BASIC
-from kurt2rt.rla.rla_system import Match
 
 
 class Cause(StrEnum):

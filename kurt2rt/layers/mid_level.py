@@ -11,8 +11,9 @@ from kurt2rt.layers.decision import Decision, MidDecision
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.settings import MidSettings
 from kurt2rt.mid.situation import MidSituation
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import MID, Rla
-from kurt2rt.rla.rla_system import Match, RlaSystem
+from kurt2rt.rla.rla_system import RlaSystem
 
 
 class Chooser(Protocol):

@@ -9,8 +9,8 @@ from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.step import PlanStep
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.rla.rla_system import Match
 from kurt2rt.teaching.commands import CommandResult
 from kurt2rt.teaching.happenings import Input
 from kurt2rt.tick import TickRecord

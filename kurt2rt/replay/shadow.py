@@ -20,8 +20,9 @@ from kurt2rt.recording.error import RecordingError
 from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.replay.run import Run
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import BASIC, MID, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import Match, RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.runtime import Runtime, empty_system
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.tick import TickRecord

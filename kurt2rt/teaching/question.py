@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import ASK, MID, rla_title
-from kurt2rt.rla.rla_system import Match
 
 
 @dataclass(frozen=True, slots=True)

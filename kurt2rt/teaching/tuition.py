@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import (
     BASIC,
     MID,
@@ -18,7 +19,6 @@ from kurt2rt.rla.rla import (
     RlaRewarded,
     TeachingEvent,
 )
-from kurt2rt.rla.rla_system import Match
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.teaching.meant import Meant

@@ -4,8 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import ASK, Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
-from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from tests.examples import examples
 from tests.rla.helpers import created, deleted, named, origin, replaced, rewarded, undone, withdrawn
 

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
-from kurt2rt.rla.rla_system import Appraisal, RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from tests.examples import examples
 from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from kurt2rt.layers.decision import Cause
+from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import (
     ActionReplaced,
     LessonUndone,
@@ -19,7 +20,7 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
-from kurt2rt.rla.rla_system import Appraisal, RlaSystem
+from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
     BeginSession,

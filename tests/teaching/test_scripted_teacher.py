@@ -10,8 +10,8 @@ import numpy as np
 from hal.robot import STANDSTILL, Grant
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
+from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import Origin, Phase, Rla
-from kurt2rt.rla.rla_system import Match
 from kurt2rt.tasks.settings import TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
