@@ -8,11 +8,16 @@ from functools import partial
 import anyio
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 
+from kurt2rt.channel.state import State
 from tests.page.fake_robot import A_PLACE, FakeRobot
 from tests.page.phone import PORTRAIT, Phone
 from tests.page.test_served_page import TOKEN, Served, served
 
-_SHOWN = "return ['#robot-name', '#clock'].map((each) => document.querySelector(each)?.textContent ?? '');"
+_INTRODUCED = "return document.querySelector('#robot-name')?.textContent ?? '';"
+_SHOWN = """
+const [clock, claim] = ['#clock', '#claim'].map((each) => document.querySelector(each));
+return [clock.textContent, claim.hidden];
+"""
 
 
 class Lesson:
@@ -35,14 +40,17 @@ class Lesson:
         self._portal.call(self.robot.begin_anew)
         prepare(self.robot)
         self.robot.greeting = replace(self.robot.greeting, boot=boot, robot=name)
-        self.show(**{"boot": boot, "clock_s": 60.0 * self._begun, "teacher": "local", "place": A_PLACE, **shown})
+        self.show(**{"boot": boot, "teacher": "local", "place": A_PLACE, **shown})
         self.phone.turn(PORTRAIT)
         self.phone.come_to(self._address)
-        self.phone.wait(self._is_shown, "the page shows this robot")
+        self.phone.wait(lambda: str(self.phone.run(_INTRODUCED)).startswith(f"{name},"), "it has introduced itself")
+        # Its first pictures may have come before it did, and were shown as those of the robot before.
+        self.show(clock_s=60.0 * self._begun)
+        self.phone.wait(self._is_shown, "the page shows this robot, and is its teacher's")
 
-    def show(self, **changes: object) -> None:
-        """From the next picture on."""
-        self._portal.call(partial(self.robot.show, **changes))
+    def show(self, **changes: object) -> State:
+        """From the next picture on; returns that one."""
+        return self._portal.call(partial(self.robot.show, **changes))
 
     def reads(self, selector: str, text: str) -> None:
         """Wait until it stands there."""
@@ -53,8 +61,8 @@ class Lesson:
         return [each[1] for each in self.robot.told if each[0] == name]
 
     def _is_shown(self) -> bool:
-        name, clock = self.phone.run(_SHOWN)
-        return str(name).startswith(f"robot {self._begun},") and clock == f"{self._begun}:00"
+        clock, in_charge = self.phone.run(_SHOWN)
+        return bool(clock == f"{self._begun}:00" and in_charge)
 
 
 async def show_on(robot: FakeRobot) -> None:

@@ -63,8 +63,9 @@ def begin(phone: Phone, room: Classroom) -> None:
     phone.turn(PORTRAIT)
     phone.come_to(room.address)
     phone.wait(lambda: not no_picture(phone), "a picture")
+    phone.wait(lambda: phone.text("#sentence"), "it knows which robot this is, and says what it does")
     phone.wait(lambda: phone.run("return innerWidth") == PORTRAIT[0], "the screen is turned")
-    if room.state().teacher != "local":
+    if phone.shows("#claim"):
         phone.touch("#claim-button")
     phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
     room.put_robot_in_the_open()
@@ -83,8 +84,7 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
 
     # The code of the pairing opens the page; the robot shows itself and knows nothing.
     phone.open(room.address)
-    phone.wait(lambda: "teach me" in phone.text("#sentence"), "the robot asks")
-    assert phone.text("#sentence") == "I know nothing yet, teach me"
+    phone.wait(lambda: phone.text("#sentence") == "I know nothing yet, teach me", "the robot asks")
     phone.show("1-nobody-teaches")
     phone.touch("#claim-button")
     phone.wait(lambda: room.state().teacher == "local", "this device teaches")
@@ -312,6 +312,7 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     begin(phone, room)
     phone.run("sockets.at(-1).close(); shut = true")
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
+    phone.wait(lambda: not room.client.watching, "its server knows that nobody looks")
     room.portal.call(room.client.resume)
     phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
     phone.touch("#stop")
@@ -327,6 +328,7 @@ def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, 
     begin(phone, room)
     phone.touch("#stop")
     phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().left_m_s == room.state().right_m_s == 0, "the robot stands")
     phone.touch("#view")
     before = room.state().place
     assert before is not None
@@ -427,6 +429,7 @@ def test_the_critic_of_a_robot_that_drives_is_taught_by_touch(a_phone: Phone, ro
     phone.touch("[data-phase='4']")
     phone.wait(lambda: room.state().phase == 4, "phase 4")
     phone.touch("#tab-teach")
+    phone.wait(lambda: phone.shows("#critic"), "the page has its buttons")
     for appraisal, value in (("good", 1), ("bad", -1)):
         phone.touch(f"[data-appraisal={appraisal}]")
         phone.wait(lambda: f": {appraisal}" in said(phone) or "too" in said(phone), "the order is told")  # noqa: B023

@@ -69,7 +69,7 @@ def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
     assert state is not None
     lesson.show(tick=state.tick + 600)  # and no report was made meanwhile
     lesson.reads("#health", "no report")
-    assert lesson.phone.run(CLASS, "#health") == "warns"
+    lesson.phone.wait(lambda: lesson.phone.run(CLASS, "#health") == "warns", "it is in colour, but not urgent")
     later(lesson, 100, WELL)
     lesson.reads("#health", "late 0.20 ms")
 

@@ -140,7 +140,7 @@ def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) ->
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left")
     assert not phone.shows("#surprise")
-    tick = junction.robot.show().tick
+    tick = junction.show().tick
     junction.show(surprise=replace(SURPRISED, tick=tick, times=2.5))
     junction.reads("#surprise", "surprise 2.5 \N{MULTIPLICATION SIGN} after mid-level RLA 12")
     assert not phone.has("#surprise.loud")
@@ -235,7 +235,8 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
         phone.touch("[data-meant=once]")
         phone.touch("[data-way=straight_on]")
         phone.wait(lambda: "a teacher said so" in phone.text("#mid-sentence"), "the teacher overrides it")
-        assert phone.text("#said") == "straight_on is wanted until the next junction is passed"
+        answer = "straight_on is wanted until the next junction is passed"
+        phone.wait(lambda: phone.text("#said") == answer, "the robot answers")
         phone.touch("#tab-goals")
         phone.write("#situation-name", "home")
         phone.touch("#name-situation")
