@@ -1,4 +1,4 @@
-"""A program forked by the session's nursery: with the words of subprocess.Popen, as far as stories need them."""
+"""Programs forked by the session's nursery: with the words of subprocess.Popen, as far as stories need them."""
 
 import json
 import os
@@ -10,7 +10,7 @@ import sys
 import uuid
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
@@ -49,29 +49,33 @@ def nursery() -> Iterator[None]:
             os.close(ours)
 
 
-class ForkedProgram:
-    """A program that runs, as `python -m MODULE WORDS` does."""
+class ForkedProcess:
+    """What runs as `python -m MODULE WORDS` does."""
 
-    def __init__(self, module: str, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
-        """Raises KeyError where there is no nursery, and OSError where it has gone."""
-        with socket.socket(socket.AF_UNIX) as caller:
-            caller.connect(f"\0{os.environ[ADDRESS]}")
-            keyboard, stdin = os.pipe()
-            stdout, printed = os.pipe()
-            stderr, complained = os.pipe()
-            self._told, tells = os.pipe()
-            self.stdin: IO[str] = os.fdopen(stdin, "w", encoding="utf-8")
-            self.stdout: IO[str] = os.fdopen(stdout, encoding="utf-8")
-            self.stderr: IO[str] = os.fdopen(stderr, encoding="utf-8")
-            order = json.dumps([module, list(words), str(folder), dict(environment)]).encode()
-            theirs = [keyboard, printed, complained, tells]
-            sent = socket.send_fds(caller, [order], theirs)
-            caller.sendall(order[sent:])
-            caller.shutdown(socket.SHUT_WR)
-            for each in theirs:
-                os.close(each)
-            self.pid = self._number()
-            self.returncode: int | None = None
+    def __init__(
+        self,
+        module: str,
+        words: Sequence[str],
+        folder: Path,
+        environment: Mapping[str, str],
+        streams: tuple[int, int, int],
+    ) -> None:
+        """`streams`: the descriptors of its standard input, output and errors, which stay open here.
+
+        Raises KeyError where there is no nursery, and OSError where it has gone.
+        """
+        self.returncode: int | None = None
+        self._told, tells = os.pipe()
+        try:
+            with socket.socket(socket.AF_UNIX) as caller:
+                caller.connect(f"\0{os.environ[ADDRESS]}")
+                order = json.dumps([module, list(words), str(folder), dict(environment)]).encode()
+                sent = socket.send_fds(caller, [order], [*streams, tells])
+                caller.sendall(order[sent:])
+                caller.shutdown(socket.SHUT_WR)
+        finally:
+            os.close(tells)
+        self.pid = self._number()
 
     def _number(self) -> int:
         data = os.read(self._told, NUMBER.size)
@@ -86,16 +90,20 @@ class ForkedProgram:
             if not select.select([self._told], [], [], timeout)[0]:
                 raise subprocess.TimeoutExpired(str(self.pid), timeout or 0.0)
             self.returncode = self._number()
+            os.close(self._told)
         return self.returncode
 
     def poll(self) -> int | None:
         """Its exit code, if it has ended."""
-        return self.wait() if select.select([self._told], [], [], 0.0)[0] else self.returncode
+        if self.returncode is None and select.select([self._told], [], [], 0.0)[0]:
+            self.wait()
+        return self.returncode
 
     def send_signal(self, number: signal.Signals) -> None:
         """Send it a signal, if it is still there."""
         if self.poll() is None:
-            os.kill(self.pid, number)
+            with suppress(ProcessLookupError):  # it may have ended meanwhile
+                os.kill(self.pid, number)
 
     def terminate(self) -> None:
         """Ask it to end."""
@@ -104,6 +112,25 @@ class ForkedProgram:
     def kill(self) -> None:
         """Kill it."""
         self.send_signal(signal.SIGKILL)
+
+
+class ForkedProgram(ForkedProcess):
+    """One with pipes to its keyboard and from its outputs."""
+
+    def __init__(self, module: str, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
+        """Raises as ForkedProcess does."""
+        keyboard, stdin = os.pipe()
+        stdout, printed = os.pipe()
+        stderr, complained = os.pipe()
+        self.stdin: IO[str] = os.fdopen(stdin, "w", encoding="utf-8")
+        self.stdout: IO[str] = os.fdopen(stdout, encoding="utf-8")
+        self.stderr: IO[str] = os.fdopen(stderr, encoding="utf-8")
+        theirs = keyboard, printed, complained
+        try:
+            super().__init__(module, words, folder, environment, theirs)
+        finally:
+            for each in theirs:
+                os.close(each)
 
     def communicate(self) -> tuple[str, str]:
         """All that it still says until it has ended, on both outputs."""
@@ -126,4 +153,3 @@ class ForkedProgram:
             except BrokenPipeError:  # what was typed last it did not read any more
                 continue
         self.wait()
-        os.close(self._told)

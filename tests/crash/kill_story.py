@@ -37,7 +37,7 @@ from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, STARTED, WATCHDOG_CYCLES, drives, is_control, stands, turns
 from tests.crash.killed_recording import KilledRecordings
-from tests.crash.programs import Nursery, Program
+from tests.crash.programs import Program
 
 ACTIONS = ("forward", "forward", "back", "spin_left", "whirl_right")
 LONGEST_S = 600.0
@@ -195,14 +195,13 @@ class KillStory:
         self._rows: list[StoredEntry] = []
         self._acknowledged: set[int] = set()
         self._recordings = KilledRecordings(folder / "runs")
-        self._nursery = Nursery()
         self._start_s = START_S
 
     async def run(self, kills: int) -> Tally:
         """Kill so many programs. Raises AssertionError for what must not be."""
         with ExitStack() as ending:
-            ending.callback(self._nursery.close)
-            sim = self._nursery.start("sim", "--bus", self._bus_name, folder=self._folder, log=self._folder / "sim.log")
+            log = self._folder / "sim.log"
+            sim = ending.enter_context(Program("sim", "--bus", self._bus_name, folder=self._folder, log=log))
             await sim.says("is on bus")
             self._bus: CanBus = open_bus(self._bus_name)
             ending.callback(self._bus.shutdown)
@@ -217,17 +216,17 @@ class KillStory:
         log.unlink(missing_ok=True)
         began_s = time.monotonic()
         words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), "--record", "runs")
-        program = self._nursery.start("run", *words, *self._words, folder=self._folder, log=log)
-        told: dict[int, tuple[str, str]] = {}
-        if self._chance.random() < YOUNGEST_SHARE:
-            self.tally.young += 1
-            await anyio.sleep(self._chance.uniform(0.0, self._start_s))
-            before = self._heard()
-            await program.killed()
-        else:
-            line = await program.says("teachers are listened to on UDP port")
-            self._start_s = time.monotonic() - began_s
-            told, before = await self._taught_and_killed(program, int(line.split()[-1]))
+        with Program("run", *words, *self._words, folder=self._folder, log=log) as program:
+            told: dict[int, tuple[str, str]] = {}
+            if self._chance.random() < YOUNGEST_SHARE:
+                self.tally.young += 1
+                await anyio.sleep(self._chance.uniform(0.0, self._start_s))
+                before = self._heard()
+                await program.killed()
+            else:
+                line = await program.says("teachers are listened to on UDP port")
+                self._start_s = time.monotonic() - began_s
+                told, before = await self._taught_and_killed(program, int(line.split()[-1]))
         killed_at_s = time.monotonic()
         assert "Traceback" not in program.said, program.said
         self.tally.kills += 1

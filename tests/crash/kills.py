@@ -13,6 +13,7 @@ from pathlib import Path
 import anyio
 
 from tests.crash.kill_story import KillStory, Tally
+from tests.forked_program import nursery
 
 OF_A_STORY = 50
 """Kills of programs that teach into one knowledge file."""
@@ -34,7 +35,8 @@ def main() -> None:
         parser.error(f"there is no shard {arguments.shard}")
     before = arguments.after + sum(kills_of_shard(arguments.kills, each, shards) for each in range(1, shard))
     kills = Kills(before, kills_of_shard(arguments.kills, shard, shards))
-    anyio.run(kills.run, arguments.at_once)
+    with nursery():
+        anyio.run(kills.run, arguments.at_once)
     print(kills.tally)
     print(f"{kills.tally.kills} passed, {kills.failed} failed")
     sys.exit(1 if kills.failed else 0)

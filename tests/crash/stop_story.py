@@ -3,7 +3,7 @@
 import signal
 import time
 from collections.abc import AsyncIterator, Iterable
-from contextlib import asynccontextmanager
+from contextlib import ExitStack, asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from kurt2rt.channel.state import State
 from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, state_where, turns
-from tests.crash.programs import Nursery, Program
+from tests.crash.programs import Program
 
 ON_THE_SPOT = "spin_left"
 """What the robot may do for ever without coming anywhere."""
@@ -125,18 +125,13 @@ MOST_CYCLES_TO_REST = WATCHDOG_CYCLES + BRAKING_CYCLES
 @asynccontextmanager
 async def a_robot_that_turns(folder: Path, bus: str) -> AsyncIterator[StopStory]:
     """A simulated robot, its program and its teacher."""
-    nursery = Nursery()
-    try:
-        sim = nursery.start("sim", "--bus", bus, folder=folder, log=folder / "sim.log")
+    with ExitStack() as ending:
+        sim = ending.enter_context(Program("sim", "--bus", bus, folder=folder, log=folder / "sim.log"))
         await sim.says("is on bus")
         end = open_bus(bus)
-        try:
-            words = ("--robot", bus, "--port", "0", "--knowledge", str(folder / "knowledge"))
-            program = nursery.start("run", *words, folder=folder, log=folder / "run.log")
-            line = await program.says("teachers are listened to on UDP port")
-            async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as we:
-                yield StopStory(program, we, end)
-        finally:
-            end.shutdown()
-    finally:
-        nursery.close()
+        ending.callback(end.shutdown)
+        words = ("--robot", bus, "--port", "0", "--knowledge", str(folder / "knowledge"))
+        program = ending.enter_context(Program("run", *words, folder=folder, log=folder / "run.log"))
+        line = await program.says("teachers are listened to on UDP port")
+        async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as we:
+            yield StopStory(program, we, end)
