@@ -61,7 +61,11 @@ class Journal:
 
     @classmethod
     def read_only(cls, path: Path) -> Self:
-        """Open to look at it, also while another process writes it. What is read then may be a lesson behind."""
+        """Open to look at it, also while another process writes it. What is read then may be a lesson behind.
+
+        Beside a file that had no log there is none after closing; a log that is there stays, a robot's or of one that
+        was killed.
+        """
         path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
         return cls.beside_its_writer(path)
@@ -74,9 +78,7 @@ class Journal:
         of the writer, and another program could then take its log away.
         """
         path = Path(os.path.realpath(path))
-        # Beside a file in a folder that may not be written SQLite cannot put its log; without a log, none is needed.
-        quiet = not os.access(path.parent, os.W_OK) and not journal_file.is_there(journal_file.log_of(path))
-        connection = journal_file.connect(path, "mode=ro&immutable=1" if quiet else "mode=ro")
+        connection = journal_file.connect_to_look(path)
         try:
             journal_file.require_our_mark(connection, path)
             return cls(path, connection)

@@ -193,6 +193,23 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
     return connection
 
 
+def connect_to_look(path: Path) -> sqlite3.Connection:
+    """Connect to a file that is ours, to read alone. Raises KnowledgeError."""
+    if is_there(log_of(path)):
+        return connect(path, "mode=ro")
+    if not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
+        return connect(path, "mode=ro&immutable=1")  # SQLite cannot put a log there, and without a log needs none
+    # Even to read, SQLite puts a log beside the file; who may not write there cannot take it away again. Whether a
+    # robot has begun meanwhile only SQLite can tell: it removes the log when the last one closes.
+    connection = connect(path, "mode=rw")
+    try:
+        connection.execute("PRAGMA query_only = ON")
+    except sqlite3.Error as error:
+        connection.close()
+        raise explained(error, path) from error
+    return connection
+
+
 def log_of(path: Path) -> Path:
     """SQLite's write-ahead log beside the file: the newest lessons stand in it until it is merged."""
     return path.with_name(path.name + "-wal")

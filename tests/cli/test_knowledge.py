@@ -5,6 +5,8 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
+
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
@@ -47,6 +49,24 @@ def test_the_last_lesson_is_undone_and_then_another_one_by_its_id(
     assert kurt2rt("knowledge", "check", mine).out == f"{mine}: every lesson can be read and fits\n"
     assert ", 2 undone by command line) by scripted" in " ".join(kurt2rt("knowledge", "show", mine).out.split())
     assert kurt2rt("knowledge", "lessons", mine, "--limit", "1").out.count("command line") == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *(("list",), ("show",), ("check",), ("lessons",), ("undo", "--dry-run")),
+        ("undo", "--of", "scripted teacher", "--dry-run"),
+    ],
+    ids=" ".join,
+)
+def test_who_only_looks_leaves_nothing_behind(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path, words: tuple[str, ...]
+) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    what, *options = words
+    assert kurt2rt("knowledge", what, mine, *options).exit_code == 0
+    assert [each.name for each in tmp_path.iterdir()] == [mine.name]
+    assert mine.read_bytes() == lessons.read_bytes()
 
 
 def test_all_that_the_critic_did_is_listed_and_taken_back(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:

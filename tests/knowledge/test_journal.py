@@ -1,3 +1,4 @@
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -7,6 +8,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.entry import JournalEntry, checksum
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
@@ -220,6 +222,47 @@ def test_a_look_at_the_file_while_the_robot_writes_it(path: Path) -> None:
             look.append([entry(3)])
 
 
+def contents(folder: Path) -> dict[str, bytes]:
+    return {each.name: each.read_bytes() for each in folder.iterdir()}
+
+
+def test_a_look_leaves_nothing_behind_and_changes_nothing(path: Path) -> None:
+    before = contents(begun(path).parent)
+    with Journal.read_only(path) as look, Journal.read_only(path) as another:
+        assert look.check() == []
+        assert look.events() == another.events()
+        with pytest.raises(KnowledgeError, match="may not be written"):
+            look.append([entry(4)])
+    assert contents(path.parent) == before
+
+
+def test_a_look_leaves_the_log_of_a_robot_and_of_one_that_was_killed(tmp_path: Path, path: Path) -> None:
+    killed = tmp_path / "killed"
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        with Journal.read_only(path) as look:
+            assert look.events() == [created(1)]
+        assert journal_file.log_of(path).stat().st_size > 0
+        journal.append([entry(2)])
+        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns(killed.name))
+    before = contents(killed)
+    with Journal.read_only(killed / path.name) as look:
+        assert look.events() == [created(1), created(2)]
+    after = contents(killed)
+    for each in (path.name, f"{path.name}-wal"):
+        assert after[each] == before[each]
+
+
+def test_a_robot_that_begins_and_ends_while_somebody_looks_loses_nothing(path: Path) -> None:
+    with Journal.read_only(begun(path)) as look:
+        with Journal.open(path, BINDING) as journal:
+            journal.append([entry(4)])
+        assert len(look.events()) == 4
+    assert set(contents(path.parent)) == {path.name, f"{path.name}.lock"}
+    with Journal.open(path, BINDING) as journal:
+        assert len(journal.events()) == 4
+
+
 def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
     # Not tmp_path: its parents let nobody else in. Root may write anywhere, so root looks as nobody.
     look = """
@@ -234,5 +277,26 @@ print(len(Journal.read_only(Path(sys.argv[1])).events()))
         Path(folder).chmod(0o555)
         found = subprocess.run([sys.executable, "-c", look, str(path)], capture_output=True, check=False)
         Path(folder).chmod(0o755)
+        assert set(contents(Path(folder))) == {path.name, f"{path.name}.lock"}
+
+    assert (found.stdout, found.stderr) == (b"3\n", b"")
+
+
+def test_a_look_at_a_file_that_may_not_be_written_in_a_folder_that_may() -> None:
+    look = """
+import os, sys
+from pathlib import Path
+from kurt2rt.knowledge.journal import Journal
+os.getuid() or os.setuid(65534)
+with Journal.read_only(Path(sys.argv[1])) as journal:
+    print(len(journal.events()))
+"""
+    with TemporaryDirectory() as folder:
+        path = begun(Path(folder) / "knowledge.db")
+        Path(folder).chmod(0o777)
+        path.chmod(0o444)
+        before = contents(Path(folder))
+        found = subprocess.run([sys.executable, "-c", look, str(path)], capture_output=True, check=False)
+        assert contents(Path(folder)) == before
 
     assert (found.stdout, found.stderr) == (b"3\n", b"")
