@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Self
 
+from kurt2rt.signals import Hearing
+
 ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
 
@@ -46,7 +48,7 @@ class Ending:
         self._failures: list[Exception] = []
         self._deadline_s = math.inf
         self._lock = threading.Lock()
-        self._before: dict[signal.Signals, signal._HANDLER] = {}
+        self._hearing = Hearing(dict.fromkeys((*ENDING, *map(signal.Signals, self._others)), _is_heard_elsewhere))
         self._wakeup_before = -1
         self._bell, self._ear = socket.socketpair()
         self._bell.setblocking(False)
@@ -88,8 +90,7 @@ class Ending:
     def __enter__(self) -> Self:
         self._wakeup_before = signal.set_wakeup_fd(self._bell.fileno(), warn_on_full_buffer=False)
         self._thread.start()
-        for number in (*ENDING, *map(signal.Signals, self._others)):
-            self._before[number] = signal.signal(number, _is_heard_elsewhere) or signal.SIG_DFL
+        self._hearing.hear()
         return self
 
     def __exit__(
@@ -97,8 +98,7 @@ class Ending:
     ) -> None:
         if self.asked and self._give_up is not None:
             return  # the interpreter's own end may hang as well
-        for number, before in self._before.items():
-            signal.signal(number, before)
+        self._hearing.give_back()
         signal.set_wakeup_fd(self._wakeup_before)
         self._bell.close()
         self._thread.join()

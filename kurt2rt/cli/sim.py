@@ -5,8 +5,8 @@ import signal
 import sys
 import time
 from contextlib import ExitStack
-from types import FrameType, TracebackType
-from typing import Annotated, Self
+from types import FrameType
+from typing import Annotated
 
 import typer
 from rich.console import Console
@@ -16,6 +16,7 @@ from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.cli.options import RobotName
 from kurt2rt.cli.printer import Printer
+from kurt2rt.signals import Hearing
 from kurt2rt.timing.short_turns import short_turns
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -90,7 +91,9 @@ def sim(
         console.print(text, markup=False, highlight=False, soft_wrap=True)
 
     with ExitStack() as ending:
-        end = ending.enter_context(_Wish())
+        end = _Wish()
+        # Started in the background it would be halted where it looks what was typed, but for SIGTTIN.
+        ending.enter_context(Hearing({**dict.fromkeys(_ENDING, end.note), signal.SIGTTIN: signal.SIG_IGN}))
         printer = ending.enter_context(Printer())
 
         def say(text: str) -> None:
@@ -127,22 +130,10 @@ def sim(
 
 
 class _Wish:
-    """Whether somebody wants the program to end. While entered, signals only note it: it ends where it looks."""
+    """Whether somebody wants the program to end: signals only note it, and it ends where it looks."""
 
     def __init__(self) -> None:
         self.came = False
 
-    def __enter__(self) -> Self:
-        self._before = {each: signal.signal(each, self._note) for each in _ENDING}
-        # Started in the background it would be halted where it looks what was typed.
-        self._before[signal.SIGTTIN] = signal.signal(signal.SIGTTIN, signal.SIG_IGN)
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        for each, handler in self._before.items():
-            signal.signal(each, handler)
-
-    def _note(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002 - what a handler is given
+    def note(self, _number: int, _frame: FrameType | None) -> None:
         self.came = True

@@ -2,8 +2,7 @@
 
 import shutil
 import signal
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 from typing import Annotated
@@ -18,6 +17,7 @@ from kurt2rt.faults.table import load_faults
 from kurt2rt.recording.recording import Recording
 from kurt2rt.recording.run_files import budget_of
 from kurt2rt.service_settings import load_service
+from kurt2rt.signals import Hearing
 from kurt2rt.soak.settings import load_soak
 from kurt2rt.tasks.settings import load_task
 
@@ -83,7 +83,7 @@ def soak(
         columns = (*Progress.get_default_columns()[:-1], TimeElapsedColumn(), TimeRemainingColumn())
         with Progress(*columns, console=Console(stderr=True)) as progress:
             bar = progress.add_task("soak", total=hours * 3600.0)
-            with _at_ctrl_c(running.end):
+            with _first_ctrl_c(running.end):
                 result = anyio.run(running.run, hours, lambda now_s: progress.update(bar, completed=now_s))
     finally:
         place.close()
@@ -96,19 +96,15 @@ def soak(
         raise typer.Exit(1)
 
 
-@contextmanager
-def _at_ctrl_c(end: Callable[[], None]) -> Iterator[None]:
-    """What the first one does; the second one does what it did before."""
+def _first_ctrl_c(end: Callable[[], None]) -> Hearing:
+    """Who hears the first one; the second one does what it did before."""
 
     def hear(_number: int, _frame: FrameType | None) -> None:
-        signal.signal(signal.SIGINT, before)
+        hearing.give_back()
         end()
 
-    before = signal.signal(signal.SIGINT, hear)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    hearing = Hearing({signal.SIGINT: hear})
+    return hearing
 
 
 def _make_room(out: Path) -> None:
