@@ -5,6 +5,7 @@ import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -71,6 +72,15 @@ def _loaded(text: str) -> Any:
     return yaml.load(text, Loader=_QuickLoader if quick else _Loader)
 
 
+@lru_cache(maxsize=64)
+def _as_json(text: str) -> str:
+    """What YAML says, remembered by its text: the same worlds, tasks and robots are read again and again.
+
+    As JSON, which nobody who reads it can change for the next one.
+    """
+    return json.dumps(_loaded(text), default=str)
+
+
 FILES = "files"
 """Where files are kept that are no settings."""
 
@@ -130,31 +140,36 @@ def find_config(kind: str, name_or_path: str) -> Path:
     raise SettingsError(f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {names}")
 
 
-def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
-    """Read `path`, change what `changes` says, and check it against `schema`.
+def content_of(path: Path) -> Any:
+    """What a YAML file holds, as JSON would tell it, before anybody has checked it.
 
-    `changes`: values in YAML by key, with dots between the levels (`learning.radius`), as --set on a command line says.
-    Raises SettingsError with one line that names file, key and what is allowed.
+    Raises SettingsError with one line that names the file.
     """
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error
     try:
-        content = _loaded(text)
-        for key, value in (changes or {}).items():
-            _change(content, key, _value_of(key, value, path), path)
-        # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
-        as_json = json.dumps(content, default=str)
-    except SettingsError:
-        raise
+        return json.loads(_as_json(text))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from error
+
+
+def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
+    """Read `path`, change what `changes` says, and check it against `schema`.
+
+    `changes`: values in YAML by key, with dots between the levels (`learning.radius`), as --set on a command line says.
+    Raises SettingsError with one line that names file, key and what is allowed.
+    """
+    content = content_of(path)
+    for key, value in (changes or {}).items():
+        _change(content, key, _value_of(key, value, path), path)
     if not isinstance(content, dict):
         allowed = ", ".join(schema.model_fields)
         raise SettingsError(f"{path}: holds {type(content).__name__}, allowed is a mapping with the keys: {allowed}")
     try:
-        return schema.model_validate_json(as_json)
+        # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
+        return schema.model_validate_json(json.dumps(content))
     except ValidationError as error:
         # A misspelled key also leaves the right one missing: name the misspelling, it is what to mend.
         problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
@@ -166,7 +181,7 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
 
 def _value_of(key: str, value: str, path: Path) -> Any:
     try:
-        return _loaded(value)
+        return json.loads(_as_json(value))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         told = " ".join(str(error).split())
         raise SettingsError(f"{path}: {key}: the value {value!r} of --set is not valid YAML: {told}") from error

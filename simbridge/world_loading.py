@@ -3,10 +3,9 @@
 from pathlib import Path
 
 import shapely
-import yaml
 
 from hal.robot_settings import GeometrySettings
-from hal.settings import SettingsError, find_config, load_settings
+from hal.settings import SettingsError, content_of, find_config, load_settings
 from simbridge.geometry import polygons_of
 from simbridge.world_generator.names import GENERATED, generated
 from simbridge.world_settings import WorldSettings
@@ -39,10 +38,10 @@ def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
 
 def _keys(path: Path) -> set[str]:
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, yaml.YAMLError, RecursionError):
+        content = content_of(path)
+    except SettingsError:
         return set()  # the loader of settings says what is wrong with it
-    return {str(key) for key in content} if isinstance(content, dict) else set()
+    return set(content) if isinstance(content, dict) else set()
 
 
 def _find(name_or_path: str) -> Path:

@@ -10,10 +10,8 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
 
-import yaml
-
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, find_config
+from hal.settings import Settings, content_of, find_config
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -122,8 +120,7 @@ class Fingerprints:
             if kind == "worlds":
                 self._known[kind, name] = self._stage.settings_of(name)
             else:
-                content = yaml.safe_load(find_config(kind, name).read_text(encoding="utf-8"))
-                self._known[kind, name] = json.dumps(content)
+                self._known[kind, name] = json.dumps(content_of(find_config(kind, name)))
         return self._known[kind, name]
 
 
