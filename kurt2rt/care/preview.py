@@ -50,7 +50,10 @@ def preview(planned: Planned, runs: Path, report: Report) -> Preview:
 def preview_on_newest(
     planned: Planned, recordings: Path, report: Report, *, last_s: float = LAST_S, longest_s: float = LONGEST_S
 ) -> Preview:
-    """Try it on the end of the newest recorded run of this knowledge, where there is one; changes nothing."""
+    """Try it on the end of the newest recorded run of this knowledge, where there is one; changes nothing.
+
+    The end of a run with a gap is the last before that: its notes say what comes after it was not tried.
+    """
     newest = newest_to_try(recordings, planned.binding, planned.path)
     too_long = [run for run in newest.runs if run.lasts_s > longest_s]
     if too_long:
@@ -75,6 +78,7 @@ def _try_on(planned: Planned, runs: Runs, report: Report, last_s: float) -> Prev
 
 
 def _tried(run: Run, before: Known, after: Known, report: Report, last_s: float) -> Tried:
-    from_s = max(run.lasts_s - last_s, 0.0)
+    # What comes after a gap cannot be replayed: the end of such a run is where that begins.
+    from_s = max(run.lasts_without_gap_s - last_s, 0.0) if run.lasts_s > last_s else 0.0
     old, new = (Shadow(run, each.events, each.statistics) for each in (before, after))
     return Tried(run.name, from_s, counterfactual(run, new, old, telling(run, report), from_s))

@@ -73,6 +73,14 @@ class Run:
         first = next(self.entries(), None)
         return 0.0 if first is None else max(self._ends_s() - first.now_s, 0.0)
 
+    @property
+    def lasts_without_gap_s(self) -> float:
+        """The same up to the last tick before the first that is missing: what can be replayed. Reads all of that."""
+        newest = 0.0
+        for entry in self.entries():
+            newest = self.second_of(entry)
+        return newest
+
     def second_of(self, entry: TickEntry) -> float:
         """How long after the first tick one began that was read."""
         return 0.0 if self.began_s is None else entry.now_s - self.began_s

@@ -4,10 +4,13 @@ import io
 import re
 import shutil
 import sys
+from collections import Counter
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from mcap.records import McapRecord, Message
 
 from hal.robot_settings import load_robot
 from kurt2rt.care.compacting import TEACHER, Compaction, compact
@@ -21,6 +24,8 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.recording.segment_reader import SegmentReader
+from kurt2rt.recording.whole_copy import _copy as copy_records
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
@@ -226,6 +231,51 @@ def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge
     assert very_long.runs == ()
     (note,) = very_long.notes
     assert "lasts 0 min, which takes long; name it with --runs to try it" in note
+
+
+class Lossy(SegmentReader):
+    """Reads a file in which these messages, counted from 1 in each topic, are missing."""
+
+    def __init__(self, path: Path, lost: range) -> None:
+        super().__init__(path)
+        self._lost = lost
+
+    def records(self) -> Iterator[McapRecord]:
+        seen = Counter[int]()
+        for record in super().records():
+            if isinstance(record, Message):
+                seen[record.channel_id] += 1
+                if seen[record.channel_id] in self._lost:
+                    continue
+            yield record
+
+
+def lose(run: Path, lost: range) -> None:
+    """Take ticks out of a run that is one file."""
+    (segment,) = run.iterdir()
+    whole = segment.rename(run / "whole")
+    with segment.open("xb") as file:
+        copy_records(Lossy(whole, lost), file)
+    whole.unlink()
+
+
+def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(knowledge: Path, runs: Path) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    (whole,) = preview(planned, runs, quietly).runs
+    (run,) = runs.iterdir()
+    lose(run, range(801, 851))
+    shown = preview_on_newest(planned, runs, quietly, last_s=1.5)
+    (tried,) = shown.runs
+    assert tried.from_s == pytest.approx(6.49)
+    assert tried.found.ticks == 151
+    assert 0 < tried.found.would_ask < whole.found.would_ask
+    assert all(tried.from_s <= each.from_s <= each.to_s < 8.0 for each in tried.found.stretches)
+    (note,) = shown.notes
+    assert note.startswith(f"{run}: 50 ticks before 8.50 s (tick ")
+    assert note.endswith("are not in the recording, so what came after them cannot be replayed")
+
+    (short,) = preview_on_newest(planned, runs, quietly, last_s=9.0).runs
+    assert (short.from_s, short.found.ticks) == (0.0, 800)
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
