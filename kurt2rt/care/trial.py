@@ -76,21 +76,23 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
 def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> Runs:
     """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
     could have been used in; none where there is none. Its notes say which newer ones cannot be read.
+
+    All that was known at a run's start is read with it: of the others none is kept in memory.
     """
-    fits, left_out = list[Run](), list[str]()
+    newest, left_out = None, list[str]()
     for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
         try:
             run = read_run(path)
             if _why_not(run, binding) is not None or next(run.entries(), None) is None:
                 continue
         except RecordingError as error:
-            if not fits:
+            if newest is None:
                 left_out.append(str(error))
             continue
         if run.head.knowledge and Path(run.head.knowledge).resolve() == knowledge.resolve():
             return Runs((run,), tuple(left_out))
-        fits.append(run)
-    return Runs(tuple(fits[:1]), tuple(left_out))
+        newest = newest or run
+    return Runs(() if newest is None else (newest,), tuple(left_out))
 
 
 def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tuple[TickRecord, list[Answers]]]:

@@ -4,6 +4,7 @@ import io
 import re
 import shutil
 import sys
+import weakref
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,6 +14,7 @@ import pytest
 from mcap.records import McapRecord, Message
 
 from hal.robot_settings import load_robot
+from kurt2rt.care import trial
 from kurt2rt.care.compacting import TEACHER, Compaction, compact
 from kurt2rt.care.preview import preview, preview_on_newest
 from kurt2rt.care.trial import Known, answers, newest_to_try, runs_to_try
@@ -28,6 +30,7 @@ from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.whole_copy import _copy as copy_records
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
+from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.tasks.settings import load_task
@@ -276,6 +279,28 @@ def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(kno
 
     (short,) = preview_on_newest(planned, runs, quietly, last_s=9.0).runs
     assert (short.from_s, short.found.ticks) == (0.0, 800)
+
+
+def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory(
+    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (own,) = runs.iterdir()
+    for day in range(21, 25):
+        shutil.copytree(own, runs / f"202603{day}T094640Z-wall_following")
+    read, alive = list[weakref.ref[Run]](), list[int]()
+
+    def read_and_count(path: Path) -> Run:
+        run = read_run(path)
+        alive.append(sum(each() is not None for each in read))
+        read.append(weakref.ref(run))
+        return run
+
+    monkeypatch.setattr(trial, "read_run", read_and_count)
+    with Journal.read_only(knowledge) as journal:
+        (newest,) = newest_to_try(runs, journal.binding, knowledge).runs
+    assert newest.name.endswith("20260324T094640Z-wall_following")
+    assert len(read) == 5
+    assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
