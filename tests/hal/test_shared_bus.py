@@ -16,11 +16,13 @@ import pytest
 from hal.bus import BusError, CanBus, open_bus
 from hal.frame import Frame
 from hal.shared_bus import KEPT_FRAMES, SHARED_MEMORY, SharedBus
+from tests.forked_program import ForkedProcess, there_is_a_nursery
 from tests.hal.bus_conformance import Behind, Ends, ErrorFrameConformance, Join, joining
 from tests.hal.helpers import cycle, send
 from tests.hal.shared_bus_writer import NUMBERED, payload
 
 ROOT = Path(__file__).parents[2]
+WRITER = "tests.hal.shared_bus_writer"
 RECORD_BYTES = 32
 
 _numbers = itertools.count()
@@ -35,14 +37,18 @@ def file_of(name: str) -> Path:
 
 
 @contextmanager
-def writing(name: str, frame_id: int) -> Iterator["subprocess.Popen[bytes]"]:
-    """A process that writes as fast as it can."""
-    command = [sys.executable, "-m", "tests.hal.shared_bus_writer", name, str(frame_id)]
-    with subprocess.Popen(command, cwd=ROOT) as writer:
-        try:
-            yield writer
-        finally:
-            writer.kill()  # also when it is stopped
+def writing(name: str, frame_id: int, *, child: bool = False) -> Iterator["subprocess.Popen[bytes] | ForkedProcess"]:
+    """A process that writes as fast as it can; `child`: one of this process, that may be waited for when it stops."""
+    writer: subprocess.Popen[bytes] | ForkedProcess
+    if there_is_a_nursery() and not child:
+        writer = ForkedProcess(WRITER, (name, str(frame_id)), ROOT, os.environ, (0, 1, 2))
+    else:
+        writer = subprocess.Popen([sys.executable, "-m", WRITER, name, str(frame_id)], cwd=ROOT)
+    try:
+        yield writer
+    finally:
+        writer.kill()  # also when it is stopped
+        writer.wait()
 
 
 def waiting(bus: SharedBus) -> Iterator[can.Message]:
@@ -148,7 +154,7 @@ def test_writers_may_be_killed_again_and_again(name: str) -> None:
 def test_a_stopped_writer_stops_nobody_else(name: str) -> None:
     bus, other = SharedBus(name), SharedBus(name)
     listener = Listener(bus)
-    with writing(name, 0x10) as sleeper:
+    with writing(name, 0x10, child=True) as sleeper:
         for round_ in range(10):  # somewhere else in its work each time
             listener.take_until_from(0x10)
             sleeper.send_signal(signal.SIGSTOP)
