@@ -89,7 +89,7 @@ def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) 
             if newest is None:
                 left_out.append(str(error))
             continue
-        if run.head.knowledge and Path(run.head.knowledge).resolve() == knowledge.resolve():
+        if _taught_into(run, path, knowledge):
             return Runs((run,), tuple(left_out))
         newest = newest or run
     return Runs(() if newest is None else (newest,), tuple(left_out))
@@ -129,6 +129,20 @@ def said(answer: Answer) -> str:
 def _recorded_in(folder: Path) -> list[Path]:
     """The oldest first."""
     return [each for each in runs_in(folder) if segments_in(each)]
+
+
+def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
+    """Whether a run, recorded at `path`, taught into that file.
+
+    An earlier kurt2rt told of the file as it was given: from the folder that it was started in, which nobody knows,
+    but as a rule the recordings lie below it, wherever we are started.
+    """
+    if not run.head.knowledge:
+        return False
+    told, file = Path(run.head.knowledge), knowledge.resolve()
+    if told.is_absolute():
+        return told.resolve() == file
+    return any((folder / told).resolve() == file for folder in path.resolve().parents)
 
 
 def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:

@@ -26,7 +26,7 @@ class Circumstances:
     boot: str
     """Names this start of the program, hexadecimal."""
     knowledge: str
-    """File that is taught into; empty where there is none."""
+    """File that is taught into, also as seen from the working folder; empty where there is none."""
     attended: bool
     stopped: str = ""
     """Why the robot stands until it is told to resume; empty where it does not."""
@@ -75,7 +75,7 @@ class Recording:
             task=task.name,
             robot=settings.name,
             bus=self.bus,
-            knowledge=circumstances.knowledge,
+            knowledge=str(Path(circumstances.knowledge).resolve()) if circumstances.knowledge else "",
             attended=circumstances.attended,
             asked=circumstances.asked,
             stopped=circumstances.stopped,

@@ -29,7 +29,8 @@ class RunHead:
     bus: str
     """sim, or the bus that the robot was on."""
     knowledge: str
-    """File that it taught into; empty where there was none."""
+    """File that it taught into, from the root on; empty where there was none. Up to 2026-11-22 it was kept as it was
+    given: from the folder that the program was started in."""
     attended: bool
     """Whether in phases 1 to 4 the robot drove by its RLAs only while a teacher was there."""
     asked: bool

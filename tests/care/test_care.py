@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mcap.records import McapRecord, Message
+from mcap.records import McapRecord, Message, Metadata
 
 from hal.robot_settings import load_robot
 from kurt2rt.care import trial
@@ -26,6 +26,7 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.recording.run_head import RUN_METADATA
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.whole_copy import _copy as copy_records
 from kurt2rt.replay.reading import read_run
@@ -301,6 +302,57 @@ def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory
     assert newest.name.endswith("20260324T094640Z-wall_following")
     assert len(read) == 5
     assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
+
+
+def taught_into(run: Path, told: str) -> None:
+    """Let the head of a run that is one file tell of another knowledge file, as an earlier kurt2rt did."""
+    (segment,) = run.iterdir()
+    whole = segment.rename(run / "whole")
+    with segment.open("xb") as file:
+        copy_records(Retold(whole, told), file)
+    whole.unlink()
+
+
+class Retold(SegmentReader):
+    """Reads a file as if it told of that knowledge file."""
+
+    def __init__(self, path: Path, told: str) -> None:
+        super().__init__(path)
+        self._told = told
+
+    def records(self) -> Iterator[McapRecord]:
+        for record in super().records():
+            if isinstance(record, Metadata) and record.name == RUN_METADATA:
+                record.metadata["knowledge"] = self._told
+            yield record
+
+
+def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_lies(
+    knowledge: Path, runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (own,) = runs.iterdir()
+    later = Path(shutil.copytree(own, runs / "20260321T094640Z-wall_following"))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    shutil.copy(knowledge, elsewhere)
+    taught_into(own, knowledge.name)
+    taught_into(later, f"elsewhere/{knowledge.name}")
+
+    def newest(file: Path) -> str:
+        with Journal.read_only(file) as journal:
+            (run,) = newest_to_try(runs, journal.binding, file).runs
+        return run.name
+
+    for working_folder in (tmp_path, elsewhere):
+        monkeypatch.chdir(working_folder)
+        assert newest(knowledge) == str(own)
+        assert newest(elsewhere / knowledge.name) == str(later)
+    monkeypatch.chdir(elsewhere)
+    assert newest(Path(knowledge.name)) == str(later)
+    taught_into(own, str(elsewhere / knowledge.name))
+    taught_into(later, str(knowledge))
+    assert newest(knowledge) == str(later)
+    assert newest(Path(knowledge.name)) == str(own)
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:

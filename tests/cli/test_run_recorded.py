@@ -10,6 +10,7 @@ from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.topics import GROUND, SCENE, TICK, TRUTH
+from kurt2rt.replay.reading import read_run
 from tests.cli.helpers import CommandLine, running
 
 WORDS = ("run", "--seconds", "0.5", "--teacher", "none", "--knowledge", "mine.knowledge")
@@ -34,6 +35,7 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     numbers = [entry.number for entry in entries_of(run)]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     assert len(numbers) > 10
+    assert read_run(run).head.knowledge == str(folder.resolve() / "mine.knowledge")  # wherever it is read
     (segment,) = segments_in(run)
     topics = {each.topic for each in SegmentReader(segment).messages()}
     assert {TICK, SCENE, TRUTH, GROUND} <= topics
