@@ -2,14 +2,15 @@
 
 import math
 from collections.abc import Sequence
-
-from matplotlib.axes import Axes
-from matplotlib.patches import Circle, Polygon
+from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
 from simbridge.geometry import Point, rectangle
 from simbridge.pose import Pose
 from simbridge.world_settings import WorldSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _WALL = "#d5d5d5"
 _WALL_EDGE = "#9a9a9a"
@@ -20,8 +21,11 @@ _MARGIN_M = 0.15
 _MOST_TICKS = 10
 
 
-def draw_world(axes: Axes, world: WorldSettings) -> None:
+def draw_world(axes: "Axes", world: WorldSettings) -> None:
     """Walls and obstacles to scale, seen from above; x to the right, y up, metres."""
+    # Not at the top: who only drives a simulated robot need not wait for it.
+    from matplotlib.patches import Circle, Polygon
+
     width_m, height_m = world.size_m
     axes.set_xlim(-_MARGIN_M, width_m + _MARGIN_M)
     axes.set_ylim(-_MARGIN_M, height_m + _MARGIN_M)
@@ -49,8 +53,10 @@ def draw_world(axes: Axes, world: WorldSettings) -> None:
     axes.set_ylabel("y in m", fontsize=_TEXT_SIZE, color=_TEXT)
 
 
-def draw_robot(axes: Axes, pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
+def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
     """The body as a box with a wedge that points ahead."""
+    from matplotlib.patches import Polygon
+
     length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
     centre = (pose.x_m, pose.y_m)
     body = rectangle(centre, length_m, width_m, pose.heading_rad)
@@ -65,12 +71,12 @@ def draw_robot(axes: Axes, pose: Pose, robot: RobotSettings, colour: str = _ROBO
     axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=4))
 
 
-def draw_trail(axes: Axes, points: Sequence[Point], colour: str = _ROBOT) -> None:
+def draw_trail(axes: "Axes", points: Sequence[Point], colour: str = _ROBOT) -> None:
     """The way the robot went, in metres."""
     axes.plot(*_columns(points), color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2)
 
 
-def draw_marks(axes: Axes, points: Sequence[Point], label: str, colour: str = "#c2452d") -> None:
+def draw_marks(axes: "Axes", points: Sequence[Point], label: str, colour: str = "#c2452d") -> None:
     """Dots where something happened, named in the legend once the caller asks for one."""
     axes.plot(*_columns(points), linestyle="none", marker="o", markersize=4.0, color=colour, label=label, zorder=5)
 
