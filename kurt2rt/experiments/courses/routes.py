@@ -60,11 +60,21 @@ def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], ch
     allowed = set(quarters)
     on = {step: tuple(_steps_on(streets, step, allowed)) for step in _steps(streets)}
     begins = sorted(on, key=_order)
-    for _ in range(_TRIES if begins else 0):
+    # Of an odd number there is none on a grid, which a hundred thousand walks would find out too.
+    possible = any(_leads_back(on, first, decisions) for first in begins)
+    for _ in range(_TRIES if possible else 0):
         walk = _walk(on, chance.choice(begins), decisions, chance)
         if walk is not None and not _repeats(walk):
             return _closed(walk)
     raise SettingsError(f"course route: these streets have no loop of {decisions} decisions; give another number")
+
+
+def _leads_back(on: dict[_Step, tuple[_Step, ...]], first: _Step, decisions: int) -> bool:
+    """Whether some walk of so many steps ends where it began."""
+    there = {first}
+    for _ in range(decisions):
+        there = {following for step in there for following in on[step]}
+    return first in there
 
 
 def _walk(
