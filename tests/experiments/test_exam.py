@@ -63,7 +63,7 @@ def test_going_round_on_the_spot_is_stuck_too() -> None:
 
 
 def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
-    teacher = exam_of([], short_task(exam_s=25.0)).teacher
+    teacher = exam_of([], short_task(exam_s=25.0, stuck_after_s=15.0)).teacher
     assert teacher.progress > 0.2
     assert 4.0 < teacher.way_m < 0.32 * 25.0  # on the spot at corners
     assert 0.0 < teacher.findings["distance error, m"] < 0.1
@@ -102,13 +102,13 @@ def test_where_an_exam_starts_in_sight_is_decided_by_its_seed() -> None:
 
 
 def test_a_taught_robot_drives_by_what_it_was_taught(taught: Taught) -> None:
-    task = short_task(exam_s=4.0)
+    task = short_task(exam_s=2.0)
     first, again = exam_of(taught.events, task), exam_of(taught.events, task)
     assert first == again
     assert first.learned.share_unknown < 1.0
     assert first.learned.action_changes_per_s > 0.0
     assert first.learned.trail[0] != first.learned.trail[-1]
-    assert (first.learned.world, first.learned.seed, first.learned.duration_s) == ("a", 1, 4.0)
+    assert (first.learned.world, first.learned.seed, first.learned.duration_s) == ("a", 1, 2.0)
     assert exam_of(taught.events, task, seed=2).learned.trail != first.learned.trail
 
 
@@ -119,7 +119,7 @@ def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
     try:
         clock = LockstepClock(arena.step)
         runtime = build_runtime(arena.robot, ROBOT, task, taught.events, NothingIsTaught(), clock)
-        anyio.run(runtime.scheduler.run, 500, records.append)
+        anyio.run(runtime.scheduler.run, 400, records.append)
     finally:
         arena.close()
     asking = [record for record in records if record.decision.asking]

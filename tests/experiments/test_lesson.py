@@ -79,7 +79,7 @@ def test_another_seed_gives_another_lesson(taught: Taught, tmp_path: Path) -> No
 
 
 def test_a_lesson_goes_on_from_what_the_file_holds(tmp_path: Path) -> None:
-    task = short_task(4.0, 3.0)
+    task = short_task(2.5, 1.5)
     first = teach(tmp_path / "knowledge", task)
     second = teach(tmp_path / "knowledge", task, seed=2)
     again = teach(tmp_path / "knowledge", task)

@@ -34,8 +34,8 @@ def go_on(
     return result, events[len(taught.events) :]
 
 
-def of_phase(phase: Phase, **more: object) -> LessonPlan:
-    return LessonPlan(((phase, 12.0),), purpose="another lesson", **more)  # type: ignore[arg-type]
+def of_phase(phase: Phase, lasts_s: float = 12.0, **more: object) -> LessonPlan:
+    return LessonPlan(((phase, lasts_s),), purpose="another lesson", **more)  # type: ignore[arg-type]
 
 
 def test_the_plan_of_a_task_is_its_own_lesson() -> None:
@@ -45,7 +45,7 @@ def test_the_plan_of_a_task_is_its_own_lesson() -> None:
 
 
 def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taught, tmp_path: Path) -> None:
-    result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
+    result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, 8.0, signs="judge"))
     rewards = [event for event in events if isinstance(event, RlaRewarded)]
     assert len(rewards) == result.praise + result.blame - result.refused_signals > 0
     assert {event.origin.phase for event in rewards} == {Phase.REINFORCEMENT}
@@ -93,7 +93,7 @@ def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp
 
 
 def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path: Path) -> None:
-    plan = of_phase(Phase.REINFORCEMENT, signs="judge", reposition_every_s=5.0)
+    plan = of_phase(Phase.REINFORCEMENT, 8.0, signs="judge", reposition_every_s=3.0)
     folders = [tmp_path / name for name in ("one", "two")]
     for folder in folders:
         folder.mkdir()
@@ -141,7 +141,7 @@ def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
 
 def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
     assert taught.result.alone is None
-    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS))
+    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 6.0))
     assert result.alone == Statistics()  # nobody was trusted
 
 

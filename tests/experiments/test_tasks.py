@@ -107,7 +107,7 @@ def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
 
 
 def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
-    result = lesson(lasting("streets", 40.0, 0.0), tmp_path)
+    result = lesson(lasting("streets", 30.0, 0.0), tmp_path)
     assert {rla.behaviour for rla in result.rlas} == {"straight_on", "turn_left", "turn_right"}
     assert result.unit == "junctions"
     assert result.findings["junctions"] >= 1.0
@@ -123,15 +123,15 @@ def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> No
 
 
 def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_its_street() -> None:
-    drive = teachers_drive(lasting("straight_on", exam_s=25.0))
+    drive = teachers_drive(lasting("straight_on", exam_s=16.0))
     steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
     assert max(steps_m) > 0.5  # through the air
-    assert drive.way_m < 8.0
+    assert drive.way_m < 5.5
     assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
 
 
 def test_what_is_replaced_too_often_is_deleted(tmp_path: Path) -> None:
-    task = lasting("wall_following", 5.0, 25.0)
+    task = lasting("wall_following", 5.0, 10.0)
     strict = task.teaching.teacher.model_copy(update={"delete_after": 1, "error_rate": 0.3})
     replacing = task.learning.model_copy(update={"insert_beyond_share": 1.0})
     task = task.model_copy(

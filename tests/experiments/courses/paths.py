@@ -11,11 +11,11 @@ Point = tuple[float, float]
 STEP_M = 0.004
 
 
-def along(points: Sequence[Point]) -> Iterator[Pose]:
-    """Poses from point to point, one a tick, looking ahead."""
+def along(points: Sequence[Point], step_m: float = STEP_M) -> Iterator[Pose]:
+    """Poses from point to point, one a tick unless it is said how far apart, looking ahead."""
     for (ax, ay), (bx, by) in pairwise(points):
         heading_rad = math.atan2(by - ay, bx - ax)
-        steps = max(1, round(math.dist((ax, ay), (bx, by)) / STEP_M))
+        steps = max(1, round(math.dist((ax, ay), (bx, by)) / step_m))
         for k in range(1, steps + 1):
             yield Pose(ax + (bx - ax) * k / steps, ay + (by - ay) * k / steps, heading_rad)
 

@@ -31,7 +31,7 @@ def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
     arena = STAGE.open("one_object", 1, "test")
     try:
         course = laps_in(arena)
-        for pose in along(ROUND[:2]):
+        for pose in along(ROUND[:2], 0.02):
             carry(arena, course, pose)
         assert course.unit == "laps"
         assert course.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
@@ -43,7 +43,7 @@ def test_what_was_carried_is_no_lap() -> None:
     arena = STAGE.open("one_object", 1, "test")
     try:
         course = laps_in(arena)
-        for pose in along(ROUND):
+        for pose in along(ROUND, 0.02):
             carry(arena, course, pose)
         assert course.progress == 0.0
         course.end_early()

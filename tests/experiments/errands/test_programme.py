@@ -47,7 +47,7 @@ def carried_out(folder: Path, streets_s: float, errands_s: float, exam_s: float)
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
-    return carried_out(tmp_path_factory.mktemp("errands"), 15.0, 15.0, 2.0)
+    return carried_out(tmp_path_factory.mktemp("errands"), 10.0, 10.0, 1.0)
 
 
 def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:

@@ -28,9 +28,9 @@ class Tiny:
 def tiny_task() -> TaskSettings:
     task = load_task("wall_following")
     assert task.phases is not None
-    teaching = task.teaching.model_copy(update={"supervised_s": 6.0, "corrections_s": 3.0})
-    exam = task.exam.model_copy(update={"worlds": ("a",), "duration_s": 1.0})
-    phases = task.phases.shortened(2.0, ("a",), 2.0, 1.0).model_copy(update={"critic_s": 8.0, "set_down_every_s": 4.0})
+    teaching = task.teaching.model_copy(update={"supervised_s": 4.0, "corrections_s": 1.0})
+    exam = task.exam.model_copy(update={"worlds": ("a",), "duration_s": 0.5})
+    phases = task.phases.shortened(1.0, ("a",), 1.0, 0.5).model_copy(update={"critic_s": 4.0, "set_down_every_s": 2.0})
     return task.model_copy(update={"teaching": teaching, "exam": exam, "phases": phases})
 
 

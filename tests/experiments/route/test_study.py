@@ -28,11 +28,11 @@ VARIANTS = (TAUGHT, next(each for each in CONTROLS if each.name == "commanded"))
 
 def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
     teaching = task.teaching.model_copy(update={"supervised_s": 0.0, "corrections_s": teaching_s})
-    exam = task.exam.model_copy(update={"duration_s": 6.0})
+    exam = task.exam.model_copy(update={"duration_s": 3.0})
     return task.model_copy(update={"teaching": teaching, "exam": exam})
 
 
-def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 12.0) -> Programme:
+def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 8.0) -> Programme:
     route, streets = short(load_task("route"), teaching_s), short(load_task("streets"), 10.0)
     return plan(
         route,
@@ -76,10 +76,10 @@ def test_the_streets_are_taught_once_and_every_way_of_teaching_goes_on_from_them
     (basic,) = done.programme.basic_jobs
     assert basic.knowledge.is_file()
     taught, commanded = (summary.outcomes[0] for summary in done.study.summaries)
-    assert (taught.teaching_s, commanded.teaching_s) == (12.0, 12.0)
+    assert (taught.teaching_s, commanded.teaching_s) == (8.0, 8.0)
     assert taught.mid_rlas == taught.mid_asks > 0 == commanded.mid_rlas
     assert done.results.missing(done.programme.jobs) == []
-    assert done.standings[-1].done_s == 10.0 + 2 * (12.0 + 6.0)
+    assert done.standings[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
 
 
 def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
