@@ -27,7 +27,7 @@ def digest(name: str) -> str:
     return hashlib.sha256(generated(name).model_dump_json().encode()).hexdigest()[:16]
 
 
-@pytest.mark.parametrize("some", seeds(range(100), range(100, 1100)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
 def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
     for seed in some:
         world = generated(f"rooms-{seed}")
@@ -42,7 +42,7 @@ def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
         assert world.walls[0].name == "tongue"
 
 
-@pytest.mark.parametrize("some", seeds(range(0, 100, 9), range(100, 1100, 9)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
 def test_every_start_in_a_room_has_its_wall_on_the_left_and_looks_along_it(some: range) -> None:
     for seed in some:
         world = generated(f"rooms-{seed}")
@@ -52,7 +52,7 @@ def test_every_start_in_a_room_has_its_wall_on_the_left_and_looks_along_it(some:
             assert max(clearances) - min(clearances) < 0.01
 
 
-@pytest.mark.parametrize("some", seeds(range(100), range(100, 1100)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
 def test_the_robot_finds_its_way_through_all_streets(some: range) -> None:
     for seed in some:
         world = generated(f"streets-{seed}")
@@ -72,7 +72,7 @@ def test_the_robot_finds_its_way_through_all_streets(some: range) -> None:
             assert all(math.dist((start.x_m, start.y_m), junction) > 0.6 for junction in junctions)
 
 
-@pytest.mark.parametrize("some", seeds(range(0, 100, 9), range(100, 1100, 9)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
 def test_every_start_in_a_street_is_in_its_middle(some: range) -> None:
     for seed in some:
         world = generated(f"streets-{seed}")
@@ -103,7 +103,7 @@ def test_the_same_seed_is_the_same_world_everywhere() -> None:
 
 
 def test_other_seeds_are_other_worlds() -> None:
-    assert len({digest(f"rooms-{i}") for i in range(20)} | {digest(f"streets-{i}") for i in range(20)}) == 40
+    assert len({digest(f"rooms-{i}") for i in range(10)} | {digest(f"streets-{i}") for i in range(10)}) == 20
 
 
 def test_dice_fall_within_their_bounds_and_reach_them() -> None:
@@ -127,6 +127,7 @@ def test_a_name_that_nothing_has_is_answered_with_those_that_there_are(name: str
         load_world(name)
 
 
+@pytest.mark.deep
 def test_a_plain_wall_follower_laps_a_generated_room() -> None:
     world = generated("rooms-0")
     with Rig(world) as rig:
