@@ -25,7 +25,8 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
-from tests.replay.stories import STORED, slim
+from tests.replay.stored_runs import STORED
+from tests.replay.stories import slim
 
 ROOT = Path(__file__).parents[1]
 DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])

@@ -9,7 +9,8 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.replay.reading import read_run
 from tests.cli.helpers import CommandLine
-from tests.replay.stories import STORED, slim
+from tests.replay.stored_runs import STORED
+from tests.replay.stories import slim
 
 WALLS = STORED / "walls.mcap"
 

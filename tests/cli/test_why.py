@@ -10,7 +10,8 @@ from kurt2rt.channel.credentials import ONLOOKER, local_pairing
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.teaching.answer import NoAnswerError
 from tests.cli.helpers import CommandLine, running
-from tests.replay.stories import STORED, slim
+from tests.replay.stored_runs import STORED
+from tests.replay.stories import slim
 
 WALLS = STORED / "walls.mcap"
 ERRAND = STORED / "errand.mcap"

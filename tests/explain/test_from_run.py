@@ -13,7 +13,7 @@ from kurt2rt.recording.run_recorder import open_run_recorder
 from kurt2rt.replay.reading import read_run
 from tests.explain.helpers import ROBOT, Lesson
 from tests.recording.desk_recording import ATTACHMENTS, HEAD, NAME
-from tests.replay.stories import STORED
+from tests.replay.stored_runs import STORED
 from tests.teaching.helpers import teach
 
 WRITTEN = "2026-11-22T03:10:07.250+00:00"

@@ -10,23 +10,28 @@ from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.tipping import Tip, tips
 from kurt2rt.layers.decision import Cause
 from kurt2rt.recording.entries import TickEntry
-from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
-from tests.replay.stories import STORED, STORIES
+from tests.replay.stored_runs import NAMES, stored
 
 EVERY_TICKS, EVERY_KEPT = 397, 60
+KEPT_TICKS_AT_MOST = 20
+"""Nothing keeps an action for its minimum time that was chosen longer ago."""
 DECIDED = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
 
 
 def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Replay, TickEntry, DecisionFacts]]:
     """Some ticks of a stored run, and of those in which an action kept its minimum time: the robot as it was before."""
-    run = read_run(STORED / f"{name}.mcap")
+    run = stored(name)
     replay = Replay(run)
     kept = 0
+    action, chosen_at = None, 0
     for entry in run.entries():
         decided = entry.decision.cause in DECIDED
         regular = decided and entry.number % every_ticks == 0
-        before = deepcopy(replay) if regular or (decided and entry.number % every_kept == 0) else None
+        if entry.decision.action != action:
+            action, chosen_at = entry.decision.action, entry.number
+        may_be_kept = decided and entry.number - chosen_at <= KEPT_TICKS_AT_MOST and entry.number % every_kept == 0
+        before = deepcopy(replay) if regular or may_be_kept else None
         record = replay.step(entry)
         if before is None:
             continue
@@ -48,7 +53,7 @@ def decided_with(before: Replay, entry: TickEntry, tip: Tip, counts: int) -> str
 
 
 @pytest.mark.parametrize(
-    ("name", "whole"), [("errand", False), *(pytest.param(name, True, marks=pytest.mark.deep) for name in STORIES)]
+    ("name", "whole"), [("errand", False), *(pytest.param(name, True, marks=pytest.mark.deep) for name in NAMES)]
 )
 def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str, whole: bool) -> None:
     heard = {"rla": 0, "kept": 0}
@@ -70,7 +75,7 @@ def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str, whol
 
 def test_in_a_tick_with_a_lesson_nothing_is_said() -> None:
     """It was blamed in this one: what drove was withdrawn, and is no longer what would answer."""
-    replay = Replay(read_run(STORED / "walls.mcap"))
+    replay = Replay(stored("walls"))
     entry, record = next(tick for tick in replay if tick.entry.tick == 3201)
     facts = facts_of(replay.runtime, record, lambda _: "")
     assert [type(event).__name__ for event in entry.events] == ["RlaRewarded", "ActionWithdrawn"]

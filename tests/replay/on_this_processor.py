@@ -4,13 +4,13 @@ import sys
 
 from kurt2rt.replay.comparing import compare
 from kurt2rt.replay.replay import Replay
-from tests.replay.stories import STORIES, stored
+from tests.replay.stored_runs import NAMES, stored
 
 
 def main() -> int:
     """0 where all do."""
     seconds, failed = float(sys.argv[1]), 0
-    for name in STORIES:
+    for name in NAMES:
         found = next((each for tick in Replay(stored(name, seconds)) for each in compare(*tick)), None)
         sys.stdout.write(f"{name}: {found or 'the same'}\n")
         failed += found is not None

@@ -24,8 +24,6 @@ from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
 from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.simulated import SimulatedArena
@@ -49,9 +47,9 @@ from kurt2rt.teaching.happenings import PressesForgotten
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
+from tests.replay.stored_runs import STORED
 
 NAME = "scripted teacher"
-STORED = Path(__file__).parent / "runs"
 _STARTED_NS = 1_774_000_000_000_000_000
 _SAVED_EVERY = 100
 """Ticks from one save of the statistics to the next."""
@@ -251,14 +249,6 @@ def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
     finally:
         scene.arena.close()
     recorder.close()
-
-
-def stored(name: str, seconds: float = math.inf) -> Run:
-    """A stored run, or what stood in so many seconds of it from its beginning."""
-    whole = read_run(STORED / f"{name}.mcap")
-    if math.isinf(seconds):
-        return whole
-    return Run(f"the beginning of {name}", whole.head, whole._attachments, lambda: islice(whole._read(), at(seconds)))
 
 
 def slim(segment: Path, to: Path, seconds: float = math.inf) -> None:

@@ -15,16 +15,15 @@ from kurt2rt.replay.replay import Replay, ReplayedTick
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Shadow, answers_then, shadow_of
 from kurt2rt.rla.rla import BASIC, MID, ActionReplaced, ActionWithdrawn, Origin, Phase, Rla, RlaCreated, TeachingEvent
-from tests.replay.stories import STORIES, stored
+from tests.replay.stored_runs import NAMES, stored
 
 ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
 
 
-def of_every_story(first: str) -> pytest.MarkDecorator:
-    """The other ones in the deep suite."""
-    return pytest.mark.parametrize(
-        "name", [pytest.param(name, marks=() if name == first else pytest.mark.deep) for name in STORIES]
-    )
+def of_every_story(first: str, seconds: float) -> pytest.MarkDecorator:
+    """The beginning of one; all of it, and of the others, in the deep suite."""
+    whole = [pytest.param(name, 44.0, marks=pytest.mark.deep) for name in NAMES]
+    return pytest.mark.parametrize(("name", "seconds"), [(first, seconds), *whole])
 
 
 def taught_in(run: Run) -> list[TeachingEvent]:
@@ -33,24 +32,24 @@ def taught_in(run: Run) -> list[TeachingEvent]:
 
 @pytest.fixture(scope="module")
 def lessons() -> dict[str, list[TeachingEvent]]:
-    return {name: taught_in(stored(name)) for name in STORIES}
+    return {name: taught_in(stored(name)) for name in NAMES}
 
 
-@of_every_story("errand")
+@of_every_story("errand", 8.0)
 def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
-    name: str, lessons: dict[str, list[TeachingEvent]]
+    name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
-    run = stored(name, 15)
+    run = stored(name, seconds)
     found = counterfactual(run, Shadow(run, lessons[name]), Shadow(run, lessons[name]))
     assert found.same
-    assert found.ticks == 1500
+    assert found.ticks == round(seconds * 100)
 
 
-@of_every_story("walls")
+@of_every_story("walls", 24.0)
 def test_who_knows_nothing_would_have_asked_wherever_it_drove(
-    name: str, lessons: dict[str, list[TeachingEvent]]
+    name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
-    run = stored(name)
+    run = stored(name, seconds)
     whole = Shadow(run, lessons[name])
     found = counterfactual(run, Shadow(run, ()), whole)
     assert found.would_ask > 1000
@@ -60,11 +59,11 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
     assert stretch.was.rla is not None
     assert stretch.was.share_of_radius <= 1.0
     assert sum(each.ticks for each in found.stretches if each.level == BASIC) == found.would_ask
-    assert all(each.from_s <= each.to_s <= 44.0 for each in found.stretches)
+    assert all(each.from_s <= each.to_s <= seconds for each in found.stretches)
 
 
 def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand", 30)
+    run = stored("errand", 24)
     assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
 
 
@@ -77,7 +76,7 @@ def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: d
 def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
     lessons: dict[str, list[TeachingEvent]],
 ) -> None:
-    run = stored("walls", 20)
+    run = stored("walls", 12)
     known = lessons["walls"]
     used = Shadow(run, known)
     counted: dict[int, int] = {}
@@ -99,7 +98,7 @@ def used_action(shadow: Shadow, rla_id: int) -> str:
 
 
 def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("errand", 20)
+    run = stored("errand", 14)
     known = lessons["errand"]
     whole = Shadow(run, known)
     ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
@@ -111,9 +110,11 @@ def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEv
     assert {each.level for each in found.stretches} == {MID}
 
 
-@of_every_story("walls")
-def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(name: str) -> None:
-    run = stored(name)
+@of_every_story("walls", 36.0)
+def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(
+    name: str, seconds: float
+) -> None:
+    run = stored(name, seconds)
     replay = Replay(run)
     heard: Counter[str] = Counter()
     taught_now = 0

@@ -15,7 +15,7 @@ from kurt2rt.replay.run import Run
 from kurt2rt.replay.verdict import verify
 from tests.channel.desk import ROBOT, TASK
 from tests.recording.desk_recording import empty_run, late_run
-from tests.replay.stories import STORED
+from tests.replay.stored_runs import STORED
 
 
 @pytest.fixture(scope="module")
