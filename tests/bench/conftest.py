@@ -18,4 +18,4 @@ def untaught() -> Subject:
 
 @pytest.fixture(scope="session")
 def subject(untaught: Subject) -> Subject:
-    return anyio.run(learn, untaught, 9.0, lambda _: None)
+    return anyio.run(learn, untaught, 5.0, lambda _: None)

@@ -8,6 +8,13 @@ import pytest
 from kurt2rt.bench.partner import PartnerLostError, partner
 
 DEVICE = "kurt2rt.bench.device"
+IDLER = "tests.bench.idler"
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(autouse=True)
+def where_modules_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
 
 
 def assert_gone(pid: int) -> None:
@@ -16,10 +23,10 @@ def assert_gone(pid: int) -> None:
 
 
 async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> None:
-    async with partner(DEVICE, "nowhere", "1") as device:
-        assert await device.ask("leave") == {}
-        assert await device.ask("leave") == {}
-    assert_gone(device.pid)
+    async with partner(IDLER) as idler:
+        assert await idler.ask("idle") == {}
+        assert await idler.ask("idle") == {}
+    assert_gone(idler.pid)
 
 
 async def test_a_partner_that_fails_is_missed_and_says_why_itself(
@@ -33,7 +40,7 @@ async def test_a_partner_that_fails_is_missed_and_says_why_itself(
 
 
 async def test_a_silent_partner_is_given_up_and_ended() -> None:
-    with pytest.raises(PartnerLostError, match="did not leave within 0 s"):
-        async with partner(DEVICE, "nowhere", "1") as device:
-            await device.ask("leave", patience_s=0.0)
-    assert_gone(device.pid)
+    with pytest.raises(PartnerLostError, match="did not idle within 0 s"):
+        async with partner(IDLER) as idler:
+            await idler.ask("idle", patience_s=0.0)
+    assert_gone(idler.pid)

@@ -28,9 +28,15 @@ def collector_as_it_was() -> Iterator[None]:
         gc.disable()
 
 
-def test_nothing_is_collected_until_the_end() -> None:
+def test_garbage_from_before_is_gone_and_nothing_is_collected_until_the_end_of_the_outermost() -> None:
+    gone = weakref.ref(Loop())
     gc.enable()
     with quiet_gc():
+        assert gone() is None
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+        with quiet_gc():
+            pass
         assert not gc.isenabled()
         assert gc.get_freeze_count() > 0
     assert gc.isenabled()
@@ -45,24 +51,8 @@ def test_an_error_is_an_end_too() -> None:
     assert gc.get_freeze_count() == 0
 
 
-def test_garbage_from_before_is_gone_first() -> None:
-    gone = weakref.ref(Loop())
-    with quiet_gc():
-        assert gone() is None
-
-
 def test_who_collects_by_hand_goes_on_doing_so() -> None:
     gc.disable()
     with quiet_gc():
         pass
     assert not gc.isenabled()
-
-
-def test_one_within_another_changes_nothing() -> None:
-    gc.enable()
-    with quiet_gc():
-        with quiet_gc():
-            pass
-        assert not gc.isenabled()
-        assert gc.get_freeze_count() > 0
-    assert gc.isenabled()

@@ -8,7 +8,7 @@ from kurt2rt.knowledge.opening import open_knowledge
 
 async def test_it_learns_in_simulated_time_and_tells_how_far_it_is(untaught: Subject) -> None:
     told: list[float] = []
-    subject = await learn(untaught, 6.0, told.append)
+    subject = await learn(untaught, 3.0, told.append)
     assert untaught.events == ()
     assert subject.events
     assert told == sorted(told)
@@ -16,7 +16,7 @@ async def test_it_learns_in_simulated_time_and_tells_how_far_it_is(untaught: Sub
 
 
 async def test_the_same_lesson_teaches_the_same(untaught: Subject, subject: Subject) -> None:
-    assert (await learn(untaught, 9.0, lambda _: None)).events == subject.events
+    assert (await learn(untaught, 5.0, lambda _: None)).events == subject.events
 
 
 def test_its_knowledge_file_holds_what_it_was_taught(subject: Subject, tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from kurt2rt.bench.subject import OnProgress, Subject
 from kurt2rt.bench.suite import FULL, QUICK, Bench, Lengths, run_suite
 
 TINY = Lengths(
-    learning_s=6.0,
+    learning_s=3.0,
     turns=Turns(rounds=1, ticks=20, reference_ticks=2),
     sizes=(Size(20, 10.0, 20),),
     loop_blocks=1,

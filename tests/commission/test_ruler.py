@@ -4,7 +4,7 @@ import random
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot_settings import InfraredSettings, RobotSettings
@@ -13,6 +13,7 @@ from kurt2rt.commission.person import SKIP, Asked, Question
 from kurt2rt.commission.ruler import DISTANCES_M
 from kurt2rt.commission.step import Outcome
 from tests.commission.workshop import BASE, Session, Workshop
+from tests.examples import examples
 
 USUAL = Law(86.016, 0.04, 64.4)
 
@@ -37,7 +38,7 @@ def test_exact_readings_give_the_law_back() -> None:
     assert max(map(abs, fit.residuals)) < 0.5
 
 
-@settings(max_examples=30)
+@examples(40)
 @given(
     st.builds(Law, st.floats(70.0, 110.0), st.floats(0.02, 0.06), st.floats(30.0, 80.0)).filter(
         lambda law: 260.0 < law.counts_at(0.10) < 990.0 and 20.0 < law.counts_at(0.60) < 0.35 * law.counts_at(0.10)
@@ -98,7 +99,7 @@ def other_law(**changes: float) -> RobotSettings:
 
 @pytest.mark.parametrize(
     "changes",
-    [{"numerator_counts_m": 100.0}, {"offset_m": 0.055, "bias_counts": 50.0}],
+    [pytest.param({"numerator_counts_m": 100.0}, marks=pytest.mark.deep), {"offset_m": 0.055, "bias_counts": 50.0}],
     ids=str,
 )
 async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[str, float]) -> None:

@@ -36,7 +36,9 @@ async def turned(
 # Which mode answers
 
 
-@pytest.mark.parametrize("modes", [(SpeedMode.SPEED, SpeedMode.RAW), (SpeedMode.RAW,)])
+@pytest.mark.parametrize(
+    "modes", [pytest.param((SpeedMode.SPEED, SpeedMode.RAW), marks=pytest.mark.deep), (SpeedMode.RAW,)]
+)
 async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, modes: tuple[SpeedMode, ...]) -> None:
     session = await turned(tmp_path, "modes", wiring=Wiring(modes=modes))
     assert session.outcome("modes") is Outcome.PASSED
@@ -135,36 +137,44 @@ ENCODERS_EXCHANGED = "The encoders are exchanged: exchange the left and the righ
 @pytest.mark.parametrize(
     ("wiring", "told"),
     [
-        (Wiring(motors_exchanged=True), [MOTORS_EXCHANGED]),
-        (Wiring(encoders_exchanged=True), [ENCODERS_EXCHANGED]),
-        (Wiring(motors_exchanged=True, encoders_exchanged=True), [MOTORS_EXCHANGED, ENCODERS_EXCHANGED]),
-        (Wiring(reversed_motors=[0]), ["The left motor turns the wrong way: exchange its two leads"]),
-        (Wiring(reversed_encoders=[1]), ["The right encoder counts the wrong way: exchange its channels A and B"]),
-        (
+        pytest.param(Wiring(motors_exchanged=True), [MOTORS_EXCHANGED], id="motors exchanged"),
+        pytest.param(Wiring(encoders_exchanged=True), [ENCODERS_EXCHANGED], id="encoders exchanged"),
+        pytest.param(
+            Wiring(motors_exchanged=True, encoders_exchanged=True),
+            [MOTORS_EXCHANGED, ENCODERS_EXCHANGED],
+            id="both exchanged",
+            marks=pytest.mark.deep,
+        ),
+        pytest.param(
+            Wiring(reversed_motors=[0]),
+            ["The left motor turns the wrong way: exchange its two leads"],
+            id="left motor reversed",
+            marks=pytest.mark.deep,
+        ),
+        pytest.param(
+            Wiring(reversed_encoders=[1]),
+            ["The right encoder counts the wrong way: exchange its channels A and B"],
+            id="right encoder reversed",
+        ),
+        pytest.param(
             Wiring(reversed_motors=[0], reversed_encoders=[0]),
             [
                 "The left motor turns the wrong way: exchange its two leads",
                 "The left encoder counts the wrong way: exchange its channels A and B",
             ],
+            id="left reversed twice",
+            marks=pytest.mark.deep,
         ),
-        (
+        pytest.param(
             Wiring(motors_exchanged=True, reversed_motors=[1]),
             [MOTORS_EXCHANGED, "The right motor turns the wrong way: exchange its two leads"],
+            id="exchanged and reversed",
         ),
-        (
+        pytest.param(
             Wiring(dead_encoders=[0]),
             ["The left encoder counts nothing while its wheels turn: check its plug and its supply"],
+            id="left encoder dead",
         ),
-    ],
-    ids=[
-        "motors exchanged",
-        "encoders exchanged",
-        "both exchanged",
-        "left motor reversed",
-        "right encoder reversed",
-        "left reversed twice",
-        "exchanged and reversed",
-        "left encoder dead",
     ],
 )
 async def test_what_is_wired_wrong_is_told_by_its_name(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
