@@ -35,9 +35,11 @@ from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.commands import BeginSession, Resume, Watch
+from kurt2rt.teaching.scripted_teacher import picture_of
 from kurt2rt.tick import TickRecord
 from tests.cli.helpers import CommandLine
-from tests.replay.stories import Scene, record_story
+from tests.replay.stories import NAME, Scene, record_story
 
 STAMP = "2026-11-22T03:10:05.000+00:00"
 FAR = (-5000.0,) * 72
@@ -47,15 +49,27 @@ def nobody(scene: Scene, record: TickRecord) -> None:
     """Says nothing to the robot."""
 
 
+def taught_at_once(scene: Scene, record: TickRecord) -> None:
+    """Told to go on as soon as it runs, and answered whenever it asks."""
+    if record.tick % 5 == 0:
+        scene.runtime.inbox.put(Watch(NAME, record.tick))
+    answer = scene.teacher.watch(picture_of(record))
+    if answer is not None:
+        scene.runtime.inbox.put(answer)
+    if record.tick == 10:
+        scene.say(lambda name: BeginSession(name, NAME, "walls"))
+        scene.say(lambda name: Resume(name, NAME))
+
+
 def quietly(run: str, done_s: float, whole_s: float) -> None:
     """Nobody watches the progress."""
 
 
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with one run of ten seconds, in which a robot was taught to follow a wall."""
+    """A folder with one run of five seconds, in which a robot was taught to follow a wall."""
     folder = tmp_path_factory.mktemp("runs")
-    record_story("walls", folder, seconds=10).rename(folder / "20260320T094640Z-wall_following")
+    record_story("walls", folder, seconds=5, other=taught_at_once).rename(folder / "20260320T094640Z-wall_following")
     return folder
 
 
@@ -107,7 +121,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
     assert {"far-1", "far-2"} <= {rla.origin.command_id for rla in done.deleted}
     assert len(after) == done.kept == len(before) - len(done.deleted)
     assert done.kept > 0
-    assert (done.runs, done.ticks, done.notes, done.other_behaviours) == (1, 1000, (), ())
+    assert (done.runs, done.ticks, done.notes, done.other_behaviours) == (1, 500, (), ())
     assert 100 < done.driven_ticks < done.ticks
 
     again = compacted(knowledge, recordings)
@@ -165,7 +179,7 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
     shown = preview(planned, recordings, quietly)
     (tried,) = shown.runs
     assert tried.found.same
-    assert (tried.from_s, tried.found.ticks, shown.notes) == (0.0, 1000, ())
+    assert (tried.from_s, tried.found.ticks, shown.notes) == (0.0, 500, ())
     assert preview_on_newest(planned, recordings, quietly) == shown
 
     first = next(event for event in lessons if isinstance(event, RlaCreated))
@@ -225,13 +239,13 @@ def test_a_run_of_another_kurt2rt_stands_in_no_undos_way(knowledge: Path, runs: 
 def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
     planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, recordings, quietly).runs
-    (end,) = preview_on_newest(planned, recordings, quietly, last_s=2.0).runs
-    assert end.from_s == pytest.approx(7.99)
-    assert end.found.ticks == 201
+    (end,) = preview_on_newest(planned, recordings, quietly, last_s=1.0).runs
+    assert end.from_s == pytest.approx(3.99)
+    assert end.found.ticks == 101
     assert 0 < end.found.would_ask < whole.found.would_ask
     assert all(each.from_s >= end.from_s for each in end.found.stretches)
 
-    very_long = preview_on_newest(planned, recordings, quietly, longest_s=9.0)
+    very_long = preview_on_newest(planned, recordings, quietly, longest_s=4.0)
     assert very_long.runs == ()
     (note,) = very_long.notes
     assert "lasts 0 min, which takes long; name it with --runs to try it" in note
@@ -267,19 +281,19 @@ def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(kno
     planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, runs, quietly).runs
     (run,) = runs.iterdir()
-    lose(run, range(801, 851))
-    shown = preview_on_newest(planned, runs, quietly, last_s=1.5)
+    lose(run, range(401, 451))
+    shown = preview_on_newest(planned, runs, quietly, last_s=0.75)
     (tried,) = shown.runs
-    assert tried.from_s == pytest.approx(6.49)
-    assert tried.found.ticks == 151
+    assert tried.from_s == pytest.approx(3.24)
+    assert tried.found.ticks == 76
     assert 0 < tried.found.would_ask < whole.found.would_ask
-    assert all(tried.from_s <= each.from_s <= each.to_s < 8.0 for each in tried.found.stretches)
+    assert all(tried.from_s <= each.from_s <= each.to_s < 4.0 for each in tried.found.stretches)
     (note,) = shown.notes
-    assert note.startswith(f"{run}: 50 ticks before 8.50 s (tick ")
+    assert note.startswith(f"{run}: 50 ticks before 4.50 s (tick ")
     assert note.endswith("are not in the recording, so what came after them cannot be replayed")
 
-    (short,) = preview_on_newest(planned, runs, quietly, last_s=9.0).runs
-    assert (short.from_s, short.found.ticks) == (0.0, 800)
+    (short,) = preview_on_newest(planned, runs, quietly, last_s=4.5).runs
+    assert (short.from_s, short.found.ticks) == (0.0, 400)
 
 
 def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory(
@@ -402,7 +416,7 @@ def test_an_undo_shows_on_the_newest_run_of_the_file_what_it_changes(
 
 def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
     said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--dry-run", "--runs", recordings).out
-    assert "20260320T094640Z-wall_following: of 400 decisions: 400 times ask where it drove; the longest:\n" in said
+    assert "20260320T094640Z-wall_following: of 490 decisions: 458 times ask where it drove; the longest:\n" in said
     assert " s  asks, instead of " in said
     said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--dry-run", "--runs", recordings).out
     assert "20260320T094640Z-wall_following: not one of " in said
@@ -455,6 +469,6 @@ def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path,
     dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
     assert "would delete: RLA " in dry
     done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out
-    assert re.search(r"tried on 1000 ticks \(10 s, [1-9] s of them driven\) of 1 runs", done)
+    assert re.search(r"tried on 500 ticks \(5 s, [1-9] s of them driven\) of 1 runs", done)
     assert f"to take all of that back: kurt2rt knowledge undo {knowledge} --of compact" in done
     assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")
