@@ -45,7 +45,7 @@ class Length:
     driving_s: float
 
 
-SHORT = Length(lessons_s=4.0, driving_s=3.0)
+SHORT = Length(lessons_s=3.0, driving_s=1.5)
 LONG = Length(lessons_s=8.0, driving_s=20.0)
 
 

@@ -1,7 +1,5 @@
 import json
 import random
-import subprocess
-import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +12,7 @@ from kurt2rt.channel.credentials import Pairing, pair, renew
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 from tests.channel.sides import ask, ask_until_fresh, sequence_of
+from tests.cli.helpers import ROOT, started
 
 
 @pytest.fixture
@@ -129,8 +128,8 @@ def test_killed_over_and_over_it_never_uses_a_number_twice(pairing: Pairing, kil
     used: list[int] = []
     folder = pairing.device.folder
     for _ in range(kills):
-        command = [sys.executable, "-m", "tests.channel.send_until_killed", str(folder), str(chance.randint(1, 9))]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+        chunk = str(chance.randint(1, 9))
+        with started("tests.channel.send_until_killed", str(folder), chunk, folder=ROOT) as child:
             assert child.stdout is not None
             assert child.stderr is not None
             said = [child.stdout.readline() for _ in range(chance.randint(1, 60))]

@@ -17,6 +17,7 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.table import export_table
 from kurt2rt.knowledge.writer import JournalWriter
+from tests.cli.helpers import ROOT, started
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, entry, tamper
 from tests.knowledge.test_writer import largest_file
 
@@ -158,23 +159,12 @@ def test_what_is_no_knowledge_is_not_copied(path: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "saved").exists()
 
 
-COPY_WITHOUT_END = """
-import sys
-from itertools import count
-from pathlib import Path
-from kurt2rt.knowledge.copy import save_copy
-for number in count():
-    print(save_copy(Path(sys.argv[1]), Path(sys.argv[2]), str(number), sys.argv[3]).name, flush=True)
-"""
-
-
 def test_a_kill_leaves_no_half_copy(path: Path, tmp_path: Path) -> None:
     begun(path, lessons=500)
     folder = tmp_path / "saved"
     told = []
     for kill_after in (1, 4, 9):
-        command = [sys.executable, "-c", COPY_WITHOUT_END, str(path), str(folder), STAMP]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
+        with started("tests.knowledge.copy_until_killed", str(path), str(folder), STAMP, folder=ROOT) as child:
             assert child.stdout is not None
             told += [child.stdout.readline().strip() for _ in range(kill_after)]
             child.kill()

@@ -2,20 +2,20 @@
 
 import random
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
+from tests.cli.helpers import ROOT, started
 from tests.knowledge.lessons import BINDING, created
 
 
 def teach_and_kill(path: Path, chance: random.Random) -> list[str]:
     """Let a child teach, kill it, and return what it said was acknowledged."""
-    command = [sys.executable, "-m", "tests.knowledge.teach_until_killed", str(path), str(chance.randint(1, 6))]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
+    most = str(chance.randint(1, 6))
+    with started("tests.knowledge.teach_until_killed", str(path), most, folder=ROOT) as child:
         assert child.stdout is not None
         assert child.stderr is not None
         said: list[str] = []

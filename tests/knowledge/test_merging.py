@@ -33,6 +33,7 @@ from kurt2rt.rla.rla import (
 )
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.rla.space import Space
+from tests.examples import examples
 from tests.knowledge.lessons import (
     BINDING,
     STAMP,
@@ -480,7 +481,7 @@ def teach(path: Path, whose: str, steps: Iterable[Step]) -> None:
     append(path, *taught)
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(examples(24), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps, steps, steps, st.sampled_from(["mine", "theirs"]))
 def test_whatever_was_taught_a_merge_fits_once_and_then_there_is_nothing_to_do(
     tmp_path_factory: pytest.TempPathFactory, first: list[Step], here: list[Step], there: list[Step], prefer: Side
