@@ -1,6 +1,7 @@
 """A run as a picture: where it went, what it did when, how well it knew where it was, and who drove."""
 
 import math
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from itertools import groupby, pairwise
 from pathlib import Path
@@ -129,7 +130,8 @@ def _scale(axes: Axes, samples: Sequence[Sample]) -> None:
 
 
 def _at(samples: Sequence[Sample], at_s: float) -> Sample:
-    return min(samples, key=lambda sample: abs(sample.at_s - at_s))
+    behind = bisect_left(samples, at_s, key=lambda sample: sample.at_s)
+    return min(samples[max(behind - 1, 0) : behind + 1], key=lambda sample: abs(sample.at_s - at_s))
 
 
 def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
