@@ -1,14 +1,14 @@
 """The mid level in the picture: a map of places, or the last symbols; and whom an RLA is compared with."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.explain.facts import LevelFacts, RlaStory
+from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.explain.picture import draw_why
+from kurt2rt.explain.tipping import Tip
 from kurt2rt.rla.rla import MID
 from tests.explain.helpers import ROBOT, Lesson, level, story, with_mid
 from tests.teaching.helpers import teach
@@ -16,55 +16,64 @@ from tests.teaching.helpers import teach
 PLACES = ("x_m", "y_m", "east", "north", "wall_left", "wall_right")
 
 
+@dataclass(frozen=True)
+class Now:
+    """What is known of a robot's newest decision."""
+
+    facts: DecisionFacts
+    tips: tuple[Tip, ...]
+
+
 @pytest.fixture(scope="module")
-def lesson() -> Iterator[Lesson]:
+def now() -> Now:
     lesson = Lesson()
     lesson.go_on(5)
     lesson.go_on(5, teach("forward"))
-    yield lesson
+    now = Now(lesson.facts, lesson.tips)
     lesson.close()
+    return now
 
 
 def titled(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float) -> RlaStory:
     return replace(story(rla_id, condition, action, distance, radius), title=f"mid-level RLA {rla_id}")
 
 
-def drawn(lesson: Lesson, mid: LevelFacts, path: Path, *, asks: bool = False) -> str:
-    facts = with_mid(lesson.facts, mid)
+def drawn(now: Now, mid: LevelFacts, path: Path, *, asks: bool = False) -> str:
+    facts = with_mid(now.facts, mid)
     if asks:
         facts = replace(facts, cause="unknown", action=None, asks_at=MID)
-    draw_why(facts, lesson.tips, ROBOT, "a title", path)
+    draw_why(facts, now.tips, ROBOT, "a title", path)
     return path.read_text(encoding="utf-8")
 
 
-def test_places_are_a_map_with_the_robot_in_it(lesson: Lesson, tmp_path: Path) -> None:
+def test_places_are_a_map_with_the_robot_in_it(now: Now, tmp_path: Path) -> None:
     near = titled(12, (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), "turn_left", 0.2, 0.85)
     far = titled(15, (2.0, 0.0, 0.0, 1.0, 1.0, 1.0), "straight_on", 2.1, 0.85)
     mid = replace(level((0.1, 0.1, 1.0, 0.0, 0.5, 0.5), near, far), names=PLACES, level=MID)
-    text = drawn(lesson, mid, tmp_path / "places.svg")
+    text = drawn(now, mid, tmp_path / "places.svg")
     assert "star: here; nearest mid-level RLA 12 at 0.2 m, R 0.85 m" in text
     assert "What makes the distance to RLA 1" in text
 
 
-def test_a_robot_that_is_lost_is_not_on_the_map(lesson: Lesson, tmp_path: Path) -> None:
+def test_a_robot_that_is_lost_is_not_on_the_map(now: Now, tmp_path: Path) -> None:
     near = titled(12, (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), "turn_left", math.inf, 0.85)
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5), near), names=PLACES, level=MID, driver=None)
-    text = drawn(lesson, mid, tmp_path / "lost.svg", asks=True)
+    text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
     assert "nobody has said where it was set down" in text
     assert "The places it knows" in text
 
 
 def test_a_lost_robot_that_knows_no_place_is_told_of_in_words_and_the_room_is_for_what_is_near(
-    lesson: Lesson, tmp_path: Path
+    now: Now, tmp_path: Path
 ) -> None:
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
-    text = drawn(lesson, mid, tmp_path / "lost.svg", asks=True)
+    text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
     assert "nobody has said where it was set down" in text
     assert "places it knows" not in text
     assert "What makes the distance to RLA 1" in text
 
 
-def test_histories_stand_below_each_other(lesson: Lesson, tmp_path: Path) -> None:
+def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
     nearest = titled(12, (1.0, 0.0, 2.0), "turn_left", 2.0, 1.0)
     mid = replace(
         level((1.0, 2.0, -1.0), nearest),
@@ -74,7 +83,7 @@ def test_histories_stand_below_each_other(lesson: Lesson, tmp_path: Path) -> Non
         words=("left", "right", ""),
         nearest_words=("left", "straight", "right"),
     )
-    text = drawn(lesson, mid, tmp_path / "history.svg", asks=True)
+    text = drawn(now, mid, tmp_path / "history.svg", asks=True)
     assert "2 places differ, R 1" in text
     assert "What makes the distance to mid-level RLA 12" in text
 

@@ -31,14 +31,21 @@ def lesson() -> Iterator[Lesson]:
     lesson.close()
 
 
-@pytest.fixture
-def taught_lesson(lesson: Lesson) -> Lesson:
-    """One that knows forward and, farther on, where a wall comes near, a bow to the right."""
+def give(lesson: Lesson) -> Lesson:
+    """It knows forward then and, farther on, where a wall comes near, a bow to the right."""
     lesson.go_on(20)
     lesson.go_on(FORWARD, teach("forward"))
     lesson.go_on(1, set_phase(Phase.CORRECTIONS))
     lesson.go_on(20, correct("bear_right"))
     return lesson
+
+
+@pytest.fixture(scope="module")
+def taught_lesson() -> Iterator[Lesson]:
+    """One that was given; to be looked at."""
+    lesson = Lesson(seed=7)
+    yield give(lesson)
+    lesson.close()
 
 
 def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson, tmp_path: Path) -> None:
@@ -99,13 +106,14 @@ def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_cha
         match = runtime.level.system.match(vector)
         return match.rla.action if match is not None and match.known else None
 
-    assert taught_lesson.tips
-    for tip in taught_lesson.tips:
+    found = taught_lesson.tips
+    assert found
+    for tip in found:
         step = 1 if tip.needed_counts > tip.counts else -1
         assert says(tip.sensor, tip.counts) == facts.action
         assert says(tip.sensor, tip.needed_counts) == (None if tip.rla is None else tip.rla.action)
         assert says(tip.sensor, tip.needed_counts - step) == facts.action
-    changes = [abs(tip.needed_counts - tip.counts) for tip in taught_lesson.tips]
+    changes = [abs(tip.needed_counts - tip.counts) for tip in found]
     assert changes == sorted(changes)
 
 
@@ -119,16 +127,16 @@ def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson:
     assert found == taught_lesson.tips
 
 
-def test_where_a_stop_decided_no_reading_would_have_changed_it(taught_lesson: Lesson) -> None:
-    taught_lesson.go_on(2, stop())
-    assert taught_lesson.facts.stopped_because
-    assert taught_lesson.tips == ()
+def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -> None:
+    give(lesson).go_on(2, stop())
+    assert lesson.facts.stopped_because
+    assert lesson.tips == ()
 
 
-def test_lessons_that_cannot_be_saved_are_among_the_facts(taught_lesson: Lesson) -> None:
-    taught_lesson.notebook.trouble = "the disk is full"
-    taught_lesson.go_on(1)
-    assert (taught_lesson.facts.cause, taught_lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
+def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
+    give(lesson).notebook.trouble = "the disk is full"
+    lesson.go_on(1)
+    assert (lesson.facts.cause, lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
 
 
 def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:
