@@ -118,6 +118,7 @@ CONTENTS: dict[str, Any] = {
     "repertoires": shortened(yaml.safe_load(REPERTOIRE)),
 }
 PLACES = [Place(kind, path) for kind, content in CONTENTS.items() for path in places(content)]
+SOME_AND_ALL = [pytest.param(PLACES[::3], id="some"), pytest.param(PLACES, id="all", marks=pytest.mark.deep)]
 
 
 def changed(place: Place, folder: Path, *, key: str | None = None, **value: object) -> Path:
@@ -148,8 +149,9 @@ def test_the_files_to_be_spoilt_are_right_before(tmp_path: Path) -> None:
     assert len(PLACES) > 100
 
 
-def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(tmp_path: Path) -> None:
-    for place in PLACES:
+@pytest.mark.parametrize("some", SOME_AND_ALL)
+def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(some: list[Place], tmp_path: Path) -> None:
+    for place in some:
         right = str(place.path[-1])
         line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
         if right == "kind":  # it says which schema the item has
@@ -165,8 +167,9 @@ def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(tmp_path: 
         assert set(inside) <= set(allowed), place
 
 
-def test_a_key_without_a_value_is_named(tmp_path: Path) -> None:
-    for place in PLACES:
+@pytest.mark.parametrize("some", SOME_AND_ALL)
+def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> None:
+    for place in some:
         line = refusal(changed(place, tmp_path, value=None), SCHEMAS[place.kind])
         assert place.path[-1] == "kind" or named(line)[-1] == place.path[-1], place
 
@@ -468,7 +471,8 @@ def test_several_mistakes_are_counted(tmp_path: Path) -> None:
         (b"name: " + b"1" * 5000, "line 1, column 7"),
         (b"name: 0x" + b"f" * 5000, "not valid YAML: "),
         (b"[" * 600, "not valid YAML: "),
-        (b"[" * 20_000, "not valid YAML: "),
+        (b"[\n" * 20_000, "not valid YAML: "),
+        pytest.param(b"[" * 20_000, "not valid YAML: ", marks=pytest.mark.deep),
         (b"- " * 20_000, "not valid YAML: "),
         (b"name: &x [*x]\n", "found unconstructable recursive node"),
         (b"name: [1\n", "not valid YAML: while parsing a flow sequence"),
