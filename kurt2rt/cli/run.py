@@ -14,7 +14,7 @@ from kurt2rt.layers.wanted import Wanted
 from kurt2rt.recording.live_view import parse_address
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching.scripted_lesson import several_behaviours
+from kurt2rt.teaching.scripted_lesson import two_levels
 
 
 def run(
@@ -164,8 +164,8 @@ def run(
 
     loaded = read()
     robot_settings, taught = load_robot(loaded.robot), load_task(loaded.task)
-    if auto and len(taught.behaviours) > 1:
-        raise typer.BadParameter(several_behaviours(taught), param_hint="--auto")
+    if auto and taught.mid is not None:
+        raise typer.BadParameter(two_levels(taught), param_hint="--auto")
     if behaviour is not None:
         try:
             Wanted(taught.behaviours).pursue(behaviour)

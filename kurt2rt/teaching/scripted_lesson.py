@@ -15,6 +15,7 @@ from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teaching.hello import Hello
+from kurt2rt.teaching.leading import Leading
 from kurt2rt.teaching.scripted_teacher import Picture, share_of_radius, teacher_of
 
 Say = Callable[[str], None]
@@ -32,11 +33,12 @@ async def teach_by_script(
 ) -> None:
     """Teach the task for its whole time, then let the robot drive alone and look on, until cancelled.
 
-    A robot that a person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning,
-    and RefusedError when it is no simulated one, was started for another task, or refuses its teacher.
+    Several behaviours are wanted in turn, and a robot that makes no way with them is set down elsewhere. One that a
+    person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning, and
+    RefusedError when it is no simulated one, was started for another task, or refuses its teacher.
     """
-    if len(task.behaviours) > 1:
-        raise RefusedError(several_behaviours(task))
+    if task.mid is not None:
+        raise RefusedError(two_levels(task))
     hello = await robot.hello()
     if not hello.simulated:
         raise RefusedError(f"{hello.robot} is a real robot; the scripted teacher teaches simulated ones only")
@@ -52,6 +54,9 @@ async def teach_by_script(
     await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
     if task.teaching.reposition_every_s:
         say(_nobody_sets_it_down(task))
+    leading = Leading(robot, task, hello.period_s, seed, say)
+    if leading.plan:
+        say(leading.plan)
     say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
     first: int | None = None
     before = 0
@@ -72,6 +77,7 @@ async def teach_by_script(
         if state.stopped_because.startswith(_STOPPED_ITSELF):
             with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
                 await robot.resume()
+        await leading.see(state, stopped=bool(_stopped_by_a_person(robot, state)))
         command = teacher.watch(picture_in(state), state.tick - before)
         before = state.tick
         if command is not None:
@@ -81,13 +87,14 @@ async def teach_by_script(
     async for state in robot.states():
         if state.teacher != robot.name:
             return
+        await leading.see(state, stopped=bool(_stopped_by_a_person(robot, state)))
 
 
-def several_behaviours(task: TaskSettings) -> str:
+def two_levels(task: TaskSettings) -> str:
     """Why the scripted teacher does not teach such a task over the channel."""
     return (
-        f"task {task.name} has several behaviours, and over the channel the scripted teacher does not see the streets "
-        f"that say which is wanted when; kurt2rt lesson --task {task.name} teaches it in simulated time"
+        f"task {task.name} has a mid level, and over the channel the scripted teacher does not see the streets that "
+        f"say which way is right; kurt2rt lesson --task {task.name} teaches it in simulated time"
     )
 
 

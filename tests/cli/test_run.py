@@ -198,8 +198,8 @@ def test_another_task_has_its_own_world_and_its_own_knowledge(kurt2rt: CommandLi
     assert (tmp_path / "var" / "circle.knowledge").is_file()
 
 
-def test_the_scripted_teacher_does_not_teach_several_behaviours_in_real_time(kurt2rt: CommandLine) -> None:
-    assert "kurt2rt lesson --task streets teaches it" in kurt2rt.misused("run", "--auto", "--task", "streets")
+def test_the_scripted_teacher_does_not_teach_ways_in_real_time(kurt2rt: CommandLine) -> None:
+    assert "kurt2rt lesson --task route teaches it" in kurt2rt.misused("run", "--auto", "--task", "route")
 
 
 def test_without_a_teacher_one_of_several_behaviours_is_chosen_at_the_start(kurt2rt: CommandLine) -> None:

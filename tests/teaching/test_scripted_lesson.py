@@ -12,11 +12,14 @@ from kurt2rt.channel.reply import Reply, Verdict, done, refusal
 from kurt2rt.channel.requests import (
     HelloRequest,
     PhaseRequest,
+    PlaceRequest,
+    PursueRequest,
     Request,
     ResumeRequest,
     SessionRequest,
     TakeRequest,
 )
+from kurt2rt.channel.state import SimulatedPlace
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching import TeacherClient
@@ -28,6 +31,7 @@ from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, st
 from tests.teaching.test_client import HELLO
 
 SETTINGS = load_robot("kurt2")
+_CarriedOut = TakeRequest | PhaseRequest | PursueRequest | SessionRequest | ResumeRequest
 
 
 def short() -> TaskSettings:
@@ -53,7 +57,7 @@ class Mind:
     async def __call__(self, request: Request) -> Reply:
         if isinstance(request, HelloRequest):
             return Reply(Verdict.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
-        if not isinstance(request, TakeRequest | PhaseRequest | SessionRequest | ResumeRequest):
+        if not isinstance(request, _CarriedOut):
             return done(self._robot.state.tick, "done")
         reply = done(self._robot.state.tick, "done")
         if request.command_id not in self._done:
@@ -70,7 +74,7 @@ class Mind:
         """Anna says stop."""
         self._stopped_tick = self._robot.show(stopped_because="anna said stop").tick
 
-    def _carry_out(self, request: TakeRequest | PhaseRequest | SessionRequest | ResumeRequest) -> Reply:
+    def _carry_out(self, request: _CarriedOut) -> Reply:
         robot = self._robot
         tick = robot.state.tick
         match request:
@@ -80,6 +84,8 @@ class Mind:
                 robot.show(phase=int(phase))
                 if phase is self.stop_at_phase:
                     self.stop()
+            case PursueRequest(behaviour=behaviour):
+                robot.show(behaviour=behaviour)
             case SessionRequest(name=None):
                 robot.show(session=None, stopped_because=f"the session {robot.state.session!r} is over")
             case SessionRequest(name=name) if robot.state.session is not None:
@@ -146,12 +152,84 @@ def phases(robot: StandInRobot) -> list[Phase]:
     return [each.phase for each in dict.fromkeys(robot.all_of(PhaseRequest))]
 
 
-async def test_a_task_of_several_behaviours_is_not_taught_over_the_channel(
+async def test_a_task_with_a_mid_level_is_not_taught_over_the_channel(
     robot: StandInRobot, client: TeacherClient
 ) -> None:
-    with pytest.raises(RefusedError, match=r"task streets has several behaviours.* kurt2rt lesson --task streets"):
-        await teach_by_script(client, load_robot(), load_task("streets"), print)
+    with pytest.raises(RefusedError, match=r"task route has a mid level.* kurt2rt lesson --task route"):
+        await teach_by_script(client, load_robot(), load_task("route"), print)
     assert robot.state.teacher != AUTO
+
+
+STREETS = load_task("streets")
+TURNS = list(STREETS.behaviours)
+
+
+def streets(robot: StandInRobot, period_s: float, **shown: object) -> "Mind":
+    """It was started for the streets; its ticks are long, so that half a minute is soon over."""
+    robot.mind = mind = Mind(robot)
+    mind.hello = {"task": "streets", "behaviours": TURNS, "period_s": period_s}
+    robot.show(behaviour="straight_on", **shown)
+    return mind
+
+
+async def test_several_behaviours_are_wanted_in_turn_also_when_the_robot_drives_alone(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    streets(robot, 1.0)
+    teaching = STREETS.teaching.model_copy(update={"supervised_s": 20.0, "corrections_s": 20.0})
+    said: list[str] = []
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            task = STREETS.model_copy(update={"teaching": teaching})
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, said.append)
+            heard = await robot.hears(PursueRequest)
+            while len({each.behaviour for each in heard}) < len(TURNS):
+                heard = await robot.hears(PursueRequest, len(heard) + 1)
+            tasks.cancel_scope.cancel()
+    wanted = [each.behaviour for each in robot.all_of(PursueRequest)]
+    assert list(dict.fromkeys(wanted)) == ["turn_left", "turn_right", "straight_on"]
+    assert said[0].startswith("straight_on, turn_left, turn_right: in turn, each for 30 s, for over the channel")
+    turns = [f"{each}, for 30 s" for each in (*TURNS, TURNS[0])]
+    alone = "now the robot drives alone (phase 5)"
+    assert [line for line in said if line in (*turns, alone)] == [*turns[:2], alone, *turns[2:]]
+
+
+async def test_a_robot_that_makes_no_way_is_set_down_elsewhere_and_that_is_said(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
+    said: list[str] = []
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
+            (first, *_) = await robot.hears(PlaceRequest)
+            while not said[-1].startswith("no way made"):
+                await anyio.lowlevel.checkpoint()
+            tasks.cancel_scope.cancel()
+    assert (first.x_m, first.y_m, first.heading_rad) == (1.0, 2.0, 0.5)
+    assert said[-1].startswith("no way made for 15 s: the robot is to stand where it came through, x 1.00 m, y 2.00 m")
+
+
+async def test_a_robot_that_a_person_stopped_is_neither_turned_nor_set_down_and_one_that_is_taken_is_left(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    mind = streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
+    said: list[str] = []
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
+            await robot.hears(PhaseRequest)
+            mind.stop()
+            stopped = robot.state.tick
+            async for picture in client.states():
+                if picture.tick > stopped + 200:  # 100 s later
+                    break
+            robot.show(teacher="anna")
+    assert robot.all_of(PursueRequest) == []
+    assert robot.all_of(PlaceRequest) == []
+    assert robot.all_of(ResumeRequest) == []
+    assert robot.state.stopped_because == "anna said stop"
+    assert said[-1] == "anna took the robot; the scripted teacher stops here"
 
 
 async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
