@@ -10,8 +10,8 @@ CASES = list(cases_of(TABLE))
 
 
 def is_quick(case: FaultCase) -> bool:
-    """A third of them: of each target several kinds, and of each kind several targets."""
-    return (TARGETS.index(case.target) + KINDS.index(case.kind)) % 3 == 0
+    """A sixth of them: of each target a kind, and of each kind several targets."""
+    return (TARGETS.index(case.target) + KINDS.index(case.kind)) % 6 == 0
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_the_same_seed_comes_to_the_same(target: Target, kind: Kind) -> None:
 
 def test_the_quick_ones_leave_out_no_target_and_no_kind() -> None:
     quick = list(filter(is_quick, CASES))
-    assert len(quick) == len(CASES) / 3
+    assert len(quick) == len(CASES) / 6
     assert {case.target for case in quick} == set(TARGETS)
     assert {case.kind for case in quick} == set(KINDS)
 

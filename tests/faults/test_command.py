@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 import typer
-import yaml
 from typer.testing import CliRunner
 
 import kurt2rt.service
 from config import CONFIG_DIR
+from hal.settings import content_of
 from kurt2rt.cli.faults import faults
 from kurt2rt.faults.drill import SERVICE_ENDS
 from kurt2rt.faults.error import DidNotDriveError
@@ -31,10 +31,10 @@ def run(app: typer.Typer, *arguments: str) -> tuple[int, str]:
 
 
 def changed_table(tmp_path: Path, **update: object) -> str:
-    content = yaml.safe_load((CONFIG_DIR / "faults" / "kurt2.yaml").read_text())
+    content = content_of(CONFIG_DIR / "faults" / "kurt2.yaml")
     content["cases"]["tick"]["stuck"].update(update)
     path = tmp_path / "mine.yaml"
-    path.write_text(yaml.safe_dump(content))
+    path.write_text(json.dumps(content))
     return str(path)
 
 
@@ -84,9 +84,9 @@ def test_what_cannot_fail_is_refused_with_what_can(app: typer.Typer, option: str
 
 
 def test_a_robot_that_stands_anyway_shows_nothing(app: typer.Typer, tmp_path: Path) -> None:
-    content = yaml.safe_load((CONFIG_DIR / "faults" / "kurt2.yaml").read_text())
+    content = content_of(CONFIG_DIR / "faults" / "kurt2.yaml")
     path = tmp_path / "standing.yaml"
-    path.write_text(yaml.safe_dump({**content, "action": "stand"}))
+    path.write_text(json.dumps({**content, "action": "stand"}))
     with pytest.raises(DidNotDriveError, match="tick stuck: the robot stands before anything fails"):
         run(app, "--target", "tick", "--kind", "stuck", "--table", str(path))
 

@@ -1,21 +1,21 @@
 """The table of faults: whole, in the program's own words, and refused when it is not."""
 
+import json
 from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 import hal.guard
 import hal.watchdog
 from config import CONFIG_DIR
-from hal.settings import SettingsError
+from hal.settings import SettingsError, content_of
 from kurt2rt.faults.drill import SERVICE_ENDS
 from kurt2rt.faults.table import cases_of, load_faults
 from kurt2rt.layers.decision import Cause
 from tests.faults.helpers import ROBOT, TABLE, tried
 
-SHIPPED = (CONFIG_DIR / "faults" / "kurt2.yaml").read_text()
+SHIPPED = CONFIG_DIR / "faults" / "kurt2.yaml"
 WORDS = {
     *(value for name, value in vars(hal.guard).items() if name.isupper() and isinstance(value, str)),
     hal.watchdog.TICKS_CEASED,
@@ -25,10 +25,10 @@ WORDS = {
 
 
 def changed(tmp_path: Path, change: Any) -> Path:
-    content = yaml.safe_load(SHIPPED)
+    content = content_of(SHIPPED)
     change(content)
     path = tmp_path / "faults.yaml"
-    path.write_text(yaml.safe_dump(content))
+    path.write_text(json.dumps(content))
     return path
 
 
