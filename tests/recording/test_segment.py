@@ -49,7 +49,8 @@ def said(path: Path) -> list[int]:
     return [int(message.data) for message in SegmentReader(path).messages()]
 
 
-def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path) -> None:
+@pytest.mark.parametrize("every_bytes", [4000, pytest.param(1000, marks=pytest.mark.deep)])
+def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path, every_bytes: int) -> None:
     context = Context()
     channel = Channel("/number", message_encoding="json", context=context)
     segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
@@ -65,7 +66,7 @@ def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path) -> None:
     whole = segment.path.read_bytes()
     assert said(segment.path) == list(range(1, 2001))
     cut = tmp_path / "0002.mcap"
-    for length in (*range(0, len(whole), 1000), len(whole) - 1):
+    for length in (*range(0, len(whole), every_bytes), len(whole) - 1):
         cut.write_bytes(whole[:length])
         reader = SegmentReader(cut)
         numbers = [int(message.data) for message in reader.messages()]
