@@ -66,7 +66,7 @@ class Drive:
 def complete(tmp_path_factory: pytest.TempPathFactory) -> TaskSettings:
     """A task with the whole repertoire, beside what less than a minute of teaching left of streets."""
     folder = tmp_path_factory.mktemp("complete")
-    streets = load_task("streets", changes={"teaching.supervised_s": "40.0", "teaching.corrections_s": "0.0"})
+    streets = load_task("streets", changes={"teaching.supervised_s": "30.0", "teaching.corrections_s": "0.0"})
     taught = teach(folder / "streets.knowledge", streets)
     content = yaml.safe_load((CONFIG_DIR / "tasks" / "streets.yaml").read_text(encoding="utf-8"))
     content.update(name="patrol", system="streets", mid="turns")
