@@ -50,7 +50,7 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
 
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
 async def test_the_teachers_own_drive_is_good_and_hardly_ever_bad(task: str) -> None:
-    shares = await judged(task, seconds=15)
+    shares = await judged(task, seconds=8)
     assert shares[1] > 0.5
     assert shares[-1] < 0.02
 
@@ -66,4 +66,4 @@ async def test_it_stays_so_for_minutes(task: str) -> None:
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
 @pytest.mark.parametrize("action", ["stand", "back"])
 async def test_who_stands_or_backs_all_the_time_is_blamed(task: str, action: str) -> None:
-    assert (await judged(task, seconds=5, action=action))[-1] > 0.95
+    assert (await judged(task, seconds=3, action=action))[-1] > 0.95
