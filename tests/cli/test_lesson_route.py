@@ -9,7 +9,7 @@ from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import teach
 from tests.experiments.route.test_study import short
 
-SHORT = ("--set", "teaching.corrections_s=6", "--set", "exam.duration_s=3", "--set", "course.starts=1")
+SHORT = ("--set", "teaching.corrections_s=3", "--set", "exam.duration_s=2", "--set", "course.starts=1")
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What two robots know of the streets after some seconds."""
     folder = tmp_path_factory.mktemp("streets")
     for seed in (1, 2):
-        teach(folder / f"streets-{seed}.knowledge", short(load_task("streets"), 4.0), seed)
+        teach(folder / f"streets-{seed}.knowledge", short(load_task("streets"), 2.0), seed)
     return folder
 
 

@@ -17,15 +17,22 @@ WALLS = STORED / "walls.mcap"
 
 @pytest.fixture(scope="module")
 def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The first eighteen seconds of it."""
-    slim(WALLS, segment := tmp_path_factory.mktemp("short") / "walls.mcap", 18.0)
+    """The first thirteen seconds of it."""
+    slim(WALLS, segment := tmp_path_factory.mktemp("short") / "walls.mcap", 13.0)
     return segment
 
 
-def test_a_run_is_the_same_again(kurt2rt: CommandLine) -> None:
-    said = kurt2rt("replay", WALLS)
+def test_a_run_is_the_same_again(kurt2rt: CommandLine, short: Path) -> None:
+    said = kurt2rt("replay", short)
     assert said.exit_code == 0, said.err
     assert "task wall_following, robot kurt2-indoor on sim, recorded by kurt2rt story" in said.out
+    assert "the same: 1300 ticks (13.0 s) were decided again as they were" in said.out
+
+
+@pytest.mark.deep
+def test_a_whole_run_is_the_same_again(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("replay", WALLS)
+    assert said.exit_code == 0, said.err
     assert "the same: 4400 ticks (44.0 s) were decided again as they were" in said.out
 
 
