@@ -132,7 +132,7 @@ def test_its_changes_are_the_same_when_the_journal_is_read_again() -> None:
 
 def test_it_deletes_nothing_where_no_neighbour_would_answer() -> None:
     robot = alone()
-    robot.go(HERE, 3000, CRASHED)
+    robot.go(HERE, 1500, CRASHED)
     assert not robot.go(HERE).asking
 
 
@@ -296,7 +296,7 @@ def test_a_score_that_falls_a_little_is_chance() -> None:
 def test_the_same_senses_give_the_same_changes() -> None:
     def story() -> Track:
         robot = alone()
-        for turn in range(20):
+        for turn in range(10):
             robot.go((HERE, THERE)[turn % 2], 120, (CRASHED, CALM, CRASHED)[turn % 3])
         return robot
 
@@ -309,7 +309,7 @@ def test_the_same_senses_give_the_same_changes() -> None:
 def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
     known = (created(1, (HERE,), "a"), created(2, (THERE,), "b"), created(3, (-THERE,), "c"))
     robot = Track(*known, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
-    for _ in range(20):
+    for _ in range(10):
         robot.go(THERE, 100, CALM)
         robot.go(HERE, 100, CRASHED)
     rolled_back = [event.lesson for event in robot.events if isinstance(event, LessonUndone)]

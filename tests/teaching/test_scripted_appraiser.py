@@ -172,10 +172,11 @@ def test_blame_by_chance_is_the_same_for_the_same_seed_and_exactly_as_often_as_w
         person = appraiser(Phase.REINFORCEMENT, BlamedByChance(50, 5000, 20, seed))
         return signals(said(person, [record(tick, GOOD) for tick in range(1, 5111)]))
 
-    assert told(1) == told(1) != told(2)
-    assert {value for _, value, _ in told(1)} == {-1}
-    assert len(told(1)) == len(told(2)) == 50
-    meant = [about or 0 for _, _, about in told(1)]
+    first, other = told(1), told(2)
+    assert told(1) == first != other
+    assert {value for _, value, _ in first} == {-1}
+    assert len(first) == len(other) == 50
+    meant = [about or 0 for _, _, about in first]
     assert min(later - earlier for earlier, later in pairwise(meant)) >= 20
     assert [sum(begins < tick <= begins + 2500 for tick in meant) > 10 for begins in (0, 2500)] == [True, True]
 
