@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator
 from copy import deepcopy
+from dataclasses import dataclass
 
 import pytest
 
+from behaviors.judges.judge import Circumstances
 from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.tipping import Tip, tips
@@ -19,37 +21,50 @@ KEPT_TICKS_AT_MOST = 20
 DECIDED = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
 
 
-def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Replay, TickEntry, DecisionFacts]]:
+@dataclass(frozen=True)
+class Before:
+    """A robot as it was before a tick."""
+
+    replay: Replay
+    seen: list[Circumstances]
+    """What it remembers of the ticks until then; nobody changes it, and a copy of the robot may share it."""
+
+    def again(self) -> Replay:
+        """The robot as it was."""
+        return deepcopy(self.replay, {id(each): each for each in self.seen})
+
+
+def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Before, TickEntry, DecisionFacts]]:
     """Some ticks of a stored run, and of those in which an action kept its minimum time: the robot as it was before."""
     run = stored(name)
     replay = Replay(run)
-    kept = 0
     action, chosen_at = None, 0
+    seen: list[Circumstances] = []
     for entry in run.entries():
         decided = entry.decision.cause in DECIDED
         regular = decided and entry.number % every_ticks == 0
         if entry.decision.action != action:
             action, chosen_at = entry.decision.action, entry.number
         may_be_kept = decided and entry.number - chosen_at <= KEPT_TICKS_AT_MOST and entry.number % every_kept == 0
-        before = deepcopy(replay) if regular or may_be_kept else None
+        before = Before(Before(replay, seen).again(), seen) if regular or may_be_kept else None
         record = replay.step(entry)
+        if record.circumstances is not None:
+            seen.append(record.circumstances)
         if before is None:
             continue
-        is_kept = bool(replay.runtime.level.kept)
-        kept += is_kept
-        if regular or is_kept:
+        if regular or replay.runtime.level.kept:
             yield before, entry, facts_of(replay.runtime, record, lambda _: "")
 
 
-def decided_with(before: Replay, entry: TickEntry, tip: Tip, counts: int) -> str | None:
+def decided_with(before: Before, entry: TickEntry, tip: Tip, counts: int) -> str | None:
     """What the robot does in that tick where this sensor reads something else."""
-    names = before.run.robot.infrared.names
+    names = before.replay.run.robot.infrared.names
     readings = tuple(
         counts if name == tip.sensor else reading
         for name, reading in zip(names, entry.senses.infrared_counts, strict=True)
     )
     changed = entry._replace(senses=entry.senses._replace(infrared_counts=readings))
-    return deepcopy(before).step(changed).decision.action
+    return before.again().step(changed).decision.action
 
 
 @pytest.mark.parametrize(
@@ -58,7 +73,7 @@ def decided_with(before: Replay, entry: TickEntry, tip: Tip, counts: int) -> str
 def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str, whole: bool) -> None:
     heard = {"rla": 0, "kept": 0}
     for before, entry, facts in looked_at(name, EVERY_TICKS, EVERY_KEPT):
-        found = tips(facts, before.runtime.definition, before.run.robot.infrared)
+        found = tips(facts, before.replay.runtime.definition, before.replay.run.robot.infrared)
         # The smallest change, and the largest.
         for tip in {found[0], found[-1]} if found else ():
             at = entry.tick, tip.sensor, tip.needed_counts

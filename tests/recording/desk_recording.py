@@ -81,9 +81,9 @@ class RecordedDesk:
 
 def late_run(recordings: Path) -> Path:
     """A run whose first files had to make room for later ones, as those of a robot that is never switched off."""
-    desk = RecordedDesk(recordings, budget=Budget(150_000, segment_bytes=40_000))
+    desk = RecordedDesk(recordings, budget=Budget(75_000, segment_bytes=20_000))
     desk.recorder.tend()
-    for second in range(30):
+    for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
     return recordings / NAME
