@@ -121,11 +121,11 @@ def test_of_a_run_of_many_stretches_shares_are_drawn_and_fewer_samples_kept(less
     entries = lesson.entries
     long = (
         entry._replace(tick=entry.tick + 250 * again, now_s=entry.now_s + 2.5 * again)
-        for again in range(120)
+        for again in range(84)
         for entry in entries
     )
     timeline = timeline_of(long, ROBOT, every=1)
-    assert len(timeline.stretches) == 600
+    assert len(timeline.stretches) == 420
     assert MOST_SAMPLES <= len(timeline.samples) < 2 * MOST_SAMPLES
     apart = {round(b.at_s - a.at_s, 3) for a, b in pairwise(timeline.samples)}
     assert apart == {0.04}

@@ -145,7 +145,7 @@ def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson
     assert few.basic.count == 2
 
 
-@pytest.mark.parametrize("ending", ["png", "svg"])
+@pytest.mark.parametrize("ending", [pytest.param("png", marks=pytest.mark.deep), "svg"])
 def test_the_picture_shows_the_decision_and_is_the_same_each_time(
     taught_lesson: Lesson, tmp_path: Path, ending: str
 ) -> None:
