@@ -131,8 +131,8 @@ def a_short_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def sooner(words: Sequence[str]) -> list[str]:
-    """The same command for a run of which there is only the beginning."""
-    times = ("--at", "--from", "--to")
+    """The same command for a run of which there is only the beginning, and for a program that runs so much shorter."""
+    times = ("--at", "--from", "--to", "--seconds")
     pairs = zip(("", *words), words, strict=False)
     return [str(float(word) / SOONER) if option in times else word for option, word in pairs]
 

@@ -45,7 +45,10 @@ def may_know_the_simulator(path: Path) -> bool:
 def test_a_package_imports_only_what_stands_below_it(package: str) -> None:
     for path in sorted((ROOT / package).rglob("*.py")):
         allowed = {package} | MAY_IMPORT[package] | ({"simbridge"} if may_know_the_simulator(path) else set())
-        forbidden = roots_imported(path) & (PACKAGES | {"tests"}) - allowed
+        others = (PACKAGES | {"tests"}) - allowed
+        if not any(name in path.read_text(encoding="utf-8") for name in others):
+            continue  # what a file does not mention it does not import; the others are worth the parsing
+        forbidden = roots_imported(path) & others
         assert not forbidden, f"{path.relative_to(ROOT)} imports {sorted(forbidden)}, allowed are {sorted(allowed)}"
 
 
