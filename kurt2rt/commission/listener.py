@@ -20,6 +20,8 @@ class Listener:
         """Own an end of the bus."""
         self._bus = bus
         self._codec = codec
+        named = {channel for each in codec.by_id.values() for channel in each.signals}
+        self._distances = frozenset(filter(_DISTANCE_CHANNEL.fullmatch, named))
         self.channels: set[str] = set()
         """Analog channels heard so far."""
         self.has_bumpers = False
@@ -73,7 +75,7 @@ class Listener:
                 self.hardware_id = identity.hardware_id
         else:
             for channel, counts in zip(codec.signals, values, strict=True):
-                if not _DISTANCE_CHANNEL.fullmatch(channel):
+                if channel not in self._distances:
                     continue
                 if counts > HIGHEST_COUNTS:
                     heard.junk[f"{channel} above {HIGHEST_COUNTS} counts"] += 1
