@@ -280,9 +280,9 @@ def test_a_map_wider_than_a_world_may_be_is_refused(tmp_path: Path) -> None:
 def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> None:
     dice = np.random.default_rng(1)
     for side, share, complaint in (
-        (1200, 0.3, "meet along"),
-        (600, 0.05, "areas and islands"),
-        (400, 0.01, "its walls have"),
+        (800, 0.3, "meet along"),
+        (400, 0.05, "areas and islands"),
+        (370, 0.01, "its walls have"),
     ):
         shades = np.where(dice.random((side, side)) < share, OCCUPIED, FREE).astype(np.uint8)
         with pytest.raises(SettingsError, match=rf"flat\.yaml: image: .*{complaint}.* crop"):
