@@ -22,6 +22,7 @@ FORMAT_VERSION = 1
 
 BUSY_TIMEOUT_S = 0.2
 """How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""
+_CACHE_KIB = 128
 
 _MAGIC = b"SQLite format 3\x00"
 _HEADER_BYTES = 100
@@ -180,6 +181,8 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
         )
         # A damaged byte must not hide in which row it is: it is kept, and what reads the row refuses it.
         connection.text_factory = lambda text: text.decode(errors="surrogateescape")
+        # Lessons are read once and appended to: SQLite's own 2 MB of cache would keep what nobody reads again.
+        connection.execute(f"PRAGMA cache_size = {-_CACHE_KIB}")
         (version,) = connection.execute("PRAGMA user_version").fetchone()
     except sqlite3.Error as error:
         if connection is not None:

@@ -16,7 +16,7 @@ from kurt2rt.soak.witness import SoakWitness
 _LEAST_GAP_S = 4.0
 _LOOKS_AGAIN_S = 1.0
 _SHOWS_M_S = 0.2
-_LESSON_EVERY_S = 0.25
+_LESSON_EVERY_S = 1.0
 _SETTLES_S = 0.3
 _HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
 
