@@ -7,11 +7,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
+COMPILED := $(VENV)/compiled
 
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test test-deep guard mutants kills hil bench lint types compiled clean
+.PHONY: run demo test test-deep guard mutants kills hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --page $(ARGS)
@@ -19,10 +20,11 @@ run: $(INSTALLED)
 demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
-# Types take one processor; the other one compiles the tests meanwhile, once for all that run them.
+# Types take one processor; the other one compiles the tests meanwhile, once for all that run them. Twice as many workers
+# as processors: stories wait for programs, browsers and real time.
 test: $(INSTALLED)
-	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types compiled
-	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
+	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types $(COMPILED)
+	$(PYTEST) -n 4 -q --dist loadfile --no-loadscope-reorder
 
 # A test that waits for a processor has not failed: six times what the quick ones have.
 test-deep: $(INSTALLED) guard
@@ -62,8 +64,9 @@ types: $(INSTALLED)
 	$(BIN)/mypy
 
 # What cannot be collected is told by the tests themselves.
-compiled: $(INSTALLED)
+$(COMPILED): $(INSTALLED) $(shell find tests -name '*.py')
 	-@$(PYTEST) --collect-only -qqq > /dev/null 2>&1
+	@touch $@
 
 # One environment for both commands: what is tested is what runs.
 $(INSTALLED): pyproject.toml constraints.txt
