@@ -20,11 +20,11 @@ run: $(INSTALLED)
 demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
 
-# Types take one processor; the other one compiles the tests meanwhile, once for all that run them. Twice as many workers
-# as processors: stories wait for programs, browsers and real time.
+# Types take one processor; the other one compiles the tests meanwhile, once for all that run them. More workers than
+# processors: stories wait for programs, browsers and real time; with four hands in browsers lose their robots.
 test: $(INSTALLED)
 	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types $(COMPILED)
-	$(PYTEST) -n 4 -q --dist loadfile --no-loadscope-reorder
+	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
 
 # A test that waits for a processor has not failed: six times what the quick ones have.
 test-deep: $(INSTALLED) guard
