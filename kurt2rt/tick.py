@@ -255,10 +255,10 @@ class Tick:
         # Also when something else stands in its way: the loop ends the hand's lease, whatever happens.
         by_hand = authority.hand_on_wheel(tick)
         if by_hand:
-            unable = self._unable(blind=blind)
-            aside = self._level.decide(situation, senses, unable or Cause.TEACHER)
-            if unable is not None:
-                return _standing(aside, unable)
+            because = self._unable(blind=blind) or Cause.TEACHER
+            aside = _standing(self._level.decide(situation, senses, because), because)
+            if because is not Cause.TEACHER:
+                return aside
             name, wheel_speeds = authority.step(senses)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
         decision = self._level.decide(situation, senses, stand)

@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.layers.decision import Cause
+from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import Phase, RlaRewarded
 from kurt2rt.teaching.commands import (
     BeginSession,
@@ -129,6 +130,25 @@ def test_what_is_driven_by_hand_goes_into_the_history_and_belongs_to_no_rla(driv
     uses = dict(driving.statistics.uses)
     record = driving.run(110)
     assert not record.situation.history_frozen
+    assert driving.statistics.uses == uses
+
+
+def test_what_the_hand_drives_belongs_to_no_rla_also_when_the_layer_fails(
+    driving: Corridor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        decision = decide(level, *words)  # type: ignore[arg-type]
+        return decision._replace(wheel_speeds=FORWARD, cause=Cause.RLA, action="back", rla_id=1, answers=True)
+
+    uses = dict(driving.statistics.uses)
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    for _ in range(5):
+        record = driving.run(100, press(driving))
+        assert (record.decision.cause, record.decision.rla_id) == (Cause.TEACHER, None)
+        assert not record.decision.answers
+        assert record.grant.wheel_speeds == BY_HAND
     assert driving.statistics.uses == uses
 
 
