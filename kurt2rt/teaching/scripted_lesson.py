@@ -74,9 +74,7 @@ async def teach_by_script(
                 robot, lambda: robot.set_phase(Phase.CORRECTIONS), lambda state: state.phase == Phase.CORRECTIONS
             )
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
-        if state.stopped_because.startswith(_STOPPED_ITSELF):
-            with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
-                await robot.resume()
+        await _go_on(robot, state)
         await leading.see(state, stopped=bool(_stopped_by_a_person(robot, state)))
         command = teacher.watch(picture_in(state), state.tick - before)
         before = state.tick
@@ -87,7 +85,10 @@ async def teach_by_script(
     async for state in robot.states():
         if state.teacher != robot.name:
             return
-        await leading.see(state, stopped=bool(_stopped_by_a_person(robot, state)))
+        if leading.plan:
+            await _go_on(robot, state)  # where it has been set down it has to be told to
+        stays = state.stopped_because.startswith(_SESSION_OVER) or bool(_stopped_by_a_person(robot, state))
+        await leading.see(state, stopped=stays)
 
 
 def two_levels(task: TaskSettings) -> str:
@@ -142,6 +143,13 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
                 break
     if stopped:
         say(f"{stopped}: the robot stays where it is; take it and say go to let it drive")
+
+
+async def _go_on(robot: TeacherClient, state: State) -> None:
+    """Tell a robot that stopped itself to go on."""
+    if state.stopped_because.startswith(_STOPPED_ITSELF):
+        with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
+            await robot.resume()
 
 
 def _stopped_by_a_person(robot: TeacherClient, state: State) -> str:

@@ -52,6 +52,7 @@ class Mind:
         self.hello: dict[str, object] = {}
         """What it says otherwise when it introduces itself."""
         self.stop_at_phase: Phase | None = None
+        self.refuses_phase: Phase | None = None
         self._stopped_tick = -1
 
     async def __call__(self, request: Request) -> Reply:
@@ -80,6 +81,8 @@ class Mind:
         match request:
             case TakeRequest():
                 robot.show(teacher="auto")
+            case PhaseRequest(phase=phase) if phase is self.refuses_phase:
+                return refusal("refused", "too many commands wait; say it again", tick)
             case PhaseRequest(phase=phase):
                 robot.show(phase=int(phase))
                 if phase is self.stop_at_phase:
@@ -230,6 +233,44 @@ async def test_a_robot_that_a_person_stopped_is_neither_turned_nor_set_down_and_
     assert robot.all_of(ResumeRequest) == []
     assert robot.state.stopped_because == "anna said stop"
     assert said[-1] == "anna took the robot; the scripted teacher stops here"
+
+
+async def test_alone_too_a_robot_of_several_behaviours_is_told_to_go_on_where_its_guard_stopped_it(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
+    teaching = STREETS.teaching.model_copy(update={"supervised_s": 1.0, "corrections_s": 1.0})
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            task = STREETS.model_copy(update={"teaching": teaching})
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
+            await robot.hears(ResumeRequest)
+            robot.show(stopped_because="the guard: wheels disobey")
+            await robot.hears(ResumeRequest, 2)
+            tasks.cancel_scope.cancel()
+
+
+async def test_a_robot_that_stays_where_it_is_after_the_lesson_is_not_set_down(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    mind = streets(robot, 0.5, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
+    mind.refuses_phase = Phase.AUTONOMOUS
+    teaching = STREETS.teaching.model_copy(update={"supervised_s": 1.0, "corrections_s": 1.0})
+    said: list[str] = []
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            task = STREETS.model_copy(update={"teaching": teaching})
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, said.append)
+            await robot.hears(PhaseRequest, 2)  # phase 1, and 5 at the end
+            stays = robot.state.tick
+            async for picture in client.states():
+                if picture.tick > stays + 80:  # 40 s later
+                    break
+            robot.show(teacher="anna")
+    assert said[-1].endswith("the robot stays where it is; take it and say go to let it drive")
+    assert robot.all_of(PlaceRequest) == []
+    assert robot.all_of(PursueRequest) == []
+    assert robot.state.stopped_because.startswith("the session ")
 
 
 async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
