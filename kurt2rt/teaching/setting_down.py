@@ -33,7 +33,8 @@ class SettingDown:
         if place is None:
             return None
         if self._from is None:
-            self._came_through.append(place)
+            if not self._came_through:  # a later one may show it still where it was stuck
+                self._came_through.append(place)
             self._begin(place, state.tick)
             return None
         self._clean = self._clean and place.collisions == self._from.collisions

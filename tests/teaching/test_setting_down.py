@@ -59,6 +59,18 @@ def test_where_it_touched_something_it_is_not_set_down() -> None:
         assert [each.x_m for each in found if each is not None] == [0.0]
 
 
+def test_where_it_was_stuck_it_is_not_set_down_later_either() -> None:
+    robot = Watched()
+    robot.is_at(0.0)
+    robot.is_at(2.2, collisions=1)
+    for _ in range(2):  # the first time the hand was not heard
+        assert [each.x_m for each in (robot.is_at(2.2, collisions=1) for _ in range(32)) if each] == [0.0]
+    robot.is_at(0.0, collisions=1)
+    for _ in range(8):
+        found = [robot.is_at(8.0, collisions=2) for _ in range(33)]
+        assert [each.x_m for each in found if each is not None] == [0.0]
+
+
 def test_one_that_never_came_away_is_set_down_where_it_began() -> None:
     assert [each.x_m for each in Watched().stays(0.4, 16.0)] == [0.4]
 
