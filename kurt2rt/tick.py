@@ -8,7 +8,7 @@ from hal.robot import STANDSTILL, Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.expecting import Expecting
 from kurt2rt.expectations.surprise import Surprise
-from kurt2rt.layers.decision import Cause, Decision, MidDecision
+from kurt2rt.layers.decision import Cause, Decision, MidDecision, standing
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_uses import MidUses
 from kurt2rt.perception.circumstances import CircumstancesPerception
@@ -256,14 +256,14 @@ class Tick:
         by_hand = authority.hand_on_wheel(tick)
         if by_hand:
             because = self._unable(blind=blind) or Cause.TEACHER
-            aside = _standing(self._level.decide(situation, senses, because), because)
+            aside = standing(self._level.decide(situation, senses, because), because)
             if because is not Cause.TEACHER:
                 return aside
             name, wheel_speeds = authority.step(senses)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
         decision = self._level.decide(situation, senses, stand)
         if stand is not None:
-            decision = _standing(decision, stand)
+            decision = standing(decision, stand)
         if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
             return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
         return decision
@@ -286,13 +286,6 @@ class Tick:
         if self._trouble is not None:
             return Cause.UNSAVED
         return None
-
-
-def _standing(decision: Decision, cause: Cause) -> Decision:
-    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands."""
-    if decision.wheel_speeds == STANDSTILL and not decision.driving:
-        return decision
-    return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False)
 
 
 def _is_about_what_is_seen_now(command: Command) -> bool:

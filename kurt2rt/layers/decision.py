@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple
 
-from hal.robot import WheelSpeeds
+from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.step import PlanStep
 from kurt2rt.rla.match import Match
@@ -81,3 +81,10 @@ class Decision(NamedTuple):
     def asking(self) -> bool:
         """Whether the robot stands because it does not know this situation."""
         return self.cause is Cause.UNKNOWN
+
+
+def standing(decision: Decision, cause: Cause) -> Decision:
+    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands."""
+    if decision.wheel_speeds == STANDSTILL and not decision.driving:
+        return decision
+    return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False)

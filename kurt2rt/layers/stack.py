@@ -1,7 +1,7 @@
 """The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
 
 from hal.robot import STANDSTILL, Senses
-from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.decision import Cause, Decision, standing
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.perception.perception import Situation
@@ -33,12 +33,12 @@ class LayerStack:
         if navigator is not None:
             navigator.go_on()
         if commanded.asks:
-            decision = self.basic.decide(situation, senses, stand_because or Cause.UNKNOWN)
+            decision = self._decide_below(situation, senses, stand_because or Cause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
                 stand_because = stand_because or _STANDS.get(navigator.stands_as)
-            decision = self.basic.decide(situation, senses, stand_because)
+            decision = self._decide_below(situation, senses, stand_because)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:
             self._before = self._before._replace(plan=navigator.step)
@@ -47,3 +47,7 @@ class LayerStack:
     def restart(self) -> None:
         """The robot has been set down elsewhere."""
         self.mid.restart()
+
+    def _decide_below(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+        decision = self.basic.decide(situation, senses, stand_because)
+        return decision if stand_because is None else standing(decision, stand_because)

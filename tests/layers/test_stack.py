@@ -2,8 +2,9 @@
 
 import pytest
 
-from hal.robot import STANDSTILL
-from kurt2rt.layers.decision import Cause
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import BASIC, MID
 from tests.layers.mid_helpers import SmallStack, taught
 
@@ -58,3 +59,22 @@ def test_the_mid_level_sees_what_was_decided_before() -> None:
     small.tick()
     assert [each.action for each in small.symbols.befores] == [None, "b"]
     assert small.symbols.befores[1] is first
+
+
+def test_where_the_mid_level_asks_a_basic_level_that_fails_does_not_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        decision = decide(level, *words)  # type: ignore[arg-type]
+        return decision._replace(wheel_speeds=WheelSpeeds(5.0, 5.0), cause=Cause.RLA, action="a", rla_id=1)
+
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
+    small.tick()
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    decision = small.tick(1.0)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.asks_at == MID
+    small.tick(0.0, Cause.STOPPED)
+    assert small.symbols.befores[-1] is decision
+    small.tick(0.0, Cause.STOPPED)
+    assert small.symbols.befores[-1].action is None  # what stood has passed no junction
