@@ -96,8 +96,10 @@ class SoakFaults:
                 life.level.disturb(disturbance)
             case "disk":
                 life.knowledge.disturb(disturbance)
-                for number in range(int((end_s - begin_s) / _LESSON_EVERY_S)):
-                    time.at(begin_s + number * _LESSON_EVERY_S, self._on_life(Life.teach_what_is_known))
+                # A disk that comes and goes is to be met in both.
+                every_s = min(_LESSON_EVERY_S, must.period_s or _LESSON_EVERY_S)
+                for number in range(int((end_s - begin_s) / every_s)):
+                    time.at(begin_s + number * every_s, self._on_life(Life.teach_what_is_known))
             case "recorder":
                 self._recorder = FailingRecorder(time, disturbance)
                 self._place.look_on(self._recorder)
