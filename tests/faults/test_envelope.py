@@ -99,6 +99,15 @@ def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
     assert "left from 0.00 to 0.09" in drive.violations
 
 
+@pytest.mark.parametrize(("cm_s", "allowed"), [(6, True), (8, False)])
+def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s: int, allowed: bool) -> None:
+    drive = Drive().put(BRAKE, latched=True).put(set_point(3), late_s=None).put(set_point(4), late_s=None)
+    assert drive.violations == ""
+    drive.put(set_point(cm_s))
+    heard = [each for each in drive.envelope.violations if "30 ms" in each or "40 ms" in each]
+    assert (heard == []) is allowed
+
+
 def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
     slows = Drive().put(set_point(5)).put(set_point(0), late_s=None).put(set_point(1))
     turns = Drive().put(set_point(1)).put(set_point(0), late_s=None).put(set_point(-1))
