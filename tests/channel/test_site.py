@@ -495,6 +495,7 @@ class OnLine:
         self.channel = channel
         self.line = line
         desk.channel = channel
+        desk.run()  # before its first tick a robot has no picture on which anything could be said
 
     async def call(self, request: Request) -> dict[str, Any]:
         """The answer to a request, while the robot ticks as fast as it does; at most 0.4 s, for what was given on the
