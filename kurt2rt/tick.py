@@ -261,9 +261,7 @@ class Tick:
                 return aside
             name, wheel_speeds = authority.step(senses)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
-        decision = self._level.decide(situation, senses, stand)
-        if stand is not None:
-            decision = standing(decision, stand)
+        decision = standing(self._level.decide(situation, senses, stand), stand)
         if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
             return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
         return decision

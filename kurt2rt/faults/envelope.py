@@ -116,11 +116,12 @@ class Envelope:
         if self._last_arrived is not None and self._last_arrived.told is not None:
             # By the times at which they were made: what was held up may come in a heap.
             elapsed_s = put.at_s - self._last_arrived.at_s
-            if self.clock_is_wrong:
-                elapsed_s = max(elapsed_s, self._limits.longest_step_s)
-            elif self._last_arrived.told.brake:
+            longest_s = self._limits.longest_step_s
+            if self._last_arrived.told.brake:
                 # The first step after a brake may be the longest, two cycles, and may be one of those that were lost.
-                elapsed_s += self._limits.longest_step_s / 2
+                elapsed_s = max(elapsed_s + longest_s / 2, longest_s)
+            elif self.clock_is_wrong:
+                elapsed_s = max(elapsed_s, longest_s)
             # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
             follows = number == self._arrived_number + 1
             self._require_smooth(at_s, self._last_arrived.told, put, told, elapsed_s, follows=follows)

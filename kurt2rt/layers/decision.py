@@ -83,8 +83,11 @@ class Decision(NamedTuple):
         return self.cause is Cause.UNKNOWN
 
 
-def standing(decision: Decision, cause: Cause) -> Decision:
-    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands."""
-    if decision.wheel_speeds == STANDSTILL and not decision.driving:
+def standing(decision: Decision, cause: Cause | None) -> Decision:
+    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands.
+
+    `cause`: why it was told so; None: it was not, and may drive.
+    """
+    if cause is None or (decision.wheel_speeds == STANDSTILL and not decision.driving):
         return decision
     return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False)

@@ -49,5 +49,4 @@ class LayerStack:
         self.mid.restart()
 
     def _decide_below(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
-        decision = self.basic.decide(situation, senses, stand_because)
-        return decision if stand_because is None else standing(decision, stand_because)
+        return standing(self.basic.decide(situation, senses, stand_because), stand_because)

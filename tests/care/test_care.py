@@ -6,7 +6,7 @@ import shutil
 import sys
 import weakref
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -268,12 +268,12 @@ class Lossy(SegmentReader):
             yield record
 
 
-def lose(run: Path, lost: range) -> None:
-    """Take ticks out of a run that is one file."""
+def read_anew(run: Path, reader: Callable[[Path], SegmentReader]) -> None:
+    """Put in the place of a run that is one file what a reader reads of it."""
     (segment,) = run.iterdir()
     whole = segment.rename(run / "whole")
     with segment.open("xb") as file:
-        copy_records(Lossy(whole, lost), file)
+        copy_records(reader(whole), file)
     whole.unlink()
 
 
@@ -281,7 +281,7 @@ def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(kno
     planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, runs, quietly).runs
     (run,) = runs.iterdir()
-    lose(run, range(401, 451))
+    read_anew(run, lambda path: Lossy(path, range(401, 451)))
     shown = preview_on_newest(planned, runs, quietly, last_s=0.75)
     (tried,) = shown.runs
     assert tried.from_s == pytest.approx(3.24)
@@ -318,17 +318,8 @@ def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory
     assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
 
 
-def taught_into(run: Path, told: str) -> None:
-    """Let the head of a run that is one file tell of another knowledge file, as an earlier kurt2rt did."""
-    (segment,) = run.iterdir()
-    whole = segment.rename(run / "whole")
-    with segment.open("xb") as file:
-        copy_records(Retold(whole, told), file)
-    whole.unlink()
-
-
 class Retold(SegmentReader):
-    """Reads a file as if it told of that knowledge file."""
+    """Reads a file as if it told of that knowledge file, as an earlier kurt2rt did."""
 
     def __init__(self, path: Path, told: str) -> None:
         super().__init__(path)
@@ -349,8 +340,8 @@ def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_l
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     shutil.copy(knowledge, elsewhere)
-    taught_into(own, knowledge.name)
-    taught_into(later, f"elsewhere/{knowledge.name}")
+    read_anew(own, lambda path: Retold(path, knowledge.name))
+    read_anew(later, lambda path: Retold(path, f"elsewhere/{knowledge.name}"))
 
     def newest(file: Path) -> str:
         with Journal.read_only(file) as journal:
@@ -363,8 +354,8 @@ def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_l
         assert newest(elsewhere / knowledge.name) == str(later)
     monkeypatch.chdir(elsewhere)
     assert newest(Path(knowledge.name)) == str(later)
-    taught_into(own, str(elsewhere / knowledge.name))
-    taught_into(later, str(knowledge))
+    read_anew(own, lambda path: Retold(path, str(elsewhere / knowledge.name)))
+    read_anew(later, lambda path: Retold(path, str(knowledge)))
     assert newest(knowledge) == str(later)
     assert newest(Path(knowledge.name)) == str(own)
 

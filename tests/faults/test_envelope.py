@@ -108,6 +108,11 @@ def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s:
     assert (heard == []) is allowed
 
 
+def test_the_first_step_after_a_brake_may_be_the_longest_however_soon_it_comes() -> None:
+    drive = Drive().put(BRAKE, latched=True).put(set_point(3), after_s=0.002)
+    assert drive.violations == ""
+
+
 def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
     slows = Drive().put(set_point(5)).put(set_point(0), late_s=None).put(set_point(1))
     turns = Drive().put(set_point(1)).put(set_point(0), late_s=None).put(set_point(-1))
