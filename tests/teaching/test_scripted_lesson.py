@@ -34,9 +34,10 @@ SETTINGS = load_robot("kurt2")
 _CarriedOut = TakeRequest | PhaseRequest | PursueRequest | SessionRequest | ResumeRequest
 
 
-def short() -> TaskSettings:
-    task = load_task("wall_following")
-    teaching = task.teaching.model_copy(update={"supervised_s": 0.1, "corrections_s": 0.1})
+def short(name: str = "wall_following", each_phase_s: float = 0.1) -> TaskSettings:
+    """A task whose phases 1 and 2 last so long."""
+    task = load_task(name)
+    teaching = task.teaching.model_copy(update={"supervised_s": each_phase_s, "corrections_s": each_phase_s})
     return task.model_copy(update={"teaching": teaching})
 
 
@@ -179,12 +180,10 @@ async def test_several_behaviours_are_wanted_in_turn_also_when_the_robot_drives_
     robot: StandInRobot, client: TeacherClient
 ) -> None:
     streets(robot, 1.0)
-    teaching = STREETS.teaching.model_copy(update={"supervised_s": 20.0, "corrections_s": 20.0})
     said: list[str] = []
     with anyio.fail_after(10.0):
         async with anyio.create_task_group() as tasks:
-            task = STREETS.model_copy(update={"teaching": teaching})
-            tasks.start_soon(teach_by_script, client, SETTINGS, task, said.append)
+            tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 20.0), said.append)
             heard = await robot.hears(PursueRequest)
             while len({each.behaviour for each in heard}) < len(TURNS):
                 heard = await robot.hears(PursueRequest, len(heard) + 1)
@@ -239,11 +238,9 @@ async def test_alone_too_a_robot_of_several_behaviours_is_told_to_go_on_where_it
     robot: StandInRobot, client: TeacherClient
 ) -> None:
     streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
-    teaching = STREETS.teaching.model_copy(update={"supervised_s": 1.0, "corrections_s": 1.0})
     with anyio.fail_after(10.0):
         async with anyio.create_task_group() as tasks:
-            task = STREETS.model_copy(update={"teaching": teaching})
-            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
+            tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), lambda _: None)
             await robot.hears(ResumeRequest)
             robot.show(stopped_because="the guard: wheels disobey")
             await robot.hears(ResumeRequest, 2)
@@ -255,12 +252,10 @@ async def test_a_robot_that_stays_where_it_is_after_the_lesson_is_not_set_down(
 ) -> None:
     mind = streets(robot, 0.5, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     mind.refuses_phase = Phase.AUTONOMOUS
-    teaching = STREETS.teaching.model_copy(update={"supervised_s": 1.0, "corrections_s": 1.0})
     said: list[str] = []
     with anyio.fail_after(10.0):
         async with anyio.create_task_group() as tasks:
-            task = STREETS.model_copy(update={"teaching": teaching})
-            tasks.start_soon(teach_by_script, client, SETTINGS, task, said.append)
+            tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), said.append)
             await robot.hears(PhaseRequest, 2)  # phase 1, and 5 at the end
             stays = robot.state.tick
             async for picture in client.states():
