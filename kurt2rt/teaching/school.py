@@ -104,6 +104,7 @@ class School:
         self._stopped_by: set[str] = set()
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
+        self._stops_since_go: set[str] = set()
         self._pursuing = Pursuing(self.wanted, mid)
         self._clock = TeachingClock()
 
@@ -239,6 +240,7 @@ class School:
                 refuse(self._stopped_since(command))
                 self.stopped_because = ""
                 self._stopped_by.clear()
+                self._stops_since_go.clear()
                 authority.end_hand()
                 return "the robot may drive", None
             case SetPhase():
@@ -268,7 +270,10 @@ class School:
     def _stop(self, command: Stop, tick: int) -> str:
         if command.hold is not None and self.authority.drives_on(command.teacher, command.hold, tick):
             return "that press is over; a later one drives"
-        self.stopped_at_tick = tick
+        # A copy brakes again, but nobody has said it anew: who says go has seen what it was a copy of.
+        if command.command_id not in self._stops_since_go:
+            self._stops_since_go.add(command.command_id)
+            self.stopped_at_tick = tick
         self.stop(
             _let_go(command.teacher) if command.hold is not None else f"{command.teacher} said stop", command.teacher
         )

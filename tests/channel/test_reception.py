@@ -646,3 +646,14 @@ async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then()
         "RLA 2 of turn_left taught: forward",
         "RLA 1 of straight_on taught: forward",
     ]
+
+
+async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_all_the_same() -> None:
+    desk = Desk()
+    stop = desk.stop()
+    answered = await desk.ask(stop, "ann")
+    go = desk.command(ResumeRequest)
+    desk.run(5)
+    assert await desk.ask(stop, "ann") == answered
+    assert (await desk.ask(go)).body["text"] == "the robot may drive"
+    assert desk.run().decision.cause is not Cause.STOPPED

@@ -720,3 +720,32 @@ def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
     assert (result.accepted, lesson.actions) == (False, {})
     assert result.text == "the id 't/withdraw-1' has a /, which only ids of the robot's own have; leave it out"
     assert lesson.say(Stop("s/1", "Ann")).accepted
+
+
+def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy_of() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    seen = lesson.tick
+    lesson.say(stop("1"))
+    assert lesson.say(Resume("2", "Ann", seen)).accepted
+    assert not lesson.school.stopped_because
+
+
+def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    lesson.say(resume("2"))
+    seen = lesson.tick
+    lesson.say(stop("1"))
+    assert lesson.school.stopped_because
+    assert not lesson.say(Resume("3", "Ann", seen)).accepted
+
+
+def test_another_stop_is_newer_than_the_copies_of_the_first() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    seen = lesson.tick
+    lesson.say(Stop("2", "Ben"))
+    lesson.say(stop("1"))
+    assert not lesson.say(Resume("3", "Ann", seen)).accepted
+    assert lesson.say(Resume("4", "Ann", seen + 1)).accepted
