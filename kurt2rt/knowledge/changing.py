@@ -1,6 +1,7 @@
 """Changes a knowledge file that no robot runs on: opened again, and written together with what its RLAs are worth."""
 
 import math
+import os
 import uuid
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,6 +9,7 @@ from pathlib import Path
 
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal_file import require_no_writer
 from kurt2rt.knowledge.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.settings import ReinforcementSettings, TaughtWorths
@@ -25,7 +27,7 @@ def open_again(path: Path) -> Journal:
 
 def require_at_rest(path: Path) -> None:
     """Raises KnowledgeError while a robot runs on the file, before a user waits for what comes first."""
-    open_again(path).close()
+    require_no_writer(Path(os.path.realpath(path)))
 
 
 def new_origin(what: str, teacher: str) -> Origin:

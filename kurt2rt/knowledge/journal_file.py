@@ -59,9 +59,8 @@ def lock_for_writing(path: Path) -> BinaryIO:
     Two writers would both give the next RLA the same id. The lock sits on a file beside: closing any second handle of
     the database itself would silently drop SQLite's own locks. Raises KnowledgeError.
     """
-    beside = path.with_name(path.name + ".lock")
     try:
-        lock = beside.open("ab")
+        lock = _lock_of(path).open("ab")
     except OSError as error:
         raise KnowledgeError(
             f"{path}: cannot be locked ({error}); give a path in a folder that exists and may be written"
@@ -77,6 +76,12 @@ def lock_for_writing(path: Path) -> BinaryIO:
         lock.close()
         raise KnowledgeError(f"{path}: cannot be locked ({error}); give a path on a local disk") from error
     return lock
+
+
+def require_no_writer(path: Path) -> None:
+    """Raises KnowledgeError while somebody holds the writer's lock; puts none there, for a lock's file stays."""
+    if is_there(_lock_of(path)):
+        lock_for_writing(path).close()
 
 
 def create(path: Path, binding: KnowledgeBinding) -> None:
@@ -211,6 +216,10 @@ def connect_to_look(path: Path) -> sqlite3.Connection:
         connection.close()
         raise explained(error, path) from error
     return connection
+
+
+def _lock_of(path: Path) -> Path:
+    return path.with_name(path.name + ".lock")
 
 
 def log_of(path: Path) -> Path:

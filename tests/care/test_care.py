@@ -463,3 +463,15 @@ def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path,
     assert re.search(r"tried on 500 ticks \(5 s, [1-9] s of them driven\) of 1 runs", done)
     assert f"to take all of that back: kurt2rt knowledge undo {knowledge} --of compact" in done
     assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")
+
+
+def test_an_undo_that_is_not_agreed_to_leaves_nothing_beside_the_knowledge(
+    kurt2rt: CommandLine, knowledge: Path
+) -> None:
+    given = Path("given") / "mine.knowledge"  # from elsewhere: no robot has run on it here
+    given.parent.mkdir()
+    shutil.copy(knowledge, given)
+    before = given.read_bytes()
+    assert kurt2rt("knowledge", "undo", given, typed=Typed("n\n")).exit_code == 1
+    assert list(given.parent.iterdir()) == [given]
+    assert given.read_bytes() == before
