@@ -35,11 +35,17 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
     # Long and ragged as they are, few floors have room for a robot: the largest first, until no other can have more.
     turning_m = math.hypot(geometry.outline_length_m, geometry.outline_width_m) / 2 + _SLIP_M
     best: tuple[float, shapely.Polygon, shapely.Polygon] | None = None
+    in_vain = 0
     for floor in floors:
         if best is not None and floor.area <= best[0]:
             break
+        # Before room is looked for: among specks that takes seconds for some thousand pieces, half a minute for 30 000.
+        walls = _walls_of(floor)
+        _require_few_walls(source, in_vain + walls)
         places = turning_places(floor, turning_m)
-        if places is not None and (best is None or places.area > best[0]):
+        if places is None:
+            in_vain += walls
+        elif best is None or places.area > best[0]:
             best = places.area, floor, places
     if best is None:
         raise SettingsError(
@@ -61,6 +67,7 @@ def world_on_map(source: Path) -> WorldSettings:
     floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
     if floor is None:
         raise SettingsError(f"{map_source}: image: nothing on it is free; see whether negate and the thresholds fit it")
+    _require_few_walls(map_source, _walls_of(floor))
     return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
 
 
@@ -77,6 +84,18 @@ def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
     return sorted(floors, key=lambda each: float(each.area), reverse=True)
 
 
+def _walls_of(floor: shapely.Polygon) -> int:
+    return len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
+
+
+def _require_few_walls(source: Path, walls: int) -> None:
+    if walls > MOST_WALLS:
+        raise SettingsError(
+            f"{source}: image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most; "
+            "crop the map to where the robot drives, or clean it of specks"
+        )
+
+
 def _on_grid(start: Pose, settings: MapSettings) -> Pose:
     """The same pose from the lower left corner of the image, along its edges."""
     x_m, y_m, turned_rad = settings.origin
@@ -86,12 +105,6 @@ def _on_grid(start: Pose, settings: MapSettings) -> Pose:
 
 
 def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_rays: Literal[1, 3]) -> WorldSettings:
-    walls = len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
-    if walls > MOST_WALLS:
-        raise SettingsError(
-            f"{source}: image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most; "
-            "crop the map to where the robot drives, or clean it of specks"
-        )
     west_m, south_m, east_m, north_m = floor.bounds
     width_m, height_m = east_m - west_m, north_m - south_m
     if max(width_m, height_m) > _MOST_M:

@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from hal.settings import SettingsError
+from simbridge.map_server import world as map_world
 from simbridge.map_server.occupancy import drivable_cells
 from simbridge.map_server.settings import MapSettings
 from simbridge.map_server.tracing import trace
+from simbridge.map_server.world import MOST_WALLS
 from simbridge.pose import Pose
 from simbridge.world_settings import WorldSettings, load_world
 from tests.simbridge.rig import ROBOT, Rig
@@ -309,3 +311,27 @@ def test_a_world_on_a_map_is_refused_with_file_and_key(
     write_map(tmp_path)
     with pytest.raises(SettingsError, match=complaint):
         load_world(world_on(tmp_path, **change), ROBOT)
+
+
+def specks(side: int) -> Shades:
+    """Three cells of ten are occupied; the last column is a wall."""
+    shades = np.where(np.random.default_rng(1).random((side, side)) < 0.3, OCCUPIED, FREE).astype(np.uint8)
+    shades[:, -1] = OCCUPIED
+    return shades
+
+
+@pytest.mark.parametrize(("side", "rooms", "looked_at"), [(130, 1, 0), (90, 2, 1)])
+def test_among_specks_room_is_looked_for_in_no_more_pieces_than_a_world_may_have(
+    side: int, rooms: int, looked_at: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[shapely.Polygon] = []
+    monkeypatch.setattr(map_world, "turning_places", lambda floor, _: looked.append(floor))
+    with pytest.raises(SettingsError, match=rf"flat\.yaml: image: its walls have .* allowed are {MOST_WALLS} at most"):
+        load_world(write_map(tmp_path, np.hstack([specks(side)] * rooms)), ROBOT)
+    assert len(looked) == looked_at
+
+
+def test_a_map_of_specks_is_refused_under_start_poses_of_ones_own_too(tmp_path: Path) -> None:
+    write_map(tmp_path, specks(130))
+    with pytest.raises(SettingsError, match=r"flat\.yaml: image: its walls have"):
+        load_world(world_on(tmp_path), ROBOT)
