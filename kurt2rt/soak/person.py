@@ -4,6 +4,7 @@ import math
 
 from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.place import SoakPlace
+from kurt2rt.teaching.commands import Resume
 from kurt2rt.tick import TickRecord
 
 _WAY_M = 0.3
@@ -24,10 +25,15 @@ class Person:
         self._ticks = 0
         self._from_m = place.position_m
         self._has_moved = True
+        self._go_in_vain = False
 
     def sees(self, record: TickRecord) -> bool:
         """See a tick; True where the robot was picked up after it."""
-        if record.grant.latched or record.decision.cause not in _DRIVES:
+        if not record.grant.latched:
+            self._go_in_vain = False
+        elif _was_told_to_go(record):
+            self._go_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
+        if (record.grant.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
             return False
         here_m = self._place.position_m
         if math.dist(here_m, self._from_m) > _WAY_M:
@@ -40,8 +46,13 @@ class Person:
         if not self._has_moved:
             self._place.switch_on()
             self.switched_on += 1
-        self._has_moved = False
+        self._has_moved = self._go_in_vain = False
         self._place.set_down()
         self._from_m, self._ticks = self._place.position_m, 0
         self.set_down += 1
         return True
+
+
+def _was_told_to_go(record: TickRecord) -> bool:
+    accepted = {result.command_id for result in record.results if result.accepted}
+    return any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands)

@@ -8,9 +8,10 @@ from typing import cast
 import pytest
 
 from hal.guard import WHEELS_DISOBEY
-from hal.robot import WheelSpeeds
+from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.person import Person
+from kurt2rt.teaching.commands import CommandResult, Resume
 from kurt2rt.tick import TickRecord
 from simbridge.faults.lasting_place import LastingPlace
 from tests.soak.helpers import CYCLE_S, ROBOT
@@ -36,7 +37,14 @@ def drive(place: LastingPlace, person: Person, until_s: float, wanted: WheelSpee
         robot.sense(time.now_s())
         robot.release()
         grant = robot.drive(wanted, time.now_s(), time.now_s())
-        person.sees(cast(TickRecord, SimpleNamespace(grant=grant, decision=SimpleNamespace(cause=Cause.RLA))))
+        person.sees(seen(grant))
+
+
+def seen(grant: Grant, *commands: Resume) -> TickRecord:
+    """A tick in which an RLA would drive, and in which these were carried out."""
+    results = tuple(CommandResult(each.command_id, True, "") for each in commands)
+    decision = SimpleNamespace(cause=Cause.RLA)
+    return cast(TickRecord, SimpleNamespace(grant=grant, decision=decision, commands=commands, results=results))
 
 
 def test_a_robot_that_makes_its_way_is_left_alone(place: LastingPlace) -> None:
@@ -78,5 +86,21 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
         time.run_until(time.now_s() + CYCLE_S)
         robot.sense(time.now_s())
         grant = robot.drive(AHEAD, time.now_s(), time.now_s())
-        person.sees(cast(TickRecord, SimpleNamespace(grant=grant, decision=SimpleNamespace(cause=Cause.RLA))))
+        person.sees(seen(grant))
     assert person.set_down == 0
+
+
+def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LastingPlace) -> None:
+    person = Person(place, PATIENCE_S, CYCLE_S)
+    again = Grant(STANDSTILL, (WHEELS_DISOBEY,), latched=True)
+    go = Resume("go", "Ann")
+
+    def ticks(count: int) -> int:
+        return sum(person.sees(seen(again)) for _ in range(count))
+
+    patience = round(PATIENCE_S / CYCLE_S)
+    assert ticks(2 * patience) == 0, "nobody has said go yet"
+    assert not person.sees(seen(again, go))
+    assert ticks(patience) == 1
+    assert ticks(2 * patience) == 0, "it waits where it was set down"
+    assert person.set_down == 1
