@@ -50,7 +50,7 @@ def run(
         typer.Option(
             metavar="NAME",
             help="Taught behaviour that is wanted at the start, where the task has several; a teacher may say another "
-            "one later. Default: the task's first.",
+            "one later, and with --auto the others follow in turn. Default: the task's first.",
         ),
     ] = None,
     page: Annotated[

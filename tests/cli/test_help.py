@@ -107,3 +107,9 @@ def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert "lesson" in done.stdout
+
+
+def test_help_says_which_behaviour_the_scripted_teacher_begins_with(kurt2rt: CommandLine) -> None:
+    told = " ".join(kurt2rt("run", "--help").out.replace("│", "").split())
+    assert "wanted at the start" in told
+    assert "with --auto the others follow in turn" in told
