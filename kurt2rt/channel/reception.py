@@ -249,6 +249,10 @@ class Reception:
             if isinstance(request, MoveWallRequest):
                 self._ground.move_wall(request.name, request.dx_m, request.dy_m)
                 return done(self.tick, f"{request.name} moved")
+            # Whoever stopped it looks at it where it stands.
+            stopped = self._runtime.school.stopped_since(request.seen)
+            if stopped is not None:
+                return refusal("refused", stopped, self.tick)
             self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
             self._runtime.set_down()
         except ValueError as error:

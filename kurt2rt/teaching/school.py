@@ -186,6 +186,14 @@ class School:
             return "this press is over; let go and press anew"
         return self._stopped_by_another(command.teacher)
 
+    def stopped_since(self, seen_tick: int | None) -> str | None:
+        """Why what was said on the picture of this tick, and comes after a stop, must neither lift that nor change what
+        comes after it; None where no stop came between.
+        """
+        if seen_tick is None or seen_tick >= self.stopped_at_tick:
+            return None
+        return "the robot was stopped after this was said; look at it, then say it again"
+
     def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
         assert not isinstance(command, Watch | Drive)
@@ -237,7 +245,7 @@ class School:
                 self._pass_on(command.teacher)
                 return "nobody teaches now" if to is None else f"{to} teaches now", None
             case Resume():
-                refuse(self._stopped_since(command))
+                refuse(self.stopped_since(command.seen_tick))
                 self.stopped_because = ""
                 self._stopped_by.clear()
                 self._stops_since_go.clear()
@@ -245,14 +253,14 @@ class School:
                 return "the robot may drive", None
             case SetPhase():
                 if command.phase is Phase.AUTONOMOUS:
-                    refuse(self._stopped_since(command))
+                    refuse(self.stopped_since(command.seen_tick))
                 self.phase = command.phase
                 return f"phase {command.phase.value}, {command.phase.name.lower()}", None
             case Pursue():
-                refuse(self._stopped_since(command))
+                refuse(self.stopped_since(command.seen_tick))
                 return self._pursuing.take(command, tick), None
             case Seek() | StopSeeking():
-                refuse(self._stopped_since(command))
+                refuse(self.stopped_since(command.seen_tick))
                 return self._errands_of(command).carry_out(command, tick), None
             case BeAt():
                 return self._errands_of(command).carry_out(command, tick), None
@@ -291,7 +299,7 @@ class School:
 
     def _run(self, command: RunBehaviour, tick: int) -> str:
         require_action(command.action, self._level.repertoire)
-        refuse(self._stopped_since(command) or self._stopped_by_another(command.teacher))
+        refuse(self.stopped_since(command.seen_tick) or self._stopped_by_another(command.teacher))
         if not self.authority.present(tick):
             raise RefusedError("a behaviour runs only while its teacher is there and watches")
         self.stop(f"{command.action} is over", command.teacher)
@@ -309,12 +317,6 @@ class School:
     def _stopped_by_another(self, teacher: str) -> str | None:
         others = sorted(self._stopped_by - {teacher})
         return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
-
-    def _stopped_since(self, command: Resume | RunBehaviour | SetPhase | Pursue | Seek | StopSeeking) -> str | None:
-        """What was said before a stop, and comes after it, must not lift it, nor change what comes after it."""
-        if command.seen_tick is None or command.seen_tick >= self.stopped_at_tick:
-            return None
-        return "the robot was stopped after this was said; look at it, then say it again"
 
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)

@@ -657,3 +657,17 @@ async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_
     assert await desk.ask(stop, "ann") == answered
     assert (await desk.ask(go)).body["text"] == "the robot may drive"
     assert desk.run().decision.cause is not Cause.STOPPED
+
+
+async def test_a_robot_that_was_stopped_is_set_down_by_nothing_that_was_said_before() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    before = desk.command(PlaceRequest, 1.0, 2.0, 0.5)
+    desk.run(5)
+    await desk.ask(desk.stop(), "ben")
+    refused = await desk.ask(before)
+    assert why(refused) == "refused"
+    assert refused.body["text"] == "the robot was stopped after this was said; look at it, then say it again"
+    assert yard.changes == []
+    await desk.ask(desk.command(PlaceRequest, 3.0, 1.0, 0.5))
+    assert yard.changes == [(3.0, 1.0, 0.5)]
