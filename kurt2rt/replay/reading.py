@@ -38,6 +38,7 @@ def read_run(path: Path, *, in_part: bool = False) -> Run:
         files.ticks,
         files.torn,
         files.ends_s,
+        files.without_gap,
         in_part=in_part,
         stamps=files.stamps,
     )
@@ -77,6 +78,12 @@ class _Files:
             if newest:
                 return decode_tick(newest[0].data).now_s
         return 0.0
+
+    def without_gap(self) -> bool:
+        """Whether as many ticks are there as the last of them has for a number; looks into no other."""
+        messages = (message for reader in self.readers for message in reader.messages({TICK_TOPIC}))
+        newest = deque(enumerate(messages, start=1), maxlen=1)
+        return any(decode_tick(message.data).number == count for count, message in newest)
 
     def torn(self) -> str:
         """What the last that was torn says; a tick that went missing between two is told as a gap."""

@@ -37,15 +37,17 @@ class Run:
         read: Callable[[], Iterator[TickEntry]],
         torn: Callable[[], str] = str,
         ends_s: Callable[[], float] = float,
+        without_gap: Callable[[], bool] = bool,
         *,
         in_part: bool = False,
         stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(()),
     ) -> None:
         """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
 
-        `ends_s`: time of the last tick, for those who tell how far they are. `in_part`: to look at what there is; one
-        whose beginning is gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that
-        became durable, and when.
+        `ends_s`: time of the last tick, for those who tell how far they are. `without_gap`: whether no tick is missing
+        before it, found out quicker than by reading them. `in_part`: to look at what there is; one whose beginning is
+        gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that became durable, and
+        when.
 
         Raises RecordingError where what a replay needs is missing or damaged.
         """
@@ -55,6 +57,7 @@ class Run:
         self._read = read
         self._torn = torn
         self._ends_s = ends_s
+        self._without_gap = without_gap
         self._in_part = in_part
         self._stamps = stamps
         self._gap = ""
@@ -75,7 +78,11 @@ class Run:
 
     @property
     def lasts_without_gap_s(self) -> float:
-        """The same up to the last tick before the first that is missing: what can be replayed. Reads all of that."""
+        """The same up to the last tick before the first that is missing: what can be replayed. Goes through all of
+        that, and reads it where one is.
+        """
+        if self._without_gap():
+            return self.lasts_s
         newest = 0.0
         for entry in self.entries():
             newest = self.second_of(entry)

@@ -26,9 +26,12 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.recording.entries import TickEntry
+from kurt2rt.recording.entry_code import decode_tick
 from kurt2rt.recording.run_head import RUN_METADATA
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.whole_copy import _copy as copy_records
+from kurt2rt.replay import reading
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
 from kurt2rt.replay.run import Run
@@ -475,3 +478,23 @@ def test_an_undo_that_is_not_agreed_to_leaves_nothing_beside_the_knowledge(
     assert kurt2rt("knowledge", "undo", given, typed=Typed("n\n")).exit_code == 1
     assert list(given.parent.iterdir()) == [given]
     assert given.read_bytes() == before
+
+
+def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
+    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    decoded = list[int]()
+
+    def decode_and_count(data: bytes) -> TickEntry:
+        entry = decode_tick(data)
+        decoded.append(entry.number)
+        return entry
+
+    monkeypatch.setattr(reading, "decode_tick", decode_and_count)
+    (tried,) = preview_on_newest(planned, runs, quietly, last_s=0.75).runs
+    assert tried.from_s == pytest.approx(4.24)
+    assert tried.found.ticks == 76
+    looked_at = Counter(decoded)
+    assert len(looked_at) == 500
+    assert {number for number, times in looked_at.items() if times > 1} == {1, 500}  # where it begins and ends
