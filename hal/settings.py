@@ -145,12 +145,17 @@ def content_of(path: Path) -> Any:
 
     Raises SettingsError with one line that names the file.
     """
+    return json.loads(_json_in(path))
+
+
+def _json_in(path: Path) -> str:
+    """The same as text. Raises SettingsError."""
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error
     try:
-        return json.loads(_as_json(text))
+        return _as_json(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from error
 
@@ -161,15 +166,18 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
     `changes`: values in YAML by key, with dots between the levels (`learning.radius`), as --set on a command line says.
     Raises SettingsError with one line that names file, key and what is allowed.
     """
-    content = content_of(path)
-    for key, value in (changes or {}).items():
-        _change(content, key, _value_of(key, value, path), path)
-    if not isinstance(content, dict):
-        allowed = ", ".join(schema.model_fields)
-        raise SettingsError(f"{path}: holds {type(content).__name__}, allowed is a mapping with the keys: {allowed}")
+    told = _json_in(path)
+    if changes:
+        content = json.loads(told)
+        for key, value in changes.items():
+            _change(content, key, _value_of(key, value, path), path)
+        told = json.dumps(content)
+    if not told.startswith("{"):
+        holds, allowed = type(json.loads(told)).__name__, ", ".join(schema.model_fields)
+        raise SettingsError(f"{path}: holds {holds}, allowed is a mapping with the keys: {allowed}")
     try:
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
-        return schema.model_validate_json(json.dumps(content))
+        return schema.model_validate_json(told)
     except ValidationError as error:
         # A misspelled key also leaves the right one missing: name the misspelling, it is what to mend.
         problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
