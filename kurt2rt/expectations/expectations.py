@@ -22,42 +22,6 @@ from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.space import Space
 
 
-class _Learned:
-    """What was learned of one RLA. Its arrays are made once, at its first end, and filled in place from then on."""
-
-    __slots__ = ("count", "lesson", "mean", "squares", "ticks")
-
-    def __init__(self, lesson: str, dimensions: int) -> None:
-        self.lesson = lesson
-        self.count = 0
-        self.ticks = 0.0
-        self.mean = np.zeros(dimensions)
-        self.squares = np.zeros(dimensions)
-
-    def recall(self, saved: Expectation) -> None:
-        self.count, self.ticks = saved.count, saved.ticks
-        self.mean[:] = saved.mean
-        self.squares[:] = saved.squares
-
-    def take_in(self, deviation: NDArray[np.float64], situation: NDArray[np.float64], ticks: int) -> None:
-        """Welford's way to mean and spread: exact enough however long it goes on, without a list."""
-        self._count(ticks)
-        self.mean += deviation / self.count
-        self.squares += deviation * (situation - self.mean)
-
-    def take_in_symbols(self, differs: NDArray[np.float64], situation: NDArray[np.float64], ticks: int) -> None:
-        """The majority's symbols (Boyer and Moore): one that came less often than all others together gives way."""
-        outvoted = np.flatnonzero((differs > 0) & (2 * self.squares >= self.count))
-        self._count(ticks)
-        self.squares += differs
-        self.squares[outvoted] -= 1.0
-        self.mean[outvoted] = situation[outvoted]
-
-    def _count(self, ticks: int) -> None:
-        self.count += 1
-        self.ticks += (ticks - self.ticks) / self.count
-
-
 class End(NamedTuple):
     """An RLA has ended, and another one took over."""
 
@@ -70,7 +34,10 @@ class End(NamedTuple):
 
 
 class Expectations:
-    """Learns what follows each RLA of one level, and says how surprising it is. A robot that stands learns nothing."""
+    """Learns what follows each RLA of one level, and says how surprising it is. A robot that stands learns nothing.
+
+    An expectation is never changed but replaced, so what is saved is what is held: it is in memory once.
+    """
 
     def __init__(
         self,
@@ -94,19 +61,15 @@ class Expectations:
         weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self._squared_weights = weights * weights
         self._least_usual = max(self._settings.least_usual_share * space.radius, 1e-9)
-        self._learned: dict[int, _Learned] = {}
-        self._saved: dict[int, Expectation] = {}
-        self._changed: set[int] = set()
-        for rla_id, expectation in (saved or {}).items():
-            if is_of(system, rla_id, expectation, level):
-                self._learned[rla_id] = _Learned(expectation.lesson, self._dimensions)
-                self._learned[rla_id].recall(expectation)
-                self._saved[rla_id] = expectation
+        self._learned = {
+            rla_id: expectation
+            for rla_id, expectation in (saved or {}).items()
+            if is_of(system, rla_id, expectation, level)
+        }
 
     def of(self, rla_id: int) -> Expectation | None:
         """What is expected of an RLA now; None for one that was never seen to end."""
-        learned = self._learned.get(rla_id)
-        return None if learned is None else _kept(learned)
+        return self._learned.get(rla_id)
 
     def learn(self, end: End) -> Surprise | None:
         """Take in one end of an RLA; None where too few were seen before to be surprised."""
@@ -114,19 +77,15 @@ class Expectations:
         rla = self._system.get(rla_id)
         if rla is None:
             return None
-        learned = self._learned.get(rla_id)
-        if learned is None:
-            learned = self._learned[rla_id] = _Learned(rla.origin.command_id, self._dimensions)
-            learned.mean[:] = situation
-        self._changed.add(rla_id)
+        before = self._learned.get(rla_id) or _nothing_yet(rla.origin.command_id, situation)
         if self._symbols:
-            deviation = (situation != learned.mean).astype(np.float64)
-            surprise = self._surprise(learned, end, deviation)
-            learned.take_in_symbols(deviation, situation, end.ticks)
+            deviation = (situation != before.mean).astype(np.float64)
+            surprise = self._surprise(before, end, deviation)
+            self._learned[rla_id] = _with_symbols(before, deviation, end)
         else:
-            deviation = situation - learned.mean
-            surprise = self._surprise(learned, end, deviation)
-            learned.take_in(deviation, situation, end.ticks)
+            deviation = situation - before.mean
+            surprise = self._surprise(before, end, deviation)
+            self._learned[rla_id] = _with(before, deviation, end)
         return surprise
 
     def hear(self, event: TeachingEvent) -> int | None:
@@ -141,12 +100,9 @@ class Expectations:
 
     def to_save(self) -> dict[int, Expectation]:
         """All of them as they are now: what has not changed since the last call is the same object."""
-        for rla_id in self._changed:
-            self._saved[rla_id] = _kept(self._learned[rla_id])
-        self._changed.clear()
-        return dict(self._saved)
+        return dict(self._learned)
 
-    def _surprise(self, learned: _Learned, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
+    def _surprise(self, learned: Expectation, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
         count = learned.count
         if count < self._settings.least:
             return None
@@ -164,8 +120,6 @@ class Expectations:
         if rla_id is None:
             return None
         self._learned.pop(rla_id, None)
-        self._saved.pop(rla_id, None)
-        self._changed.discard(rla_id)
         return rla_id
 
 
@@ -190,5 +144,26 @@ def is_of(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) 
     return rla is not None and rla.level == level and rla.origin.command_id == expectation.lesson
 
 
-def _kept(learned: _Learned) -> Expectation:
-    return Expectation(learned.lesson, learned.count, learned.ticks, pack(learned.mean), pack(learned.squares))
+def _nothing_yet(lesson: str, situation: NDArray[np.float64]) -> Expectation:
+    """Before its first end, which is in this situation."""
+    return Expectation(lesson, 0, 0.0, pack(situation), bytes(8 * len(situation)))
+
+
+def _with(before: Expectation, deviation: NDArray[np.float64], end: End) -> Expectation:
+    """Welford's way to mean and spread: exact enough however long it goes on, without a list."""
+    mean = before.mean + deviation / (before.count + 1)
+    return _seen_again(before, mean, before.squares + deviation * (end.situation - mean), end.ticks)
+
+
+def _with_symbols(before: Expectation, differs: NDArray[np.float64], end: End) -> Expectation:
+    """The majority's symbols (Boyer and Moore): one that came less often than all others together gives way."""
+    outvoted = (differs > 0) & (2 * before.squares >= before.count)
+    mean = np.where(outvoted, end.situation, before.mean)
+    return _seen_again(before, mean, before.squares + differs - outvoted, end.ticks)
+
+
+def _seen_again(
+    before: Expectation, mean: NDArray[np.float64], squares: NDArray[np.float64], ticks: int
+) -> Expectation:
+    count = before.count + 1
+    return Expectation(before.lesson, count, before.ticks + (ticks - before.ticks) / count, pack(mean), pack(squares))
