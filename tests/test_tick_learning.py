@@ -6,17 +6,8 @@ import pytest
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import (
-    CRITIC,
-    ActionWithdrawn,
-    Appraised,
-    Credit,
-    Origin,
-    Phase,
-    RlaCreated,
-    RlaRewarded,
-    TeachingEvent,
-)
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.rla import CRITIC, ActionWithdrawn, Appraised, Origin, Phase, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo

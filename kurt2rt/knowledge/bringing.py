@@ -7,10 +7,10 @@ from kurt2rt.knowledge.changing import new_origin
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.kinship import NO_PILE, Mark, PileMark, Taught, mark_of, named
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import (
     Appraised,
-    Credit,
     Lesson,
     LessonRedone,
     LessonUndone,

@@ -6,12 +6,12 @@ import sys
 from typing import Any
 
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import (
     BASIC,
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    Credit,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,

@@ -15,7 +15,7 @@ from kurt2rt.reinforcement.accounts import Accounts
 from kurt2rt.reinforcement.rule import Booking
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.reinforcement.trace import Trace
-from kurt2rt.rla.rla import Credit
+from kurt2rt.rla.credit import Credit
 
 FIRST_WEIGHT = 100.0
 _LEAST_WEIGHT, _MOST_WEIGHT = 10.0, 1000.0

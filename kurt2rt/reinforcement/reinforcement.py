@@ -17,10 +17,10 @@ from kurt2rt.reinforcement.rule import Booking, ReinforcementRule
 from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.td_lambda import TdLambda
 from kurt2rt.reinforcement.trace import Trace, trace_of
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import (
     CRITIC,
     ActionReplaced,
-    Credit,
     Lesson,
     LessonRedone,
     LessonUndone,

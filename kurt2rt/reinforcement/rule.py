@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.reinforcement.trace import Trace
-from kurt2rt.rla.rla import Credit
+from kurt2rt.rla.credit import Credit
 
 
 class Booking(NamedTuple):

@@ -15,7 +15,7 @@ from kurt2rt.reinforcement.accounts import Accounts
 from kurt2rt.reinforcement.rule import Booking
 from kurt2rt.reinforcement.settings import ReinforcementSettings, WorthSettings
 from kurt2rt.reinforcement.trace import LEAST_SHARE, Trace
-from kurt2rt.rla.rla import Credit
+from kurt2rt.rla.credit import Credit
 from kurt2rt.steady import power, steady
 
 

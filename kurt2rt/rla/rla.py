@@ -1,10 +1,12 @@
 """One rule-like association, and the teaching acts that make, change and end it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import NamedTuple
 
 from kurt2rt.rla.condition import Condition, packed
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.credit import packed as packed_credits
 
 ASK = "ask"
 """Instead of an action: the RLA's was withdrawn, so where it is nearest the robot asks. No repertoire has this name."""
@@ -119,16 +121,6 @@ class RlaDeleted:
     origin: Origin
 
 
-class Credit(NamedTuple):
-    """An RLA's share in a reward."""
-
-    rla_id: int
-    change: float
-    """What its value was changed by; with `before` what that of the edge was."""
-    before: int | None = None
-    """The RLA before it, where it was an edge of the network whose weight was changed."""
-
-
 @dataclass(frozen=True, slots=True)
 class RlaRewarded:
     """The teacher, or the critic in his place, praised or blamed what an RLA decided (phase 3)."""
@@ -140,10 +132,13 @@ class RlaRewarded:
     decided_at_tick: int
     """Tick of the decision that was meant."""
     origin: Origin
-    credits: tuple[Credit, ...] = ()
+    credits: Sequence[Credit] = ()
     """What the values of RLAs were changed by, its own and those that had driven before it; undo takes it off."""
     said: int | None = None
     """What the critic thought of that tick before it was told: -1, 0 or +1; None: nothing."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "credits", packed_credits(self.credits))
 
 
 @dataclass(frozen=True, slots=True)

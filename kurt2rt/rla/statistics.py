@@ -18,7 +18,7 @@ class StatisticsCounter:
         self.uses = Counter(uses)
         self.transitions = Counter(transitions)
         self._followers: dict[int, tuple[int, ...]] = {}
-        """Of each RLA that was ever followed: to look at one must not cost looking at all. Sets take four times as much."""
+        """Of each RLA that was ever followed: to look at one must not cost looking at all. Sets take much more room."""
         for before, after in self.transitions:
             self._follows(before, after)
         self._previous: dict[str, int | None] = {}

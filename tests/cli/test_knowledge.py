@@ -11,7 +11,8 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Credit, Origin, Phase, RlaRewarded, SessionBegun
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Origin, Phase, RlaRewarded, SessionBegun
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.cli.helpers import CommandLine
 

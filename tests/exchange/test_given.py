@@ -24,7 +24,8 @@ from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import Credit, RlaCreated, RlaRewarded
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.rla import RlaCreated, RlaRewarded
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.knowledge.lessons import STAMP, created, deleted, origin, replaced, undone
 from tests.knowledge.test_writer import largest_file

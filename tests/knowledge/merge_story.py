@@ -17,12 +17,12 @@ from kurt2rt.knowledge.kinship import Taught
 from kurt2rt.knowledge.merging import Merge, Merging, Side
 from kurt2rt.knowledge.nearness import Borders
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.lesson_book import pile_of
 from kurt2rt.rla.rla import (
     BASIC,
     ActionReplaced,
     ActionWithdrawn,
-    Credit,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,

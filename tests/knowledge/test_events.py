@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import (
     CRITIC,
     MID,
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    Credit,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,

@@ -21,16 +21,8 @@ from kurt2rt.knowledge.kinship import read_taught
 from kurt2rt.knowledge.merging import Merge, Side, merge
 from kurt2rt.knowledge.nearness import Borders
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import (
-    BASIC,
-    Credit,
-    KnowledgeMerged,
-    LessonRedone,
-    RlaCreated,
-    RlaRewarded,
-    SituationNamed,
-    TeachingEvent,
-)
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.rla import BASIC, KnowledgeMerged, LessonRedone, RlaCreated, RlaRewarded, SituationNamed, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
 from kurt2rt.rla.space import Space
 from tests.examples import examples

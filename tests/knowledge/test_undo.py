@@ -13,8 +13,9 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
 from kurt2rt.reinforcement.settings import ReinforcementSettings
+from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import CRITIC, Credit, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.rla.rla import CRITIC, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.teaching.commands import Undo
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
 from tests.reinforcement.helpers import SIGNALS_ONLY, Track

@@ -22,7 +22,8 @@ from kurt2rt.recording.entries import (
 )
 from kurt2rt.recording.entry_code import decode_tick, encode_tick
 from kurt2rt.recording.error import RecordingError
-from kurt2rt.rla.rla import Credit, LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.rla.credit import Credit
+from kurt2rt.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.teaching.commands import Command, CommandResult, Seek, SetPhase
 from kurt2rt.teaching.happenings import Happening
 

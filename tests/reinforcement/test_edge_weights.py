@@ -7,7 +7,7 @@ from kurt2rt.reinforcement.edge_weights import EdgeWeights
 from kurt2rt.reinforcement.rule import Booking
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.reinforcement.trace import Trace
-from kurt2rt.rla.rla import Credit
+from kurt2rt.rla.credit import Credit
 
 LAST = Trace({}, ((3, 4), (2, 3), (1, 2)))
 

@@ -9,7 +9,7 @@ from kurt2rt.reinforcement.rule import Booking
 from kurt2rt.reinforcement.settings import ReinforcementSettings, TaughtWorths
 from kurt2rt.reinforcement.td_lambda import TdLambda
 from kurt2rt.reinforcement.trace import Trace
-from kurt2rt.rla.rla import Credit
+from kurt2rt.rla.credit import Credit
 
 ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
 D = math.exp(-0.01 / TRACE_S)
