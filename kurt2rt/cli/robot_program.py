@@ -28,6 +28,7 @@ from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.memory import give_back_large_pieces
 from kurt2rt.recording.can_log import CanLog, open_can_log
 from kurt2rt.recording.recording import Recording
 from kurt2rt.recording.run_files import budget_of
@@ -113,6 +114,7 @@ class RobotProgram:
     def run(self) -> None:
         """Run until somebody ends it. Raises what `kurt2rt.service.serve` and `kurt2rt.app.open_robot` do."""
         service, orders = self._service, self._orders
+        give_back_large_pieces()
         end = "" if orders.as_service else "; Ctrl-C ends"
         self._tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
         with self._around as around:

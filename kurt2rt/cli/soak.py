@@ -14,6 +14,7 @@ from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
 from kurt2rt.faults.table import load_faults
+from kurt2rt.memory import give_back_large_pieces
 from kurt2rt.recording.recording import Recording
 from kurt2rt.recording.run_files import budget_of
 from kurt2rt.service_settings import load_service
@@ -69,6 +70,7 @@ def soak(
     from kurt2rt.soak.report import as_json, print_report
     from simbridge.faults.lasting_place import LastingPlace
 
+    give_back_large_pieces()  # as the robot's program does
     settings = load_soak(day)
     table, task = load_faults(settings.faults), load_task(settings.task)
     robot = load_robot(table.robot)
