@@ -74,8 +74,11 @@ class RlaSystem:
         self._appraisals = Appraisals()
         self._names = NamedSituations()
         self._book = LessonBook()
-        self._before: dict[str, Rla] = {}
-        """The RLA as it was before a lesson that stands, which changed its action or deleted it, by command id."""
+        self._before: dict[str, str] = {}
+        """Of each lesson that stands and changed an action: that which had given the one before. By command ids, for an
+        RLA as it was would be kept of every correction."""
+        self._deleted: dict[str, Rla] = {}
+        """The RLA as it was before a lesson that stands and deleted it, by command id."""
 
     def __len__(self) -> int:
         return self._living.count_at(BASIC)
@@ -149,7 +152,8 @@ class RlaSystem:
 
     def comes_back(self, command_id: str) -> Rla | None:
         """The RLA as it will be when the lesson of that command is undone; None where no action comes back by that."""
-        return self._before.get(command_id)
+        before = self._before.get(command_id)
+        return self._deleted.get(command_id) if before is None else self._as_taught_by(before)
 
     def match(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, asking: bool = True
@@ -240,7 +244,7 @@ class RlaSystem:
                     raise UnfitEventError(f"{rla.title} asks already; its action cannot be withdrawn twice")
                 self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
-                self._before[origin.command_id] = self._living.leave(self._that_lives(rla_id))
+                self._deleted[origin.command_id] = self._living.leave(self._that_lives(rla_id))
             case SituationNamed(name, situation, level):
                 self._require_situation(name, situation, level)
                 self._names.enter(lesson)
@@ -257,9 +261,9 @@ class RlaSystem:
                 self._living.leave(self._that_lives(rla.rla_id))
             case ActionReplaced(rla_id, origin=origin) | ActionWithdrawn(rla_id, origin=origin):
                 self._that_lives(rla_id)
-                self._living.put(self._before.pop(origin.command_id))
+                self._living.put(self._as_taught_by(self._before.pop(origin.command_id)))
             case RlaDeleted(_, origin):
-                self._living.enter(self._before.pop(origin.command_id))
+                self._living.enter(self._deleted.pop(origin.command_id))
             case RlaRewarded(rla_id, value):
                 self._appraisals.leave(rla_id, value)
             case SituationNamed():
@@ -277,7 +281,25 @@ class RlaSystem:
 
     def _change(self, old: Rla, action: str, origin: Origin) -> None:
         self._living.put(replace(old, action=action, origin=origin))
-        self._before[origin.command_id] = old
+        self._before[origin.command_id] = old.origin.command_id
+
+    def _as_taught_by(self, command_id: str) -> Rla:
+        """The RLA as the lesson of that command, which gave it an action or took it away, left it."""
+        record = self._book.get(command_id)
+        assert record is not None
+        match record.event:
+            case RlaCreated(rla):
+                return rla
+            case ActionReplaced(rla_id, action, _, origin):
+                return replace(self._as_created(rla_id), action=action, origin=origin)
+            case ActionWithdrawn(rla_id, _, origin):
+                return replace(self._as_created(rla_id), action=ASK, origin=origin)
+        raise AssertionError(f"{command_id!r} gave no action")
+
+    def _as_created(self, rla_id: int) -> Rla:
+        first = self._book.about(rla_id)[0].event
+        assert isinstance(first, RlaCreated)
+        return first.rla
 
     def _that_lives(self, rla_id: int) -> Rla:
         rla = self._living.get(rla_id)
