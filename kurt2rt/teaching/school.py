@@ -1,5 +1,6 @@
 """Carries out the teacher's commands, in the tick that takes them."""
 
+from collections import deque
 from collections.abc import Iterable
 
 from kurt2rt.critic.agreement import Agreement
@@ -45,6 +46,9 @@ from kurt2rt.teaching.tuition import Tuition, require_action
 
 DERIVED = "/"
 """In the ids of what comes of a signal; a teacher's id with it might be one that the robot gives later."""
+
+_COPIES_OF = 32
+"""Newest stops whose copies are known; a copy of an older one counts as a stop of its own, which only refuses more."""
 
 _Answer = tuple[CommandResult, TeachingEvent | None]
 
@@ -104,7 +108,7 @@ class School:
         self._stopped_by: set[str] = set()
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
-        self._stops_since_go: set[str] = set()
+        self._stops_since_go: deque[str] = deque(maxlen=_COPIES_OF)
         self._pursuing = Pursuing(self.wanted, mid)
         self._clock = TeachingClock()
 
@@ -280,7 +284,7 @@ class School:
             return "that press is over; a later one drives"
         # A copy brakes again, but nobody has said it anew: who says go has seen what it was a copy of.
         if command.command_id not in self._stops_since_go:
-            self._stops_since_go.add(command.command_id)
+            self._stops_since_go.append(command.command_id)
             self.stopped_at_tick = tick
         self.stop(
             _let_go(command.teacher) if command.hold is not None else f"{command.teacher} said stop", command.teacher
