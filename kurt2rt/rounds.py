@@ -1,6 +1,6 @@
 """What the service does after each tick, when the wheels have been told: watch, ask, acknowledge, save, tell."""
 
-from collections.abc import Callable, MutableMapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.channel.channel import Channel
@@ -53,7 +53,7 @@ class Rounds:
         self,
         runtime: Runtime,
         writer: JournalWriter,
-        stamps: MutableMapping[str, str],
+        stamps: dict[str, str],
         service: ServiceSettings,
         screen: Screen,
         teacher: Watcher | None,

@@ -1,7 +1,7 @@
 """The service: the runtime in real time, until somebody ends it."""
 
 import secrets
-from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -168,7 +168,7 @@ async def serve(
 async def _channel(
     runtime: Runtime,
     writer: JournalWriter,
-    stamps: Mapping[str, str],
+    stamps: dict[str, str],
     service: ServiceSettings,
     openness: Openness | None,
     boot: bytes,

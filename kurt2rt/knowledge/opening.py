@@ -13,7 +13,6 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.stamps import Stamps
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.mid.features import features as mid_features
 from kurt2rt.mid.settings import load_mid
@@ -41,9 +40,9 @@ class OpenedKnowledge:
         return [entry.event for entry in self.entries]
 
     @property
-    def stamps(self) -> Stamps:
+    def stamps(self) -> dict[str, str]:
         """When each command was written, UTC, ISO 8601, by command id."""
-        return Stamps((entry.event.origin.command_id, entry.stamped_at) for entry in self.entries)
+        return {entry.event.origin.command_id: entry.stamped_at for entry in self.entries}
 
 
 def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> Journal:
