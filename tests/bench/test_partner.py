@@ -7,7 +7,6 @@ import pytest
 
 from kurt2rt.bench.partner import PartnerLostError, partner
 
-DEVICE = "kurt2rt.bench.device"
 IDLER = "tests.bench.idler"
 ROOT = Path(__file__).parents[2]
 
@@ -29,14 +28,12 @@ async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> N
     assert_gone(idler.pid)
 
 
-async def test_a_partner_that_fails_is_missed_and_says_why_itself(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(PartnerLostError, match=r"kurt2rt\.bench\.device ended while it was asked to look"):
-        async with partner(DEVICE, str(tmp_path / "no-pairing"), "1") as device:
-            await device.ask("look")
-    assert_gone(device.pid)
-    assert "no-pairing" in capfd.readouterr().err
+async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(PartnerLostError, match=r"tests\.bench\.idler ended while it was asked to work"):
+        async with partner(IDLER) as idler:
+            await idler.ask("work")
+    assert_gone(idler.pid)
+    assert "KeyError: 'work'" in capfd.readouterr().err
 
 
 async def test_a_silent_partner_is_given_up_and_ended() -> None:

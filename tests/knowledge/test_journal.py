@@ -1,7 +1,5 @@
 import shutil
 import sqlite3
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -16,6 +14,7 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent
+from tests.cli.helpers import ROOT, started
 from tests.knowledge.lessons import (
     BINDING,
     STAMP,
@@ -263,40 +262,26 @@ def test_a_robot_that_begins_and_ends_while_somebody_looks_loses_nothing(path: P
         assert len(journal.events()) == 4
 
 
+def seen_by_nobody(path: Path) -> tuple[str, str]:
+    """What one who has no rights is told, and of what went wrong."""
+    with started("tests.knowledge.look_as_nobody", str(path), folder=ROOT) as look:
+        return look.communicate()
+
+
 def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
-    # Not tmp_path: its parents let nobody else in. Root may write anywhere, so root looks as nobody.
-    look = """
-import os, sys
-from pathlib import Path
-from kurt2rt.knowledge.journal import Journal
-os.getuid() or os.setuid(65534)
-print(len(Journal.read_only(Path(sys.argv[1])).events()))
-"""
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder:  # not tmp_path: its parents let nobody else in
         path = begun(Path(folder) / "knowledge.db")
         Path(folder).chmod(0o555)
-        found = subprocess.run([sys.executable, "-c", look, str(path)], capture_output=True, check=False)
+        assert seen_by_nobody(path) == ("3\n", "")
         Path(folder).chmod(0o755)
         assert set(contents(Path(folder))) == {path.name, f"{path.name}.lock"}
 
-    assert (found.stdout, found.stderr) == (b"3\n", b"")
-
 
 def test_a_look_at_a_file_that_may_not_be_written_in_a_folder_that_may() -> None:
-    look = """
-import os, sys
-from pathlib import Path
-from kurt2rt.knowledge.journal import Journal
-os.getuid() or os.setuid(65534)
-with Journal.read_only(Path(sys.argv[1])) as journal:
-    print(len(journal.events()))
-"""
     with TemporaryDirectory() as folder:
         path = begun(Path(folder) / "knowledge.db")
         Path(folder).chmod(0o777)
         path.chmod(0o444)
         before = contents(Path(folder))
-        found = subprocess.run([sys.executable, "-c", look, str(path)], capture_output=True, check=False)
+        assert seen_by_nobody(path) == ("3\n", "")
         assert contents(Path(folder)) == before
-
-    assert (found.stdout, found.stderr) == (b"3\n", b"")

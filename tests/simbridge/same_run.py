@@ -1,0 +1,23 @@
+"""A run to be compared: `python -m tests.simbridge.same_run` prints its hashes."""
+
+from simbridge.world_settings import load_world
+from tests.simbridge.rig import Rig
+
+SEED = 7
+
+
+def hashes(seed: int = SEED) -> list[str]:
+    """State once a second of a run through world B with curves, collisions and a moved robot."""
+    found = []
+    with Rig(load_world("b"), seed) as rig:
+        for second in range(8):
+            rig.drive(25 + 5 * second, 40 - 6 * second, 1.0)
+            if second == 5:
+                rig.robot.place(load_world("b").start_poses[3].pose)
+            found.append(rig.robot.state_hash())
+        assert rig.robot.collisions > 0
+    return found
+
+
+if __name__ == "__main__":
+    print(*hashes())
