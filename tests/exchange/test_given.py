@@ -104,7 +104,7 @@ def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Pa
         assert replace(found, path=exported) == unchanged  # a byte that means nothing: a file's date, for instance
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=300))
 def test_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
     (tmp_path / "nonsense.zip").write_bytes(nonsense)

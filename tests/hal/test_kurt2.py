@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import can
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.bus import BusError, CanBus
@@ -164,7 +164,6 @@ STRANGERS = st.one_of(
 )
 
 
-@settings(max_examples=40)
 @given(st.lists(JUNK, max_size=10), st.lists(STRANGERS, max_size=5))
 def test_junk_is_counted_and_changes_nothing(junk: list[can.Message], strangers: list[can.Message]) -> None:
     ends = bus_pair()

@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.judge import Circumstances
@@ -162,7 +162,6 @@ def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
         max_size=30,
     )
 )
-@settings(max_examples=50)
 def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[list[int], int, int, bool]]) -> None:
     one, other = perception(), perception()
     for seen, left, right, driving in ticks:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import ceil
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from hal.frame import Frame
@@ -99,7 +99,6 @@ def check_waits(streams: list[Stream], payloads: st.DataObject) -> None:
         assert longest_us[stream.frame_id] <= worst_response_us(stream, streams)
 
 
-@settings(max_examples=40, deadline=None)
 @given(schedulable(), st.data())
 def test_no_frame_waits_longer_than_the_analysis_allows(streams: list[Stream], payloads: st.DataObject) -> None:
     check_waits(streams, payloads)

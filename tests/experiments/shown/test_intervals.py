@@ -1,10 +1,11 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.experiments.shown.intervals import difference_of, fall_of, poisson_interval, rate_of
+from tests.examples import examples
 
 
 def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
@@ -48,7 +49,7 @@ def test_the_interval_is_the_same_every_time() -> None:
     assert rate_of([3, 0, 1], [0.5, 0.4, 0.5]) == rate_of([3, 0, 1], [0.5, 0.4, 0.5])
 
 
-@settings(max_examples=20)  # each draws 10 000 samples
+@examples(40)  # each draws 10 000 samples
 @given(st.lists(st.tuples(st.integers(0, 9), st.floats(0.1, 2.0)), min_size=1, max_size=20))
 def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) -> None:
     counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
@@ -57,7 +58,7 @@ def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) ->
     assert 0.0 <= rate.low <= rate.value <= rate.high
 
 
-@settings(max_examples=20)
+@examples(40)
 @given(st.lists(st.tuples(st.integers(0, 3), st.floats(0.1, 2.0)), min_size=2, max_size=20), st.data())
 def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int, float]], data: st.DataObject) -> None:
     counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
@@ -79,7 +80,7 @@ def test_changes_to_both_sides_leave_it_open() -> None:
     assert change.low < 0.0 < change.high
 
 
-@settings(max_examples=20)
+@examples(40)
 @given(st.lists(st.floats(-100, 100), min_size=2, max_size=20))
 def test_the_interval_of_a_change_turns_round_with_it(changes: list[float]) -> None:
     there, back = difference_of(changes), difference_of([-change for change in changes])
