@@ -23,7 +23,7 @@ from kurt2rt.perception.definition import SituationDefinition
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.world_settings import WorldSettings
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, started
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
 from tests.replay.stored_runs import STORED
 from tests.replay.stories import slim
@@ -203,11 +203,10 @@ def test_the_demo_runs_as_it_stands(tmp_path: Path) -> None:
 
 def test_examples_in_python_run(tmp_path: Path) -> None:
     for block in blocks("python"):
-        command = [sys.executable, "-c", block.text]
-        done = subprocess.run(
-            command, cwd=tmp_path, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, f"{where(block)}: {done.stderr}"
+        (tmp_path / "example.py").write_text(block.text, encoding="utf-8")
+        with started("example", folder=tmp_path) as example:
+            complaints = example.communicate()[1]
+        assert example.returncode == 0, f"{where(block)}: {complaints}"
 
 
 @pytest.fixture

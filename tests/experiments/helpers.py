@@ -7,6 +7,7 @@ import anyio
 
 from hal.robot_settings import load_robot
 from kurt2rt.experiments.curriculum import run_lesson
+from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import TeachingEvent
@@ -65,3 +66,17 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
 
     result, events = anyio.run(lesson)
     return Taught(task, knowledge, result, events, saved, reported_s)
+
+
+def teachers_drive(task: TaskSettings) -> ExamResult:
+    """How the teacher himself drives the exam in its first world."""
+    world = task.exam.worlds[0]
+    arena = STAGE.open(world, 1, "exam")
+
+    async def drive() -> ExamResult:
+        return await examine(arena, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
+
+    try:
+        return anyio.run(drive)
+    finally:
+        arena.close()

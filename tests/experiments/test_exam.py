@@ -16,7 +16,7 @@ from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from simbridge.world_settings import load_world
-from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teachers_drive
 from tests.experiments.results import exam_result
 
 
@@ -63,20 +63,20 @@ def test_going_round_on_the_spot_is_stuck_too() -> None:
 
 
 def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
-    teacher = exam_of([], short_task(exam_s=25.0, stuck_after_s=15.0)).teacher
-    assert teacher.progress > 0.2
-    assert 4.0 < teacher.way_m < 0.32 * 25.0  # on the spot at corners
+    teacher = teachers_drive(short_task(exam_s=14.0, stuck_after_s=10.0))
+    assert teacher.progress > 0.1
+    assert 2.0 < teacher.way_m < 0.32 * 14.0  # on the spot at corners
     assert 0.0 < teacher.findings["distance error, m"] < 0.1
     assert teacher.collisions == 0
     assert not teacher.stuck
-    assert teacher.duration_s == 25.0
+    assert teacher.duration_s == 14.0
     assert teacher.share_unknown == 0.0
 
 
 def examined_from(start: str, seed: int = 1) -> WorldResult:
     """An exam beside the post, of a robot that knows nothing and stays where it is set down."""
     task = load_task("circle")
-    exam = task.exam.model_copy(update={"duration_s": 1.0, "start": start})
+    exam = task.exam.model_copy(update={"duration_s": 0.2, "start": start})
     return exam_of([], task.model_copy(update={"exam": exam}), seed)
 
 

@@ -9,10 +9,9 @@ from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.tasks.settings import TaskSettings, load_task
-from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.helpers import ROBOT, STAGE, teachers_drive
 
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
 UNITS = {
@@ -29,19 +28,6 @@ def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, ex
     teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
     exam = task.exam.model_copy(update={"duration_s": exam_s})
     return task.model_copy(update={"teaching": teaching, "exam": exam})
-
-
-def teachers_drive(task: TaskSettings) -> ExamResult:
-    world = task.exam.worlds[0]
-    arena = STAGE.open(world, 1, "exam")
-
-    async def drive() -> ExamResult:
-        return await examine(arena, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
-
-    try:
-        return anyio.run(drive)
-    finally:
-        arena.close()
 
 
 def lesson(task: TaskSettings, folder: Path) -> LessonResult:

@@ -41,6 +41,7 @@ def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(tmp_path: Path, monkeypat
         seen(*words)  # type: ignore[arg-type]
 
     monkeypatch.setattr(Day, "_see", interrupted)
+    monkeypatch.setattr("kurt2rt.soak.picture.draw_soak", lambda *_: None)  # the soak above is drawn
     result = CliRunner(env={"COLUMNS": "120"}).invoke(app, ["--hours", "24", "--out", str(tmp_path)])
     assert result.exception is None, result.output
     assert 100 <= json.loads((tmp_path / "soak.json").read_text())["ticks"] < 3000
