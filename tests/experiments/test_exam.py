@@ -34,9 +34,9 @@ def knows_only(action: str) -> RlaCreated:
 
 
 def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
-    learned = exam_of([], short_task(exam_s=20.0, stuck_after_s=3.0)).learned
+    learned = exam_of([], short_task(exam_s=20.0, stuck_after_s=1.5)).learned
     assert learned.stuck
-    assert learned.duration_s == pytest.approx(3.01)
+    assert learned.duration_s == pytest.approx(1.51)
     assert learned.share_unknown == 1.0
     assert learned.unknown_positions == learned.trail[:1]
     assert len(set(learned.trail)) == 1
@@ -46,18 +46,18 @@ def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
 
 def test_the_junction_that_a_stuck_robot_was_asked_for_counts_as_wrong() -> None:
     task = load_task("streets")
-    exam = task.exam.model_copy(update={"duration_s": 4.0, "stuck_after_s": 3.0})
+    exam = task.exam.model_copy(update={"duration_s": 2.0, "stuck_after_s": 1.5})
     learned = exam_of([], task.model_copy(update={"exam": exam})).learned
     assert learned.stuck
     assert (learned.findings["junctions"], learned.findings["junctions right"]) == (1.0, 0.0)
-    in_time = exam_of([], task.model_copy(update={"exam": exam.model_copy(update={"duration_s": 2.0})})).learned
+    in_time = exam_of([], task.model_copy(update={"exam": exam.model_copy(update={"duration_s": 1.0})})).learned
     assert (in_time.stuck, in_time.findings["junctions"]) == (False, 0.0)
 
 
 def test_going_round_on_the_spot_is_stuck_too() -> None:
-    learned = exam_of([knows_only("spin_left")], short_task(exam_s=20.0, stuck_after_s=3.0)).learned
+    learned = exam_of([knows_only("spin_left")], short_task(exam_s=20.0, stuck_after_s=1.5)).learned
     assert learned.stuck
-    assert learned.duration_s == pytest.approx(3.01)
+    assert learned.duration_s == pytest.approx(1.51)
     assert learned.share_unknown == 0.0
     assert learned.unknown_positions == ()
 

@@ -34,7 +34,7 @@ def go_on(
     return result, events[len(taught.events) :]
 
 
-def of_phase(phase: Phase, lasts_s: float = 12.0, **more: object) -> LessonPlan:
+def of_phase(phase: Phase, lasts_s: float = 6.0, **more: object) -> LessonPlan:
     return LessonPlan(((phase, lasts_s),), purpose="another lesson", **more)  # type: ignore[arg-type]
 
 
@@ -45,7 +45,7 @@ def test_the_plan_of_a_task_is_its_own_lesson() -> None:
 
 
 def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taught, tmp_path: Path) -> None:
-    result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, 8.0, signs="judge"))
+    result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
     rewards = [event for event in events if isinstance(event, RlaRewarded)]
     assert len(rewards) == result.praise + result.blame - result.refused_signals > 0
     assert {event.origin.phase for event in rewards} == {Phase.REINFORCEMENT}
@@ -57,7 +57,7 @@ def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taug
 
 def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Taught, tmp_path: Path) -> None:
     times = SignalTimes(good_every_s=1.0)
-    plan = of_phase(Phase.CRITIC, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
+    plan = of_phase(Phase.CRITIC, 12.0, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
     result, events = go_on(taught, tmp_path, plan)
     assert result.repositions == 3
     assert [(minute.set_down, minute.shown) for minute in result.load] == [(3, 3)]
@@ -70,7 +70,7 @@ def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Tau
 
 def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_elsewhere(tmp_path: Path) -> None:
     task = short_task()
-    task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 3.0})})
+    task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 1.5})})
 
     async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
         plan = of_phase(Phase.AUTONOMOUS)
@@ -84,16 +84,16 @@ def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_el
 
 def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp_path: Path) -> None:
     blind = taught.task.model_copy(update={"judge": None})
-    plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=4)
+    plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=3)
     result, _ = go_on(taught, tmp_path, plan, blind)
-    assert result.blame == 4
+    assert result.blame == 3
     assert result.praise == 0
     with pytest.raises(SettingsError, match="there is no judge, so nobody can praise or blame; add `judge:`"):
         go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)
 
 
 def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path: Path) -> None:
-    plan = of_phase(Phase.REINFORCEMENT, 8.0, signs="judge", reposition_every_s=3.0)
+    plan = of_phase(Phase.REINFORCEMENT, signs="judge", reposition_every_s=2.5)
     folders = [tmp_path / name for name in ("one", "two")]
     for folder in folders:
         folder.mkdir()
@@ -121,7 +121,7 @@ def rival(action: str) -> RlaCreated:
 def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
     alone: Statistics | None, drives: bool
 ) -> None:
-    task = short_task(exam_s=3.0, radius=1e5)
+    task = short_task(exam_s=2.0, radius=1e5)
 
     async def drive() -> float:
         arena = STAGE.open("a", 1, "exam")
@@ -141,13 +141,13 @@ def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
 
 def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
     assert taught.result.alone is None
-    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 6.0))
+    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
     assert result.alone == Statistics()  # nobody was trusted
 
 
 @pytest.mark.parametrize("stuck_ends", [True, False])
 def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool) -> None:
-    task = short_task(exam_s=10.0, stuck_after_s=3.0, radius=1e5)
+    task = short_task(exam_s=5.0, stuck_after_s=1.5, radius=1e5)
 
     async def drive() -> tuple[bool, int, float]:
         arena = STAGE.open("a", 1, "exam")
@@ -168,4 +168,4 @@ def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool
 
     stuck, rescues, duration_s = anyio.run(drive)
     assert stuck
-    assert (rescues, round(duration_s)) == ((0, 3) if stuck_ends else (3, 10))
+    assert (rescues, round(duration_s, 1)) == ((0, 1.5) if stuck_ends else (3, 5.0))

@@ -45,14 +45,14 @@ def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itsel
     assert found.ticks == round(seconds * 100)
 
 
-@of_every_story("walls", 24.0)
+@of_every_story("walls", 16.0)
 def test_who_knows_nothing_would_have_asked_wherever_it_drove(
     name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
     run = stored(name, seconds)
     whole = Shadow(run, lessons[name])
     found = counterfactual(run, Shadow(run, ()), whole)
-    assert found.would_ask > 1000
+    assert found.would_ask > 500
     assert (found.other_action, found.would_drive) == (0, 0)
     stretch = next(each for each in found.stretches if each.level == BASIC)
     assert stretch.would_be == (None, None, math.inf, 0.0)
@@ -68,9 +68,9 @@ def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, li
 
 
 def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("walls", 24)
+    run = stored("walls", 16)
     stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
-    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 2400 - stood
+    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 1600 - stood
 
 
 def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
