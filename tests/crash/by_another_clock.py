@@ -21,7 +21,7 @@ class _WallClock:
 
 
 def set_clocks_by(file: Path) -> None:
-    """From now on whatever looks at the wall clock is told the wrong time. Before anything else is imported."""
+    """From now on whatever looks at the wall clock is told the wrong time, also what was imported before."""
     wall_clock = _WallClock(file)
     right_s: Callable[[], float] = time.time
     right_ns: Callable[[], int] = time.time_ns
@@ -31,9 +31,16 @@ def set_clocks_by(file: Path) -> None:
         def now(cls, tz: datetime.tzinfo | None = None) -> Self:
             return super().now(tz) + datetime.timedelta(seconds=wall_clock.off_by_s)
 
-    datetime.datetime = WrongDatetime  # type: ignore[misc]
-    time.time = lambda: right_s() + wall_clock.off_by_s
-    time.time_ns = lambda: right_ns() + wall_clock.off_by_s * 1_000_000_000
+    swaps: tuple[tuple[object, object], ...] = (
+        (datetime.datetime, WrongDatetime),
+        (right_s, lambda: right_s() + wall_clock.off_by_s),
+        (right_ns, lambda: right_ns() + wall_clock.off_by_s * 1_000_000_000),
+    )
+    for module in list(sys.modules.values()):
+        for name, value in list(vars(module).items()):
+            for right, wrong in swaps:
+                if value is right:
+                    setattr(module, name, wrong)
 
 
 if __name__ == "__main__":

@@ -1,16 +1,12 @@
 """The wall clock of a program that is set forward and back while it runs."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from tests.cli.helpers import Running
+from tests.cli.helpers import Running, started
 
 HOUR_S = 3600
-_ROOT = Path(__file__).parents[2]
 
 
 class WallClock:
@@ -31,15 +27,7 @@ class WallClock:
     @contextmanager
     def running(self, *words: str, folder: Path) -> Iterator[Running]:
         """Start `kurt2rt ...` in a folder, by this clock; what is left of it at the end is killed."""
-        with subprocess.Popen(
-            [sys.executable, "-m", "tests.crash.by_another_clock", str(self._file), *words],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            cwd=folder,
-            env={**os.environ, "PYTHONUNBUFFERED": "1", "PYTHONPATH": str(_ROOT)},
-        ) as process:
+        with started("tests.crash.by_another_clock", str(self._file), *words, folder=folder) as process:
             try:
                 yield Running(process)
             finally:
