@@ -6,6 +6,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from xdist.remote import Producer
+from xdist.scheduler.loadfile import LoadFileScheduling
 
 from tests.examples import register_profiles
 from tests.forked_program import nursery
@@ -24,6 +26,21 @@ def pytest_configure(config: pytest.Config) -> None:
         around = ExitStack()
         around.enter_context(nursery())
         config.add_cleanup(around.close)
+
+
+class OneBrowser(LoadFileScheduling):  # type: ignore[misc]
+    """Whole files to a worker, and to one of them all files of the page: so only one starts a browser, and once."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = str(super()._split_scope(nodeid))
+        folder = Path(file).parent
+        return str(folder) if folder.name == _BROWSERS else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> OneBrowser | None:
+    """Where whole files are dealt out; else as xdist does it."""
+    return OneBrowser(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -51,6 +68,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What was collected stays to the end: nobody need look for garbage among it again and again."""
-    gc.collect()
+    """What was collected stays to the end: nobody need look for garbage among it again and again.
+
+    What little of it is garbage stays, too: to find it takes each worker half a second, for some 10 MB.
+    """
     gc.freeze()
