@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.cli.helpers import started
+
 CALLS = (
     "openat",
     "newfstatat",
@@ -83,8 +85,9 @@ def run_failing(module: str, knowledge: Path, log: Path, failing: FailingCall) -
 
 def run_sound(module: str, knowledge: Path) -> Ended:
     """Run it as it is."""
-    done = subprocess.run([sys.executable, "-m", module, str(knowledge)], capture_output=True, text=True, check=False)
-    return Ended(done.returncode, done.stdout, done.stderr)
+    with started(module, str(knowledge), folder=knowledge.parent) as program:
+        out, err = program.communicate()
+        return Ended(program.wait(), out, err)
 
 
 def _run(module: str, knowledge: Path, log: Path, options: list[str]) -> Ended:
