@@ -1,6 +1,8 @@
 """What all tests share: property tests that draw the same examples every time, on any machine."""
 
 import gc
+import os
+import tempfile
 from collections.abc import Generator
 from contextlib import ExitStack
 from pathlib import Path
@@ -14,6 +16,7 @@ from tests.forked_program import nursery
 
 register_profiles()
 
+_MEMORY = Path("/dev/shm")
 _BROWSERS = "page"
 _WAIT = {"cli", "service", "channel", "teaching", "commission", "crash"}
 """Folders whose stories wait much: programs, real time."""
@@ -21,8 +24,14 @@ _WAITS_END_AT = 0.85
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """One nursery for all workers of a session; on the kernel's own CAN programs start as they start on a robot."""
+    """One nursery for all workers of a session, and files in memory where there is one, which syncs at once.
+
+    On the kernel's own CAN programs start as they start on a robot, and write to a disk.
+    """
     if not hasattr(config, "workerinput") and not config.option.markexpr.startswith(("hil", "boots")):
+        if _MEMORY.is_dir():
+            os.environ.setdefault("TMPDIR", str(_MEMORY))
+            tempfile.tempdir = None  # it looks again
         around = ExitStack()
         around.enter_context(nursery())
         config.add_cleanup(around.close)

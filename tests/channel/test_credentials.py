@@ -2,8 +2,7 @@ import json
 import os
 import secrets
 import stat
-import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
@@ -23,17 +22,6 @@ def teachers(tmp_path: Path) -> Path:
 @pytest.fixture
 def devices(tmp_path: Path) -> Path:
     return tmp_path / "var" / "devices"
-
-
-@pytest.fixture
-def in_memory(tmp_path: Path) -> Iterator[Path]:
-    """A folder in memory where there is one, which syncs at once: for what writes over and over."""
-    memory = Path("/dev/shm")
-    if not memory.is_dir():
-        yield tmp_path
-        return
-    with tempfile.TemporaryDirectory(dir=memory, prefix="kurt2rt-test-") as name:
-        yield Path(name)
 
 
 def understood(teacher: Path, device: Path) -> bool:
@@ -209,11 +197,9 @@ def change_until_killed(teachers: Path, devices: Path, steps: int, patch: pytest
     return False
 
 
-def test_killed_at_any_step_a_pairing_is_whole_or_not_accepted(
-    in_memory: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_killed_at_any_step_a_pairing_is_whole_or_not_accepted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for steps in count():
-        teachers, devices = in_memory / f"{steps}" / "teachers", in_memory / f"{steps}" / "devices"
+        teachers, devices = tmp_path / f"{steps}" / "teachers", tmp_path / f"{steps}" / "devices"
         pair(teachers, devices, "tablet")
         killed = change_until_killed(teachers, devices, steps, monkeypatch)
         for each in paired(teachers):

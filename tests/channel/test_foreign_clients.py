@@ -88,6 +88,7 @@ async def _aiocoap_client(at_work: RobotAtWork, pairing: Pairing) -> AsyncIterat
         yield client
     finally:
         await client.shutdown()
+        keys._destroy()  # else it writes when it is collected, to a folder that has gone
 
 
 async def test_the_oscore_client_of_aiocoap_looks_observes_and_commands(tmp_path: Path) -> None:

@@ -75,13 +75,13 @@ def look_at_all(path: Path, every: int) -> Counter[str]:
     return outcomes
 
 
-def test_damage_is_told_or_does_not_matter(folder: Path) -> None:
-    outcomes = look_at_all(folder / "knowledge", every=41)
+def test_damage_is_told_or_does_not_matter(tmp_path: Path) -> None:
+    outcomes = look_at_all(tmp_path / "knowledge", every=41)
     assert outcomes["refused"] > outcomes["all there"] > 0
 
 
 @pytest.mark.deep
-def test_all_damage_is_told_or_does_not_matter(folder: Path) -> None:
-    outcomes = look_at_all(folder / "knowledge", every=1)
+def test_all_damage_is_told_or_does_not_matter(tmp_path: Path) -> None:
+    outcomes = look_at_all(tmp_path / "knowledge", every=1)
     print(dict(outcomes))
     assert outcomes["refused"] > outcomes["all there"] > 0

@@ -54,15 +54,15 @@ def teach_with(failing: FailingCall, folder: Path) -> str:
 
 
 @pytest.mark.parametrize("failing", SOME, ids=str)
-def test_a_system_call_that_fails_costs_no_lesson(folder: Path, failing: FailingCall) -> None:
-    teach_with(failing, folder / "taught")
+def test_a_system_call_that_fails_costs_no_lesson(tmp_path: Path, failing: FailingCall) -> None:
+    teach_with(failing, tmp_path / "taught")
 
 
 @pytest.mark.deep
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("error", ERRORS)
-def test_no_system_call_that_fails_costs_a_lesson(folder: Path, error: str) -> None:
-    made = calls_made(CHILD, folder / "knowledge", folder / "calls.log")
+def test_no_system_call_that_fails_costs_a_lesson(tmp_path: Path, error: str) -> None:
+    made = calls_made(CHILD, tmp_path / "knowledge", tmp_path / "calls.log")
     tried: Counter[str] = Counter()
     wrong: list[str] = []
     words: set[str] = set()
@@ -70,11 +70,11 @@ def test_no_system_call_that_fails_costs_a_lesson(folder: Path, error: str) -> N
         for number in range(1, count + 1, EVERY.get(name, 1)):
             tried[name] += 1
             try:
-                refused = teach_with(FailingCall(name, number, error), folder / f"{name}-{number}")
+                refused = teach_with(FailingCall(name, number, error), tmp_path / f"{name}-{number}")
             except AssertionError as problem:
                 wrong.append(f"{name} {number}: {problem}")
             else:
-                words.add(refused.replace(str(folder / f"{name}-{number}"), "FOLDER"))
+                words.add(refused.replace(str(tmp_path / f"{name}-{number}"), "FOLDER"))
     print(
         f"{error}: {made.total()} calls failed, each in turn: {dict(made)}; what was said of it:",
         *sorted(words),

@@ -46,15 +46,15 @@ def fail_each_call(folder: Path, failure: Failure, lasts: int, every: int) -> Co
 
 
 @pytest.mark.parametrize("failure", Failure)
-def test_a_call_that_fails_costs_no_lesson(folder: Path, failure: Failure) -> None:
-    assert fail_each_call(folder, failure, lasts=1, every=4).total() > 50
+def test_a_call_that_fails_costs_no_lesson(tmp_path: Path, failure: Failure) -> None:
+    assert fail_each_call(tmp_path, failure, lasts=1, every=4).total() > 50
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("lasts", [1, 2, 7, 40])
 @pytest.mark.parametrize("failure", Failure)
-def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(folder: Path, failure: Failure, lasts: int) -> None:
-    failed = fail_each_call(folder, failure, lasts, every=1)
+def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(tmp_path: Path, failure: Failure, lasts: int) -> None:
+    failed = fail_each_call(tmp_path, failure, lasts, every=1)
     print(f"{failed.total()} calls: {dict(failed)}")
     assert set(failed) == set(Call)
 
@@ -78,8 +78,8 @@ class StuckJournal(Journal):
         self.stuck = False
 
 
-def test_a_writer_whose_locks_are_stuck_begins_anew_and_loses_nothing(folder: Path) -> None:
-    path = folder / "knowledge"
+def test_a_writer_whose_locks_are_stuck_begins_anew_and_loses_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "knowledge"
     journal = StuckJournal.open(path, BINDING)
     journal.stuck = False
     journal.append([entry(1)])

@@ -49,22 +49,24 @@ def after_each_cut(disk: Disk, operations: list[Operation], path: Path, seed: in
 
 
 @pytest.mark.parametrize("every", EVERY)
-def test_nothing_that_was_said_to_be_saved_is_lost_in_any_power_cut(folder: Path, every: int) -> None:
-    path, disk = new_file(folder), WatchedDisk()
-    before = Disk.holding(files_of(folder))
+def test_nothing_that_was_said_to_be_saved_is_lost_in_any_power_cut(tmp_path: Path, every: int) -> None:
+    path, disk = new_file(tmp_path), WatchedDisk()
+    before = Disk.holding(files_of(tmp_path))
     with watched(disk):
         a_day(path, disk)
     assert after_each_cut(before, disk.operations, path, seed=1, every=every) > LEAST_STATES // every
 
 
-def test_what_a_killed_program_had_written_is_on_the_disk_before_anybody_is_told_that_it_is_saved(folder: Path) -> None:
+def test_what_a_killed_program_had_written_is_on_the_disk_before_anybody_hears_that_it_is_saved(
+    tmp_path: Path,
+) -> None:
     """The kernel shows the next program what the first never synced; the teacher's device sends its lesson again."""
-    assert killed_after(folder, range(9)) > LEAST_STATES // 4
+    assert killed_after(tmp_path, range(9)) > LEAST_STATES // 4
 
 
 @pytest.mark.deep
-def test_it_is_so_wherever_it_is_killed(folder: Path) -> None:
-    assert killed_after(folder, range(1000)) > 5 * LEAST_STATES
+def test_it_is_so_wherever_it_is_killed(tmp_path: Path) -> None:
+    assert killed_after(tmp_path, range(1000)) > 5 * LEAST_STATES
 
 
 def killed_after(folder: Path, moments: range) -> int:
@@ -94,9 +96,9 @@ def killed_then_cut(folder: Path, name: str, whole: dict[str, bytes], operations
 
 
 def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    path = new_file(folder)
+    path = new_file(tmp_path)
     synced: list[Path] = []
     monkeypatch.setattr(journal_file, "sync_file", synced.append)
     killed = Journal.open(path, BINDING)
@@ -118,18 +120,18 @@ def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
     ("shard", "every"), [(0, 3), *(pytest.param(shard, 1, marks=pytest.mark.deep) for shard in (0, 1, 2))]
 )
 def test_what_a_failed_sync_left_in_doubt_is_written_again_before_anybody_is_told(
-    folder: Path, shard: int, every: int
+    tmp_path: Path, shard: int, every: int
 ) -> None:
     """After an error the kernel takes what it could not write for written: asking it once more does not help."""
-    path, sound = new_file(folder), WatchedDisk()
-    whole = files_of(folder)
+    path, sound = new_file(tmp_path), WatchedDisk()
+    whole = files_of(tmp_path)
     with watched(sound):
         a_lesson_at_a_time(path, sound)
     syncs = [number for number, call in enumerate(sound.calls, start=1) if call is Call.SYNC]
     chosen = syncs[12:13] if shard == 0 else syncs[shard - 1 :: 2]
     states = 0
     for number in chosen:
-        again = folder / f"{number}"
+        again = tmp_path / f"{number}"
         again.mkdir()
         (again / path.name).write_bytes(whole[path.name])
         disk = WatchedDisk(Fault(number, Failure.BROKEN))

@@ -53,13 +53,13 @@ def cut_everywhere(folder: Path, disk: TracedDisk, seconds: int, every: int) -> 
 
 
 @pytest.mark.parametrize("failing_syncs", [(), (2, 4)], ids=["sound", "two syncs fail"])
-def test_what_the_disk_was_said_to_have_can_be_read(folder: Path, failing_syncs: tuple[int, ...]) -> None:
-    assert cut_everywhere(folder, TracedDisk(failing_syncs), seconds=4, every=23) > 5
+def test_what_the_disk_was_said_to_have_can_be_read(tmp_path: Path, failing_syncs: tuple[int, ...]) -> None:
+    assert cut_everywhere(tmp_path, TracedDisk(failing_syncs), seconds=4, every=23) > 5
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("failing_syncs", [(), (1,), (2,), (3,), (4,), (5,), (2, 3, 4)], ids=str)
-def test_it_is_so_in_every_power_cut(folder: Path, failing_syncs: tuple[int, ...]) -> None:
-    states = cut_everywhere(folder, TracedDisk(failing_syncs), seconds=10, every=1)
+def test_it_is_so_in_every_power_cut(tmp_path: Path, failing_syncs: tuple[int, ...]) -> None:
+    states = cut_everywhere(tmp_path, TracedDisk(failing_syncs), seconds=10, every=1)
     print(states, "states")
     assert states > 300
