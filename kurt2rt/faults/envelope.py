@@ -51,6 +51,42 @@ class _Put(NamedTuple):
     off_a_bumper: bool
 
 
+class _UnderWay:
+    """The newest frames that were put and have not arrived, in memory of one size: what watches must not grow."""
+
+    _ROW = struct.Struct("=qdddd???")
+
+    def __init__(self) -> None:
+        self._rows = bytearray(self._ROW.size * _MOST_UNDER_WAY)
+
+    def put(self, number: int, put: _Put) -> None:
+        left_m_s, right_m_s, brake = (0.0, 0.0, False) if put.told is None else put.told
+        self._ROW.pack_into(
+            self._rows,
+            self._place(number),
+            number + 1,
+            put.at_s,
+            put.age_s,
+            left_m_s,
+            right_m_s,
+            brake,
+            put.told is not None,
+            put.off_a_bumper,
+        )
+
+    def pop(self, number: int) -> _Put | None:
+        """None where it has arrived already, or was put too long ago."""
+        place = self._place(number)
+        put, at_s, age_s, left_m_s, right_m_s, brake, is_told, off_a_bumper = self._ROW.unpack_from(self._rows, place)
+        if put != number + 1:
+            return None
+        self._ROW.pack_into(self._rows, place, *[0] * 8)
+        return _Put(at_s, age_s, Told(left_m_s, right_m_s, brake) if is_told else None, off_a_bumper)
+
+    def _place(self, number: int) -> int:
+        return number % _MOST_UNDER_WAY * self._ROW.size
+
+
 class Envelope:
     """Follows all frames of one driver; `violations` says in words what was beyond the limits."""
 
@@ -71,7 +107,7 @@ class Envelope:
         self.off_a_bumper = False
         """While the driver sees one pressed: a wheel that drives against it stops, and may turn round, at once."""
         self._limits = limits
-        self._puts: dict[int, _Put] = {}
+        self._under_way = _UnderWay()
         self._last_put: _Put | None = None
         self._last_arrived: _Put | None = None
         self._arrived_number = 0
@@ -80,9 +116,8 @@ class Envelope:
         """The driver hands a frame to its bus; `age_s`: since its decision began."""
         self.frames += 1
         told = told_by(payload)
-        put = self._puts[number] = _Put(at_s, age_s, told, self.off_a_bumper)
-        if len(self._puts) > _MOST_UNDER_WAY:
-            del self._puts[next(iter(self._puts))]
+        put = _Put(at_s, age_s, told, self.off_a_bumper)
+        self._under_way.put(number, put)
         if told is None:
             self._violate(at_s, f"no set point and no brake: {payload.hex(' ')}")
             return
@@ -106,7 +141,7 @@ class Envelope:
         if told is None:
             self.unintelligible += 1
             return None
-        put = self._puts.pop(number, None)
+        put = self._under_way.pop(number)
         if put is None:
             self._violate(at_s, f"frame {number} arrives twice, or after {_MOST_UNDER_WAY} others")
             return told

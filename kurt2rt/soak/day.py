@@ -110,11 +110,11 @@ class Day:
         ):
             until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
             start = await self._live(until_s, on_progress)
+            # A fault that ended the program is over before somebody starts it anew.
+            clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
             # On a robot the end of the program takes all that it knew along; two at a time would count twice.
             gc.collect()
             self._starts.append(start._replace(left_mb=round(used_mb(), 3)))
-            # A fault that ended the program is over before somebody starts it anew.
-            clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
         return self._result(clock.now_s(), time.monotonic() - begun_s)
 
     async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> Start:
