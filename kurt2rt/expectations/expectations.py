@@ -50,13 +50,13 @@ class Expectations:
     ) -> None:
         """`transitions`: how often each RLA was followed by each other one, as counted up to now.
 
-        `saved`: goes on from these, as far as those RLAs live at this level with the same action.
+        `saved`: goes on from these, as far as those RLAs live at this level with the same action. Raises ValueError
+        where one of them is of other features.
         """
         self.level = level
         self._system = system
         self._transitions = transitions
         self._settings = settings or SurpriseSettings()
-        self._dimensions = space.dimensions
         self._symbols = space.metric != "euclidean"
         weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self._squared_weights = weights * weights
@@ -66,6 +66,13 @@ class Expectations:
             for rla_id, expectation in (saved or {}).items()
             if is_of(system, rla_id, expectation, level)
         }
+        for rla_id, expectation in self._learned.items():
+            values, spreads = len(expectation.mean), len(expectation.squares)
+            if not values == spreads == space.dimensions:
+                raise ValueError(
+                    f"what is expected of RLA {rla_id} has {values} values and {spreads} spreads, "
+                    f"its level has {space.dimensions} features"
+                )
 
     def of(self, rla_id: int) -> Expectation | None:
         """What is expected of an RLA now; None for one that was never seen to end."""

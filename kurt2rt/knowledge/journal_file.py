@@ -82,6 +82,8 @@ def require_no_writer(path: Path) -> None:
     """Raises KnowledgeError while somebody holds the writer's lock; puts none there, for a lock's file stays."""
     if is_there(_lock_of(path)):
         lock_for_writing(path).close()
+    elif not os.access(path.parent, os.W_OK):
+        raise KnowledgeError(f"{path}: cannot be locked; give a path in a folder that exists and may be written")
 
 
 def create(path: Path, binding: KnowledgeBinding) -> None:

@@ -110,6 +110,10 @@ class LessonBook:
         """All lessons about an RLA, or that gave a name, oldest first, those that were undone among them."""
         return tuple(self._records[place] for place in self._places_of.get(pile, ()))
 
+    def first_about(self, pile: Pile) -> LessonRecord:
+        """The oldest of these. Raises KeyError where there is none."""
+        return self._records[self._places_of[pile][0]]
+
     def enter(self, lesson: Lesson) -> None:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)

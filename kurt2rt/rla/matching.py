@@ -27,6 +27,10 @@ _FLOAT32_REACH = 1e18
 """From here on the squares that make a score could leave float32's range: no rough look then."""
 
 
+_AT_ONCE = 8192
+"""Numbers of a piece of the work: they stay in the cache, and need no memory that is asked of the machine anew."""
+
+
 class Nearest(NamedTuple):
     """The nearest condition and the one behind it."""
 
@@ -41,8 +45,12 @@ class Nearest(NamedTuple):
 
 def exact_distances(conditions: NDArray[np.float64], situation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Euclidean distance of each row of `conditions` (n, d) to `situation` (d,), shape (n,): what all else obeys."""
-    difference = conditions - situation
-    distances: NDArray[np.float64] = np.sqrt(_sum(np.square(difference, out=difference), axis=1))
+    squares = np.empty(len(conditions))
+    rows = max(1, _AT_ONCE // max(1, situation.size))
+    for first in range(0, len(conditions), rows):
+        difference = conditions[first : first + rows] - situation
+        _sum(np.square(difference, out=difference), axis=1, out=squares[first : first + rows])
+    distances: NDArray[np.float64] = np.sqrt(squares, out=squares)
     return distances
 
 

@@ -297,7 +297,7 @@ class RlaSystem:
         raise AssertionError(f"{command_id!r} gave no action")
 
     def _as_created(self, rla_id: int) -> Rla:
-        first = self._book.about(rla_id)[0].event
+        first = self._book.first_about(rla_id).event
         assert isinstance(first, RlaCreated)
         return first.rla
 

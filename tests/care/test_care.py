@@ -1,6 +1,7 @@
 """Changes of knowledge are tried on a recorded run before anything is changed."""
 
 import io
+import os
 import re
 import shutil
 import sys
@@ -498,3 +499,15 @@ def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
     looked_at = Counter(decoded)
     assert len(looked_at) == 500
     assert {number for number, times in looked_at.items() if times > 1} == {1, 500}  # where it begins and ends
+
+
+def test_an_undo_where_nothing_can_be_written_is_refused_before_it_is_tried(
+    kurt2rt: CommandLine, knowledge: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = Path("given") / "mine.knowledge"
+    given.parent.mkdir()
+    shutil.copy(knowledge, given)
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) != given.parent.resolve())  # root may write anywhere
+    assert f"{given.resolve()}: cannot be locked; give a path in a folder" in kurt2rt.refused(
+        "knowledge", "undo", given
+    )

@@ -1,10 +1,13 @@
 """What an RLA leads to is learned from what followed, and something else is surprising."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.expectations.expectation import pack
 from kurt2rt.rla.rla import MID
 from tests.expectations.helpers import Small
 from tests.rla.helpers import deleted, replaced, rewarded, undone
@@ -184,3 +187,11 @@ def test_only_what_has_changed_is_made_anew_to_be_saved() -> None:
     second = small.expectations.to_save()
     assert [second[rla_id] is first[rla_id] for rla_id in (1, 2, 3)] == [True, False, True]
     assert first[2].count == 1  # what was handed over does not change any more
+
+
+def test_what_was_saved_of_other_features_is_refused_at_the_start() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    narrow = replace(small.expected(1), packed_mean=pack(np.zeros(1)))
+    with pytest.raises(ValueError, match="expected of RLA 1 has 1 values and 2 spreads, its level has 2 features"):
+        Small(saved={1: narrow})

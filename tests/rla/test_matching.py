@@ -182,3 +182,12 @@ def test_a_sum_of_squares_is_the_same_alone_and_among_others(values: list[float]
     row = np.array(values)
     distances = exact_distances(np.tile(row, (rows, 1)), np.zeros(len(row)))
     assert set(distances.tolist()) == {math.sqrt(exact_square(row))}
+
+
+@pytest.mark.parametrize("dimensions", [1, 72, 10_000])
+def test_many_distances_are_those_of_each_alone(dimensions: int) -> None:
+    conditions = np.random.default_rng(1).normal(0.0, 100.0, (300, dimensions))
+    situation = conditions.mean(axis=0)
+    alone = [math.sqrt(exact_square(row - situation)) for row in conditions]
+    assert exact_distances(conditions, situation).tolist() == alone
+    assert exact_distances(conditions[:0], situation).shape == (0,)

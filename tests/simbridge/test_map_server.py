@@ -335,3 +335,12 @@ def test_a_map_of_specks_is_refused_under_start_poses_of_ones_own_too(tmp_path: 
     write_map(tmp_path, specks(130))
     with pytest.raises(SettingsError, match=r"flat\.yaml: image: its walls have"):
         load_world(world_on(tmp_path), ROBOT)
+
+
+def test_a_ragged_slit_beside_a_room_is_passed_over(tmp_path: Path) -> None:
+    shades = np.full((2600, 100), OCCUPIED, dtype=np.uint8)
+    shades[10:2570, 5] = FREE  # larger than what is left of the room where the robot turns
+    shades[10:2570:2, 6] = shades[11:2570:2, 4] = FREE
+    shades[20:100, 15:95] = FREE
+    world = load_world(write_map(tmp_path, shades), ROBOT)
+    assert floor_of(world).area == pytest.approx(16.0)
