@@ -41,7 +41,7 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
             break
         # Before room is looked for: among specks that takes seconds for some thousand pieces, half a minute for 30 000.
         walls = _walls_of(floor)
-        if best is not None and walls > MOST_WALLS:
+        if best is not None and in_vain + walls > MOST_WALLS:
             continue
         _require_few_walls(source, in_vain + walls)
         places = turning_places(floor, turning_m)
