@@ -256,3 +256,21 @@ def test_links_and_paths_lead_to_files(path: Path) -> None:
     named = re.findall(rf"`((?:{folders})/[\w./-]*)`", text)
     missing += [name for name in named if not (ROOT / name).exists()]
     assert not missing, f"{path.name} names what is not there: {', '.join(missing)}"
+
+
+def headings(path: Path) -> set[str]:
+    """Return the anchors of a document: its headings as GitHub names them."""
+    text = re.sub(r"^```.*?^```$", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    titles = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).strip().replace(" ", "-") for title in titles}
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_a_link_to_a_heading_finds_it(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    missing = []
+    for link in re.findall(r"\]\(([^)\s]*#[^)\s]+)\)", text):
+        name, _, anchor = link.partition("#")
+        if "://" not in link and anchor not in headings(path.parent / name if name else path):
+            missing.append(link)
+    assert not missing, f"{path.name} links to headings that are not there: {', '.join(missing)}"
