@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -66,10 +67,32 @@ class _QuickLoader(_Strict, getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # t
 _MARKS, _MARKS_AT_MOST = "[{-?:", 5000
 
 
+LARGEST_BYTES = 1_000_000
+"""Largest settings file that is read. The largest shipped one has 8 kB; a map's picture is a file of its own."""
+
+
 def _loaded(text: str) -> Any:
-    """What YAML says. libyaml ends the program where some 20 000 levels are nested; none is without a mark."""
+    """Parse YAML. Raises yaml.YAMLError; ValueError for aliases that repeat values too often."""
+    # libyaml crashes the process at some 20 000 nested levels, and there is no level without a mark.
     quick = sum(map(text.count, _MARKS)) <= _MARKS_AT_MOST
-    return yaml.load(text, Loader=_QuickLoader if quick else _Loader)
+    content = yaml.load(text, Loader=_QuickLoader if quick else _Loader)
+    if "*" in text and _values_in(content, {}) > _MOST_VALUES:  # without an asterisk there is no alias
+        raise ValueError(f"its aliases repeat values more than {_MOST_VALUES} times; write the values out")
+    return content
+
+
+_MOST_VALUES = 100_000
+"""Most values that a file with aliases may stand for: nine levels of nine aliases each are a billion."""
+
+
+def _values_in(content: Any, known: dict[int, int]) -> int:
+    """Count the values that `content` stands for, each shared part once for each place; `known`: counts by id."""
+    if not isinstance(content, dict | list):
+        return 1
+    if id(content) not in known:
+        within = content.values() if isinstance(content, dict) else content
+        known[id(content)] = 1 + sum(_values_in(each, known) for each in within)
+    return known[id(content)]
 
 
 @lru_cache(maxsize=64)
@@ -149,8 +172,15 @@ def content_of(path: Path) -> Any:
 
 
 def _json_in(path: Path) -> str:
-    """The same as text. Raises SettingsError."""
+    """Return the file's content as JSON text. Raises SettingsError."""
     try:
+        status = path.stat()
+        if stat.S_ISFIFO(status.st_mode):  # reading it would wait until another program writes to it
+            raise SettingsError(f"{path}: is a pipe, not a file; give the path of a YAML file")
+        if status.st_size > LARGEST_BYTES:
+            raise SettingsError(
+                f"{path}: has {status.st_size} bytes, allowed are {LARGEST_BYTES}; give the path of a settings file"
+            )
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
-from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings import Settings, SettingsError, content_of, find_config, load_settings
 from hal.settings_by_kind import find_kind
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.faults.table import FaultTable
@@ -500,3 +501,40 @@ def test_settings_are_frozen() -> None:
     robot = load_robot()
     with pytest.raises(ValueError, match="frozen"):
         robot.name = "other"
+
+
+# Files that would hang or fill the program
+
+
+def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> None:
+    bomb = tmp_path / "bomb.yaml"
+    nine = "".join(f"a{n}: &a{n} [{','.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, 10))
+    bomb.write_text(f"a0: &a0 [x,x,x,x,x,x,x,x,x]\n{nine}", encoding="utf-8")
+    assert "its aliases repeat values more than 100000 times; write the values out" in refusal(bomb, RobotSettings)
+
+
+def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "my_repertoire.yaml"
+    whole = yaml.safe_dump({"name": "x", "actions": [action := {"kind": "motor"}, action]})
+    assert "*id001" in whole
+    path.write_text(whole, encoding="utf-8")
+    assert content_of(path) == {"name": "x", "actions": [{"kind": "motor"}, {"kind": "motor"}]}
+
+
+def test_an_asterisk_that_is_no_alias_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "my_robot.yaml"
+    path.write_text(f"# 2 * 3 *x\n{ROBOT}", encoding="utf-8")
+    assert load_settings(path, RobotSettings) == load_robot("kurt2")
+
+
+def test_a_fifo_given_as_settings_is_refused(tmp_path: Path) -> None:
+    fifo = tmp_path / "fifo.yaml"
+    os.mkfifo(fifo)
+    assert "is a pipe, not a file" in refusal(fifo, RobotSettings)
+
+
+def test_a_settings_file_too_large_is_refused_unread(tmp_path: Path) -> None:
+    large = tmp_path / "large.yaml"
+    with large.open("wb") as file:
+        file.truncate(10**12)
+    assert "has 1000000000000 bytes, allowed are 1000000" in refusal(large, RobotSettings)

@@ -73,11 +73,11 @@ def whence_of(journal: Journal) -> Whence | None:
         return None
     try:
         file, rows, lesson, branched_at = json.loads(note)
-    except ValueError as error:
+        return Whence(str(file), int(rows), str(lesson), str(branched_at))
+    except (ValueError, TypeError, RecursionError) as error:
         raise KnowledgeError(
             f"{journal.path}: its note on where it was branched from is damaged ({error}); keep the file"
         ) from error
-    return Whence(str(file), int(rows), str(lesson), str(branched_at))
 
 
 def _rows_up_to(entries: Sequence[StoredEntry], at: str, path: Path) -> tuple[int, int]:

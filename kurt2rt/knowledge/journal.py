@@ -80,7 +80,6 @@ class Journal:
         path = Path(os.path.realpath(path))
         connection = journal_file.connect_to_look(path)
         try:
-            journal_file.require_our_mark(connection, path)
             return cls(path, connection)
         except BaseException:
             connection.close()

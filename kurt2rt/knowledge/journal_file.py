@@ -7,6 +7,7 @@ import sqlite3
 import stat
 from collections.abc import Mapping
 from contextlib import closing
+from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
 
@@ -103,10 +104,7 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
             f"{path}: is gone, but its log {orphan.name} is still there and may hold lessons; "
             "put the file back beside it, or move the log away"
         )
-    with closing(sqlite3.connect(":memory:", isolation_level=None)) as connection:
-        connection.executescript(_SCHEMA)
-        for statement in LATER_TABLES.values():
-            connection.execute(statement)
+    with closing(_new_database()) as connection:
         meaning = {
             "feature_hash": binding.feature_hash,
             "feature_names": json.dumps(binding.feature_names),
@@ -145,8 +143,16 @@ def require_ours(path: Path) -> None:
     """Look at the header, before SQLite may touch the file. Raises KnowledgeError if it is no knowledge file."""
     what_to_do = "give the path of a kurt2rt knowledge file, or of a new one"
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
             raise KnowledgeError(f"{path}: is a folder or device, not a file; {what_to_do}")
+        # SQLite's log lies next to one name. A writer under another name does not see the lessons in it, and both
+        # writers overwrite each other's pages.
+        if status.st_nlink > 1:
+            raise KnowledgeError(
+                f"{path}: has {status.st_nlink} names (hard links), allowed is 1: lessons that a robot writes under "
+                "one name are lost under the other; make a copy (cp), then remove the other names"
+            )
         with path.open("rb") as file:
             header = file.read(_HEADER_BYTES)
     except OSError as error:
@@ -157,7 +163,7 @@ def require_ours(path: Path) -> None:
         raise KnowledgeError(f"{path}: is an SQLite file of another program; {what_to_do}")
 
 
-def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
+def _require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
     """Ask SQLite whose file it is. Raises KnowledgeError if it is no knowledge file."""
     try:
         (application_id,) = connection.execute("PRAGMA application_id").fetchone()
@@ -165,6 +171,60 @@ def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
         raise explained(error, path) from error
     if application_id != APPLICATION_ID:
         raise KnowledgeError(f"{path}: is an SQLite file of another program; give the path of a kurt2rt knowledge file")
+
+
+def _require_known_version(version: int, path: Path) -> None:
+    if version > FORMAT_VERSION:
+        raise KnowledgeError(
+            f"{path}: has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}; update kurt2rt"
+        )
+
+
+def _require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
+    """Compare the file's schema with ours before any table is read. Raises KnowledgeError.
+
+    A view in the place of a table may have endless rows, and a foreign trigger may change what a lesson does. Tables
+    that a newer kurt2rt has added are left alone.
+    """
+    try:
+        found = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    ours = _our_schema()
+    for kind, name, sql in found:
+        text = _one_line(sql)
+        if name in ours:
+            foreign = ours[name] != (kind, text)
+        elif kind == "index":
+            foreign = bool(text)  # SQLite makes the index of a key by itself, without a text
+        else:
+            foreign = kind != "table" or not text.upper().startswith("CREATE TABLE ")
+        if foreign:
+            raise KnowledgeError(
+                f"{path}: holds a {kind} {name!r} that kurt2rt did not make; "
+                "it may be damaged or meant to harm: go on with a backup copy"
+            )
+
+
+@lru_cache(maxsize=1)
+def _our_schema() -> Mapping[str, tuple[str, str]]:
+    """Kind and SQL text of each table and trigger that kurt2rt makes, by name."""
+    with closing(_new_database()) as connection:
+        rows = connection.execute("SELECT type, name, sql FROM sqlite_schema WHERE sql IS NOT NULL").fetchall()
+    return {name: (kind, _one_line(sql)) for kind, name, sql in rows}
+
+
+def _one_line(sql: str | None) -> str:
+    return " ".join((sql or "").split())
+
+
+def _new_database() -> sqlite3.Connection:
+    """Make an empty knowledge file in memory."""
+    connection = sqlite3.connect(":memory:", isolation_level=None)
+    connection.executescript(_SCHEMA)
+    for statement in LATER_TABLES.values():
+        connection.execute(statement)
+    return connection
 
 
 def without_log(image: bytes) -> bytes:
@@ -175,7 +235,10 @@ def without_log(image: bytes) -> bytes:
 
 
 def connect(path: Path, options: str) -> sqlite3.Connection:
-    """Connect to a file that is ours; `options` are those of an SQLite URI. Raises KnowledgeError."""
+    """Connect to a knowledge file and compare its schema with ours; `options` are those of an SQLite URI.
+
+    Raises KnowledgeError.
+    """
     connection: sqlite3.Connection | None = None
     try:
         # One thread uses it at a time: the one that opens it reads the lessons, then the writer's thread takes over.
@@ -190,16 +253,19 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
         connection.text_factory = lambda text: text.decode(errors="surrogateescape")
         # Lessons are read once and appended to: SQLite's own 2 MB of cache would keep what nobody reads again.
         connection.execute(f"PRAGMA cache_size = {-_CACHE_KIB}")
+        connection.execute("PRAGMA trusted_schema = OFF")  # a schema calls no function that has a side effect
         (version,) = connection.execute("PRAGMA user_version").fetchone()
     except sqlite3.Error as error:
         if connection is not None:
             connection.close()
         raise explained(error, path) from error
-    if version > FORMAT_VERSION:
+    try:
+        _require_our_mark(connection, path)
+        _require_known_version(version, path)
+        _require_our_schema(connection, path)
+    except BaseException:
         connection.close()
-        raise KnowledgeError(
-            f"{path}: has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}; update kurt2rt"
-        )
+        raise
     return connection
 
 
@@ -304,7 +370,7 @@ def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
 
 
 def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:
-    """What the file is bound to. Raises KnowledgeError."""
+    """Read what the file is bound to. Raises KnowledgeError."""
     try:
         meaning: dict[str, str] = dict(connection.execute("SELECT key, value FROM binding"))
         names = json.loads(meaning["feature_names"])
@@ -313,7 +379,7 @@ def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding
         )
     except sqlite3.Error as error:
         raise explained(error, path) from error
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise KnowledgeError(
             f"{path}: table binding is damaged ({error!r}); keep the file, and go on with a backup copy"
         ) from error

@@ -36,7 +36,7 @@ def decode_tick(data: bytes) -> TickEntry:
     """The entry that `encode_tick` wrote, equal to the last bit. Raises RecordingError."""
     try:
         return _entry(json.loads(data))
-    except (ValueError, TypeError, KeyError, AttributeError, KnowledgeError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError, KnowledgeError) as error:
         raise RecordingError(f"not a tick of a run: {type(error).__name__}: {error}") from error
 
 

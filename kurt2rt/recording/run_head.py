@@ -63,5 +63,5 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
             text = metadata[each.name]
             content[each.name] = text if each.type is str else json.loads(text)
         return RunHead(**content)
-    except (KeyError, ValueError, TypeError) as error:
+    except (KeyError, ValueError, TypeError, RecursionError) as error:
         raise RecordingError(f"the head of the run cannot be read: {type(error).__name__}: {error}") from error

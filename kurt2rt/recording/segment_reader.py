@@ -20,6 +20,13 @@ TICK_TOPIC = "/tick"
 _TORN = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 
 
+LARGEST_CHUNK_BYTES = 64_000_000
+"""Largest chunk that is unpacked. kurt2rt ends a chunk each second; the largest stored run has 4 MB in one."""
+_ALWAYS_UNPACKED_BYTES, _MOST_TIMES = 1_000_000, 1000
+"""A larger chunk than the first unpacks to at most so many times its size; runs of a robot reach 15."""
+_COMPRESSIONS = ("", "zstd")
+
+
 class LoggedMessage(NamedTuple):
     """One message of a recording."""
 
@@ -87,7 +94,7 @@ class SegmentReader:
         except OSError as error:
             raise RecordingError(f"{self.path}: cannot be read ({error}); give a recorded run") from error
         with file:
-            records = _whole_records(StreamReader(file, emit_chunks=True, record_size_limit=size))
+            records = _whole_records(StreamReader(file, emit_chunks=True, record_size_limit=size), self.path)
             whole_until = 0
             while True:
                 try:
@@ -104,7 +111,31 @@ class SegmentReader:
                 yield from several
 
 
-def _whole_records(reader: StreamReader) -> Iterator[list[McapRecord]]:
-    """One record after the other; those of a chunk together, once it has been found whole."""
+def _whole_records(reader: StreamReader, path: Path) -> Iterator[list[McapRecord]]:
+    """Yield one record after the other; those of a chunk together, once it has been found whole.
+
+    Raises RecordingError for a chunk that would fill the memory.
+    """
     for record in reader.records:
-        yield breakup_chunk(record, validate_crc=True) if isinstance(record, Chunk) else [record]
+        if isinstance(record, Chunk):
+            _require_small(record, path)
+            yield breakup_chunk(record, validate_crc=True)
+        else:
+            yield [record]
+
+
+def _require_small(chunk: Chunk, path: Path) -> None:
+    if chunk.compression not in _COMPRESSIONS:
+        raise RecordingError(
+            f"{path}: a chunk is packed with {chunk.compression[:20]!r}, allowed is zstd; record it again"
+        )
+    size = chunk.uncompressed_size
+    if chunk.compression:  # zstd takes as much memory as its own header says, whatever the chunk's header says
+        packed = zstandard.get_frame_parameters(chunk.data).content_size
+        size = size if packed == zstandard.CONTENTSIZE_UNKNOWN else max(size, packed)
+    allowed = max(_ALWAYS_UNPACKED_BYTES, min(LARGEST_CHUNK_BYTES, _MOST_TIMES * len(chunk.data)))
+    if size > allowed:
+        raise RecordingError(
+            f"{path}: a chunk of {len(chunk.data)} bytes unpacks to {size}, allowed are {allowed}; "
+            "nothing of it was read: get the recording again, from a source that you trust"
+        )

@@ -67,9 +67,12 @@ class _Files:
         """Command ids of lessons that became durable, and when. Leaves alone what `torn` says of the ticks."""
         for reader in self.readers:
             for message in SegmentReader(reader.path).messages({_LESSON_TOPIC}):
-                content = json.loads(message.data)
-                if "acknowledged" in content and "stamped_at" in content:
-                    yield content["acknowledged"], content["stamped_at"]
+                try:
+                    content = json.loads(message.data)
+                    if "acknowledged" in content and "stamped_at" in content:
+                        yield str(content["acknowledged"]), str(content["stamped_at"])
+                except (ValueError, TypeError, RecursionError) as error:
+                    raise RecordingError(f"{reader.path}: not a lesson of a run: {error}; get it again") from error
 
     def ends_s(self) -> float:
         """Time of the last tick that can be read; 0 where there is none."""

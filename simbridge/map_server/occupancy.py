@@ -23,6 +23,8 @@ def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
     Raises SettingsError that names the map's file and the key.
     """
     image = source.parent / settings.image
+    if image.exists() and not image.is_file():  # opening a FIFO waits until another program writes to it
+        raise SettingsError(f"{source}: image: {image} is a folder or device, not a file; give a PGM or PNG file")
     try:
         with warnings.catch_warnings():
             # Pillow warns of images that are huge; nothing of them is read before their size is looked at.

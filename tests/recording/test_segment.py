@@ -6,9 +6,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import zstandard
 from foxglove import Channel, Context
+from mcap.data_stream import RecordBuilder
+from mcap.records import Chunk, Header
+from mcap.writer import MCAP0_MAGIC
 
 from kurt2rt.recording.disk import RealDisk, WritableFile
+from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.segment import KEPT_BYTES, Segment
 from kurt2rt.recording.segment_reader import SegmentReader
 
@@ -139,3 +144,29 @@ def test_a_disk_that_fails_for_long_is_given_up(tmp_path: Path) -> None:
             segment.save()
     segment.give_up()
     assert segment.size_bytes < 2 * KEPT_BYTES
+
+
+def with_chunk(path: Path, data: bytes, uncompressed_size: int, compression: str = "zstd") -> Path:
+    """Write a file with one chunk whose header says `uncompressed_size`."""
+    builder = RecordBuilder()
+    Header(profile="", library="test").write(builder)
+    Chunk(compression, data, 0, 0, 0, uncompressed_size).write(builder)
+    path.write_bytes(MCAP0_MAGIC + bytes(builder.end()))  # type: ignore[no-untyped-call]
+    return path
+
+
+MANY = 100_000_000
+
+
+@pytest.mark.parametrize("told", [MANY, 10], ids=["chunk tells its size", "only zstd's header does"])
+def test_a_chunk_that_would_fill_the_memory_is_refused(tmp_path: Path, told: int) -> None:
+    packed = zstandard.compress(bytes(MANY))
+    path = with_chunk(tmp_path / "0001.mcap", packed, told)
+    with pytest.raises(RecordingError, match=f"a chunk of {len(packed)} bytes unpacks to {MANY}, allowed are"):
+        SegmentReader(path).head()
+
+
+def test_a_chunk_of_a_compression_without_limit_is_refused(tmp_path: Path) -> None:
+    path = with_chunk(tmp_path / "0001.mcap", bytes(100), 100, "lz4")
+    with pytest.raises(RecordingError, match="a chunk is packed with 'lz4', allowed is zstd"):
+        SegmentReader(path).head()

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -253,7 +254,8 @@ def test_cells_that_meet_at_a_corner_only_are_apart() -> None:
         ({"resolutoin": 0.1}, r"flat\.yaml: resolutoin: no such key"),
         ({"negate": 1}, r"flat\.yaml: image: no free space that the robot fits into, 0.67 m wide"),
         ({"resolution": 0.001}, r"flat\.yaml: image: no free space that the robot fits into"),
-        ({"image": "."}, r"flat\.yaml: image: .* cannot be read"),
+        ({"image": "."}, r"flat\.yaml: image: .* is a folder or device, not a file; give a PGM or PNG file"),
+        ({"image": "fifo.pgm"}, r"flat\.yaml: image: .*fifo\.pgm is a folder or device, not a file"),
         ({"image": "junk.pgm"}, r"flat\.yaml: image: .*junk\.pgm cannot be read"),
         ({"image": "cut.pgm"}, r"flat\.yaml: image: .*cut\.pgm cannot be read"),
         ({"image": "huge.pgm"}, r"flat\.yaml: image: .*huge\.pgm has 10000 x 10000 cells"),
@@ -265,6 +267,7 @@ def test_a_map_that_cannot_be_is_refused_with_file_and_key(
     path = write_map(tmp_path)
     (tmp_path / "junk.pgm").write_bytes(b"P5 this is not")
     (tmp_path / "cut.pgm").write_bytes(b"P5 100 80 255\n" + bytes(100))
+    os.mkfifo(tmp_path / "fifo.pgm")
     (tmp_path / "huge.pgm").write_bytes(b"P5 10000 10000 255\n")
     Path(path).write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     with pytest.raises(SettingsError, match=complaint):
