@@ -6,6 +6,7 @@ import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -159,8 +160,11 @@ def find_config(kind: str, name_or_path: str) -> Path:
     shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
     if shipped.is_file():
         return shipped
-    names = ", ".join(sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml")))
-    raise SettingsError(f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {names}")
+    names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
+    meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
+    raise SettingsError(
+        f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {', '.join(names)}{meant}"
+    )
 
 
 def content_of(path: Path) -> Any:

@@ -14,6 +14,10 @@ START_CLEARANCE_M = 0.05
 """A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
 
 
+_IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
+"""Endings of files that are never opened as a world, whatever they are."""
+
+
 def load(name_or_path: str, geometry: GeometrySettings) -> WorldSettings:
     """What simbridge.world_settings.load_world promises, for a robot of this shape."""
     world = generated(name_or_path)
@@ -45,6 +49,12 @@ def _keys(path: Path) -> set[str]:
 
 
 def _find(name_or_path: str) -> Path:
+    given = Path(name_or_path)
+    if given.suffix.lower() in _IMAGES:
+        raise SettingsError(
+            f"{name_or_path}: is an image, not a world; give the YAML file of its map, such as "
+            f"{given.with_suffix('.yaml')} (ROS map_server: image, resolution, origin, thresholds)"
+        )
     try:
         return find_config("worlds", name_or_path)
     except SettingsError as error:

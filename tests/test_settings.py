@@ -78,7 +78,8 @@ def test_a_path_goes_before_a_name_and_an_unknown_name_lists_the_known_ones(tmp_
     assert load_robot(str(mine)).name == "mine"
     for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
         with pytest.raises(
-            SettingsError, match=r"no such file in robots; give a path to a \.yaml file or one of: kurt2$"
+            SettingsError,
+            match=r"no such file in robots; give a path to a \.yaml file or one of: kurt2(; did you mean kurt2\?)?$",
         ):
             find_config("robots", missing)
 

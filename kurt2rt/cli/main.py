@@ -1,14 +1,16 @@
 """`kurt2rt`: the command line."""
 
 import errno
+import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
-from typing import NoReturn
+from importlib import import_module, metadata
+from typing import Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
 from threadpoolctl import threadpool_limits
+from typer.core import TyperGroup
 
 from hal.bus import BusError
 from hal.settings import SettingsError
@@ -69,30 +71,20 @@ _MENDED_BY_ANOTHER_PATH = {
     errno.EROFS,
 }
 
-_COMMANDS = (
-    "demo",
-    "run",
-    "status",
-    "sim",
-    "teach",
-    "pair",
-    "lesson",
-    "exam",
-    "paper",
-    "phases",
-    "replay",
-    "why",
-    "recover",
-    "knowledge",
-    "surprise",
-    "commission",
-    "service",
-    "faults",
-    "soak",
-    "bench",
-    "doctor",
-)
-"""Each is a function, or a group of its own, of that name in its module of kurt2rt.cli."""
+_PANELS = {
+    "Teach": ("run", "teach", "pair", "demo", "lesson"),
+    "Examine": ("exam", "why", "replay", "recover"),
+    "Knowledge": ("knowledge",),
+    "Robot and service": ("status", "doctor", "sim", "commission", "service"),
+    "Studies": ("paper", "phases", "surprise", "faults", "soak", "bench"),
+}
+"""Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its
+module of kurt2rt.cli."""
+
+_PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
+
+_WITHOUT_COMMANDS = ("--version", "--show-completion", "--install-completion")
+"""Options of kurt2rt itself that no command is loaded for."""
 
 
 _HELP = (
@@ -102,39 +94,97 @@ _HELP = (
     "`kurt2rt doctor` says what this machine offers for the real one."
 )
 
+_USAGE_ERROR: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "ClickException")
+"""Base of all that the parser refuses: click's, or typer's own copy of it, by typer's version."""
+
+
+class _CommandGroup(TyperGroup):
+    """All commands, listed in the order of their panels."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - a context of click or of typer
+        """Names of the commands that were loaded."""
+        return [name for name in _PANEL_OF if name in self.commands]
+
 
 def command_line(words: Sequence[str]) -> typer.Typer:
     """The commands, or only the one that `words` begin with.
 
     Each brings its own packages, and as long as a robot's program takes to start, the robot stands.
     """
-    app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
-    app.callback(help=_HELP)(lambda: None)  # a group, also where there is but one command
-    for name in words[:1] if words and words[0] in _COMMANDS else _COMMANDS:
+    app = typer.Typer(cls=_CommandGroup, no_args_is_help=True, pretty_exceptions_enable=False)
+    app.callback(help=_HELP)(_options)  # a group, also where there is but one command
+    for name in _needed(words):
         command = getattr(import_module(f"kurt2rt.cli.{name}"), name)
         if isinstance(command, typer.Typer):
-            app.add_typer(command, name=name)
+            app.add_typer(command, name=name, rich_help_panel=_PANEL_OF[name])
         else:
-            app.command(name)(command)
+            app.command(name, rich_help_panel=_PANEL_OF[name])(command)
     return app
 
 
+def _needed(words: Sequence[str]) -> Sequence[str]:
+    """Names of the commands to load for `words`."""
+    if words and words[0] in _PANEL_OF:
+        return words[:1]
+    return () if words and words[0].startswith(_WITHOUT_COMMANDS) else tuple(_PANEL_OF)
+
+
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=lambda asked: _print_version(asked), help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Take the options of kurt2rt itself."""
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"kurt2rt {metadata.version('kurt2rt')}")
+        raise typer.Exit
+
+
+def _typed() -> list[str]:
+    """The words after `kurt2rt`: of the command line, or of the line that a shell asks to complete.
+
+    There the first one may be unfinished, and stands for all commands.
+    """
+    if "_KURT2RT_COMPLETE" not in os.environ:
+        return sys.argv[1:]
+    words = os.environ.get("COMP_WORDS", os.environ.get("_TYPER_COMPLETE_ARGS", "")).split()[1:]
+    return words if len(words) > 1 else []
+
+
 def main() -> None:
-    """Run the command line; what a user can mend is said in one line, exit code 2."""
+    """Run the command line; what a user can mend is said in one line on standard error, exit code 2."""
     # One thread: a product with some hundred rows is over before a second one wakes, and the loop needs its core.
     with threadpool_limits(limits=1):
         try:
-            command_line(sys.argv[1:])()
+            sys.exit(command_line(_typed())(standalone_mode=False))
         except ModuleNotFoundError as error:
             extra = _EXTRAS.get(error.name or "")
             if extra is None:
                 raise
             _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")
-        except (*_ONE_LINERS, OSError, BaseExceptionGroup) as error:
-            text = _in_one_line(error)
+        except typer.Abort:
+            _complain("aborted; nothing more was done", 1)
+        except (_USAGE_ERROR, *_ONE_LINERS, OSError, BaseExceptionGroup) as error:
+            text = _misuse(error) if isinstance(error, _USAGE_ERROR) else _in_one_line(error)
             if text is None:
                 raise
             _complain(text)
+
+
+def _misuse(error: Any) -> str:
+    """Return what the parser refuses, and which help explains it."""
+    told = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    if type(error).__name__ == "NoArgsIsHelpError":  # rich has printed the help
+        sys.exit(2)
+    where = "kurt2rt" if context is None else context.command_path
+    return f"{told.rstrip('.')}; see {where} --help"
 
 
 def _in_one_line(error: BaseException) -> str | None:
@@ -159,9 +209,9 @@ def _leaves(group: BaseExceptionGroup[BaseException]) -> list[BaseException]:
     return leaves
 
 
-def _complain(text: str) -> NoReturn:
+def _complain(text: str, code: int = 2) -> NoReturn:
     Console(stderr=True, highlight=False).print(f"kurt2rt: {text}", style="red", markup=False, soft_wrap=True)
-    sys.exit(2)
+    sys.exit(code)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ import io
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from unicodedata import normalize
 
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
@@ -16,6 +17,8 @@ _COLUMNS = (
     *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
     *("uses", "rewards", "punishments", "value", "level"),
 )
+_FORMULA_BEGINS = "=+-@\t\r\n"
+"""A spreadsheet runs a cell that begins so as a formula, also from a CSV file (OWASP, "CSV injection")."""
 
 
 def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
@@ -23,7 +26,8 @@ def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
 
     The basic level comes first; features of a further one that has RLAs follow in columns of their own, named as in
     `critic: speed_m_s`. An empty radius is that of the system; an empty value that no reward made one; taught
-    behaviours have a column where one has a name. Numbers are exact. UTF-8. Waits and raises as `save_copy`.
+    behaviours have a column where one has a name. Numbers are exact. UTF-8. A text that a spreadsheet would run as a
+    formula gets an apostrophe before it. Waits and raises as `save_copy`.
     """
     with Journal.beside_its_writer(journal_path) as journal:
         task = journal.binding.system
@@ -45,27 +49,37 @@ def _table(journal: Journal) -> str:
     rlas = [rla for level in levels for rla in system.rlas_at(level)]
     named = any(rla.behaviour for rla in rlas)
     behaviour_column = ("behaviour",) if named else ()
-    table.writerow((*_COLUMNS, *behaviour_column, *_feature_columns(levels)))
+    table.writerow(map(_harmless, (*_COLUMNS, *behaviour_column, *_feature_columns(levels))))
     for rla in politely(rlas):
         origin = rla.origin
-        table.writerow(
-            (
-                rla.rla_id,
-                rla.action,
-                rla.radius,
-                origin.teacher,
-                origin.phase.value,
-                origin.tick,
-                stamps[origin.command_id],
-                statistics.uses.get(rla.rla_id, 0),
-                *system.appraisal(rla.rla_id),
-                statistics.values.get(rla.rla_id),
-                rla.level,
-                *((rla.behaviour,) if named else ()),
-                *_under_its_columns(rla, levels),
-            )
+        cells = (
+            rla.rla_id,
+            rla.action,
+            rla.radius,
+            origin.teacher,
+            origin.phase.value,
+            origin.tick,
+            stamps[origin.command_id],
+            statistics.uses.get(rla.rla_id, 0),
+            *system.appraisal(rla.rla_id),
+            statistics.values.get(rla.rla_id),
+            rla.level,
+            *((rla.behaviour,) if named else ()),
+            *_under_its_columns(rla, levels),
         )
+        table.writerow(map(_harmless, cells))
     return text.getvalue()
+
+
+def _harmless(cell: str | float | None) -> str | float | None:
+    """Return the cell, quoted by an apostrophe if it is a text that begins as a formula and is no number."""
+    if not isinstance(cell, str) or normalize("NFKC", cell[:1]) not in tuple(_FORMULA_BEGINS):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell
 
 
 def _feature_columns(levels: Mapping[str, tuple[str, ...]]) -> list[str]:

@@ -52,20 +52,24 @@ class CommandLine:
     def refused(self, *words: str | Path) -> str:
         """Run what must be refused; returns the one line that says why."""
         said = self(*words)
-        lines = [line for line in said.err.splitlines() if line.strip()]
-        assert said.exit_code == 2, said.err
-        assert len(lines) == 1, said.err
-        assert lines[0].startswith("kurt2rt: "), said.err
         assert "Traceback" not in said.out
-        return lines[0]
+        return _one_line(said)
 
     def misused(self, *words: str | Path) -> str:
-        """Run what no command understands; returns what it says about it, on one line and without its frame."""
+        """Run what no command understands; returns the one line that says why and which help to read."""
         said = self(*words)
-        assert said.exit_code == 2, said.err
-        assert "Traceback" not in said.err
         assert said.out == ""
-        return " ".join(said.err.replace("│", "").split())
+        line = _one_line(said)
+        assert line.endswith(" --help"), line
+        return line
+
+
+def _one_line(said: Said) -> str:
+    lines = [line for line in said.err.splitlines() if line.strip()]
+    assert said.exit_code == 2, said.err
+    assert len(lines) == 1, said.err
+    assert lines[0].startswith("kurt2rt: "), said.err
+    return lines[0]
 
 
 class Running:

@@ -123,6 +123,13 @@ def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
         (("demo", "--robot-settings", "nope"), "nope: no such file in robots"),
         (("run", "--settings", "nope"), "nope: no such file in runtime"),
         (("run", "--world", "nope", "--seconds", "1"), "nope: no such file in worlds"),
+        (("lesson", "--task", "wal_folowing"), "; did you mean wall_following?"),
+        (("exam", "none", "--world", "manhatan"), "did you mean manhattan?"),
+        (
+            ("exam", "none", "--world", "cave.png"),
+            "cave.png: is an image, not a world; give the YAML file of its map, ",
+        ),
+        (("run", "--world", "maps/cave.PGM"), "such as maps/cave.yaml (ROS map_server: image, resolution, origin,"),
         (("run", "--robot", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",

@@ -1,6 +1,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib import metadata
 
 import pytest
 import typer
@@ -26,7 +27,8 @@ def _found() -> Iterator[tuple[tuple[str, ...], object]]:
 
 
 def _names(parameter: object) -> list[str]:
-    opts: list[str] = parameter.opts  # type: ignore[attr-defined]  # of click or of typer, by typer's version
+    """Those that the help shows."""
+    opts: list[str] = [] if getattr(parameter, "hidden", False) else getattr(parameter, "opts")  # noqa: B009
     return opts
 
 
@@ -113,3 +115,37 @@ def test_help_says_which_behaviour_the_scripted_teacher_begins_with(kurt2rt: Com
     told = " ".join(kurt2rt("run", "--help").out.replace("│", "").split())
     assert "wanted at the start" in told
     assert "with --auto the others follow in turn" in told
+
+
+def test_version_is_that_of_the_installed_package(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("--version")
+    assert (said.exit_code, said.out, said.err) == (0, f"kurt2rt {metadata.version('kurt2rt')}\n", "")
+
+
+def test_help_lists_each_command_in_one_panel(kurt2rt: CommandLine) -> None:
+    lines = kurt2rt("--help").out.splitlines()
+    panels = [line.strip("╭─╮ ") for line in lines if line.startswith("╭")]
+    assert panels == ["Options", "Teach", "Examine", "Knowledge", "Robot and service", "Studies"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_script_is_shown_for_each_shell(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, shell: str
+) -> None:
+    monkeypatch.setattr("typer.completion._get_shell_name", lambda: shell)
+    said = kurt2rt("--show-completion")
+    assert said.exit_code == 0
+    assert "_KURT2RT_COMPLETE" in said.out
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"), [("kurt2rt exa", "exam"), ("kurt2rt knowledge sh", "show"), ("kurt2rt exam --wor", "--world")]
+)
+def test_completion_offers_what_was_begun(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, typed: str, offered: str
+) -> None:
+    monkeypatch.setenv("_KURT2RT_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", typed)
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
+    said = kurt2rt()
+    assert (said.exit_code, said.out.split(), said.err) == (0, [offered], "")

@@ -5,6 +5,8 @@ import hashlib
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.statistics import Statistics
@@ -112,3 +114,22 @@ def test_appraisal_rlas_come_behind_the_others_with_columns_of_their_own(path: P
     ]
     assert rows[0][16:] == ["", "", ""]
     assert rows[2][12:] == ["", "", "", "", "0.4", "0.2", "0.0"]
+
+
+@pytest.mark.parametrize("begin", ["=", "+", "-", "@", "\t", "\r", "\uff1d"])
+def test_text_that_begins_as_a_formula_is_quoted(path: Path, tmp_path: Path, begin: str) -> None:
+    rla = replace(created(1).rla, action=f"{begin}HYPERLINK(A1)", behaviour=f"{begin}1+1")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    (heading, row) = exported(path, tmp_path)
+
+    assert row[1] == f"'{begin}HYPERLINK(A1)"
+    assert row[heading.index("behaviour")] == f"'{begin}1+1"
+    assert row[-1] == "-5.0"
+
+
+def test_text_that_is_a_number_is_not_quoted(path: Path, tmp_path: Path) -> None:
+    rla = replace(created(1).rla, action="-1.5e3")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    assert exported(path, tmp_path)[1][1] == "-1.5e3"
