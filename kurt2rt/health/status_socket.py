@@ -143,9 +143,15 @@ async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
             yield listener
     finally:
         # A disk that hangs must not hold up the end of the program.
-        removing = threading.Thread(target=path.unlink, args=(True,), name="end of status", daemon=True)
+        removing = threading.Thread(target=_remove, args=(path,), name="end of status", daemon=True)
         removing.start()
         removing.join(_REMOVED_WITHIN_S)
+
+
+def _remove(path: Path) -> None:
+    # The next program takes the place of a socket that is left on a read-only disk.
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
 
 
 @contextmanager

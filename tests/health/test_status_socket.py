@@ -1,5 +1,6 @@
 """How another program of the machine gets the report."""
 
+import errno
 import json
 import socket
 import threading
@@ -178,3 +179,16 @@ async def test_where_no_socket_can_be_made_the_rest_goes_on(tmp_path: Path) -> N
     async with serving(Watch(), path) as status:
         await until(lambda: bool(status.trouble))
     assert "no status is told there" in status.trouble
+
+
+async def test_a_socket_on_a_read_only_disk_is_left_without_a_word(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = list[Path]()
+
+    def refuse(file: Path, missing_ok: bool = False) -> None:
+        del missing_ok
+        asked.append(file)
+        raise OSError(errno.EROFS, "Read-only file system", str(file))
+
+    async with serving(Watch(), path):
+        monkeypatch.setattr(Path, "unlink", refuse)
+    assert asked == [path]
