@@ -191,10 +191,9 @@ def _in_one_line(error: BaseException) -> str | None:
     """What is wrong and what to do; None when the user cannot mend it."""
     whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, BaseExceptionGroup):
-        # A task group wraps even the one error that ended it.
-        errors = _leaves(error)
-        text = _in_one_line(errors[0]) if len(errors) == 1 else None
-        return None if text is None else f"{whose}{text}"
+        # A task group wraps even the one error that ended it. A disk that fails ends several tasks at once.
+        texts = dict.fromkeys(_in_one_line(each) for each in _leaves(error))
+        return None if None in texts else whose + "; ".join(map(str, texts))
     if isinstance(error, _ONE_LINERS):
         return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:

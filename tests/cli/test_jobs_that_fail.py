@@ -1,5 +1,6 @@
 """What goes wrong in one of many jobs is said in one line that names the job and its seed."""
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,23 @@ def test_the_job_stands_before_what_is_wrong(
     with pytest.raises(SystemExit, match="2"):
         main.main()
     assert capsys.readouterr().err == "kurt2rt: circle, seed 3: the disk is full\n"
+
+
+def test_what_ended_several_tasks_is_said_once_each(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    full = OSError(errno.EROFS, "Read-only file system")
+    group = ExceptionGroup("tasks", [KnowledgeError("not saved"), full, KnowledgeError("not saved")])
+
+    def command_line(_words: object) -> object:
+        raise group
+
+    monkeypatch.setattr(main, "command_line", command_line)
+    with pytest.raises(SystemExit, match="2"):
+        main.main()
+    told = capsys.readouterr().err
+    assert told.startswith("kurt2rt: not saved; [Errno 30] Read-only file system; give a path")
+    assert len(told.splitlines()) == 1
 
 
 def test_a_lesson_of_many_says_whose_file_is_of_no_use(kurt2rt: CommandLine) -> None:
