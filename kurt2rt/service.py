@@ -4,6 +4,7 @@ import secrets
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import anyio
@@ -16,6 +17,7 @@ from kurt2rt.channel.requests import BOOT_BYTES
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.ending import Ending
+from kurt2rt.exchange.given import package_knowledge
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import StatusSocket, socket_of
 from kurt2rt.health.watch import HealthWatch
@@ -183,7 +185,8 @@ async def _channel(
         trouble=lambda: writer.trouble,
         stamp_of=lambda command_id: stamps.get(command_id, ""),
     )
-    safe = Safe(Path(service.knowledge), writer)
+    package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)
+    safe = Safe(Path(service.knowledge), writer, package)
     surroundings = Surroundings(
         safekeeping, safe, openness.bus_trouble, openness.ground, boot=boot, health=lambda: watch.newest
     )

@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import anyio
@@ -16,6 +17,7 @@ from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.credentials import Device, local_pairing
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
+from kurt2rt.exchange.given import package_knowledge
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter
 from kurt2rt.rounds import Rounds, Screen
@@ -115,7 +117,9 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
                 trouble=lambda: writer.trouble,
                 stamp_of=lambda command_id: stamps.get(command_id, ""),
             )
-            surroundings = Surroundings(safekeeping, Safe(Path(service.knowledge), writer), lambda: "", None)
+            package = partial(package_knowledge, robot=subject.settings, task=subject.task)
+            safe = Safe(Path(service.knowledge), writer, package)
+            surroundings = Surroundings(safekeeping, safe, lambda: "", None)
             screen = Screen(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
             teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
             try:

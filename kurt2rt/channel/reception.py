@@ -11,10 +11,13 @@ from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
     MOST_SITUATIONS,
+    PACKAGE,
+    PART_BYTES,
     BehaviourRequest,
     CommandRequest,
     DriveRequest,
     ExportRequest,
+    FileRequest,
     HealthRequest,
     HelloRequest,
     LessonsRequest,
@@ -37,6 +40,7 @@ from kurt2rt.channel.requests import (
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
@@ -69,6 +73,14 @@ class Copies(Protocol):
 
     def export(self) -> Awaitable[SavedCopy]:
         """The RLAs as a table. Raises KnowledgeError."""
+        ...
+
+    def package(self) -> Awaitable[SavedCopy]:
+        """All of the knowledge as one file to give away. Raises KnowledgeError."""
+        ...
+
+    def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
+        """Part of a copy that was made here. Raises KnowledgeError."""
         ...
 
 
@@ -152,6 +164,8 @@ class Reception:
                 return Reply(Verdict.DONE, {"why": self._why()})
             case WorldRequest():
                 return self._world()
+            case FileRequest(name=name, offset=offset):
+                return await self._part(name, offset)
         return Reply(Verdict.NOT_HERE)
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
@@ -209,10 +223,7 @@ class Reception:
                 if held is not None:
                     return refusal("held", held, self.tick)
                 self._outcomes.begin(command_id)
-                copying = (
-                    self._copies.save(request.label) if isinstance(request, SaveRequest) else self._copies.export()
-                )
-                task = asyncio.get_running_loop().create_task(self._copy(command_id, copying))
+                task = asyncio.get_running_loop().create_task(self._copy(command_id, self._copying(request)))
                 self._under_way.add(task)
                 task.add_done_callback(self._under_way.discard)
                 return None
@@ -229,6 +240,18 @@ class Reception:
             self._outcomes.settle(command_id, reply)
         return None
 
+    def _copying(self, request: SaveRequest | ExportRequest) -> Awaitable[SavedCopy]:
+        if isinstance(request, SaveRequest):
+            return self._copies.save(request.label)
+        return self._copies.package() if request.form == PACKAGE else self._copies.export()
+
+    async def _part(self, name: str, offset: int) -> Reply:
+        try:
+            part = await self._copies.read(name, offset, PART_BYTES)
+        except KnowledgeError as error:
+            return refusal("refused", str(error), self.tick)
+        return Reply(Verdict.DONE, {"size": part.size_bytes, "part": part.content})
+
     async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
         try:
             copy = await copying
@@ -237,7 +260,8 @@ class Reception:
             self._outcomes.settle(command_id, unsaved(text, self.tick))
         else:
             text = f"{copy.name}, {copy.size_bytes} bytes"
-            self._outcomes.settle(command_id, done(self.tick, text, name=copy.name, sha256=copy.sha256))
+            reply = done(self.tick, text, name=copy.name, sha256=copy.sha256, size=copy.size_bytes)
+            self._outcomes.settle(command_id, reply)
 
     def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest) -> Reply:
         if self._ground is None:

@@ -21,7 +21,7 @@ from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.newborn import bear
 from kurt2rt.knowledge.opening import binding_of
-from kurt2rt.knowledge.saved_copy import save_new
+from kurt2rt.knowledge.saved_copy import SavedCopy, plain_part, save_new, save_whole, stamp_part
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.attachments import (
     KNOWLEDGE,
@@ -81,10 +81,29 @@ def export_knowledge(
     `task` and `robot`: those it was taught with; their settings go with it.
     """
     with Journal.read_only(path) as journal:
-        binding = journal.binding
-        require_same(binding, binding_of(robot, task), path, journal.has_lessons_at)
-        entries, statistics = journal.read_all()
-        system = fold_entries(journal, entries, radius=0.0)
+        content = _package(journal, robot, task, key, stamp)
+    save_new(content, out)
+    return len(content)
+
+
+def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSettings, task: TaskSettings) -> SavedCopy:
+    """Save `<task>-<stamp>.zip`, the archive of `export_knowledge`, not signed, while this process writes `path`.
+
+    Waits and raises as `kurt2rt.knowledge.copy.save_copy`.
+    """
+    with Journal.beside_its_writer(path) as journal:
+        content = _package(journal, robot, task, None, stamp)
+        system = journal.binding.system
+    return save_whole(content, folder, (plain_part(system), stamp_part(stamp)), ".zip")
+
+
+def _package(
+    journal: Journal, robot: RobotSettings, task: TaskSettings, key: Ed25519PrivateKey | None, stamp: str
+) -> bytes:
+    path, binding = journal.path, journal.binding
+    require_same(binding, binding_of(robot, task), path, journal.has_lessons_at)
+    entries, statistics = journal.read_all()
+    system = fold_entries(journal, entries, radius=0.0)
     about: dict[str, Any] = {
         "kurt2rt": version("kurt2rt"),
         "exported_at": stamp,
@@ -100,9 +119,7 @@ def export_knowledge(
     trouble = trouble_of({name: len(data) for name, data in files.items()})
     if trouble:  # nobody could take it
         raise KnowledgeError(f"{path}: cannot be exported: it {trouble}; name its settings otherwise")
-    content = pack(about, files, key)
-    save_new(content, out)
-    return len(content)
+    return pack(about, files, key)
 
 
 def read_given(path: Path) -> Given:

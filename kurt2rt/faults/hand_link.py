@@ -9,6 +9,7 @@ from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
 from kurt2rt.channel.wire import WireError, decode_request, encode_request
 from kurt2rt.faults.place import Disturbance, SimulatedTime
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.hand import BEAT_S
@@ -105,6 +106,14 @@ class _NoCopies:
     def export(self) -> Awaitable[SavedCopy]:
         """Never asked."""
         raise NotImplementedError
+
+    def package(self) -> Awaitable[SavedCopy]:
+        """Never asked."""
+        raise NotImplementedError
+
+    def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
+        """Never asked."""
+        raise NotImplementedError(name)
 
 
 def _at_once(answering: Coroutine[Any, Any, Reply]) -> Reply:

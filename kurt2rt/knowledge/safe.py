@@ -1,7 +1,9 @@
 """Copies of the knowledge beside its file, made outside the loop while the robot goes on."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import anyio.to_thread
 
@@ -12,30 +14,69 @@ from kurt2rt.knowledge.writer import JournalWriter, utc_now
 
 _FLUSH_S = 5.0
 
+Package = Callable[[Path, Path, str], SavedCopy]
+"""Makes one file to give away of a knowledge file: its path, folder of the new file, stamp. Raises KnowledgeError."""
+
+
+class FilePart(NamedTuple):
+    """Some bytes of a file, in order."""
+
+    size_bytes: int
+    """Of the whole file."""
+    content: bytes
+    """Empty at and behind the end of the file."""
+
 
 class Safe:
     """What was taught until now is in the copy, or there is no copy."""
 
-    def __init__(self, knowledge: Path, writer: JournalWriter) -> None:
+    def __init__(self, knowledge: Path, writer: JournalWriter, package: Package) -> None:
         """Copies go to the folders `saved` and `exported` beside the knowledge file."""
         self._knowledge = knowledge
         self._writer = writer
+        self._package = package
+        self._made: dict[str, Path] = {}
 
     async def save(self, label: str) -> SavedCopy:
         """A copy of the knowledge file. Raises KnowledgeError."""
-        return await self._copied(lambda: save_copy(self._knowledge, self._folder("saved"), label, utc_now()))
+        return await self._copied("saved", lambda folder: save_copy(self._knowledge, folder, label, utc_now()))
 
     async def export(self) -> SavedCopy:
         """The RLAs as a table. Raises KnowledgeError."""
-        return await self._copied(lambda: export_table(self._knowledge, self._folder("exported"), utc_now()))
+        return await self._copied("exported", lambda folder: export_table(self._knowledge, folder, utc_now()))
 
-    async def _copied(self, copy: Callable[[], SavedCopy]) -> SavedCopy:
+    async def package(self) -> SavedCopy:
+        """All of the knowledge as one file to give away. Raises KnowledgeError."""
+        return await self._copied("exported", lambda folder: self._package(self._knowledge, folder, utc_now()))
+
+    async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
+        """Return up to `most_bytes` of a copy from `offset` on.
+
+        Raises KnowledgeError for a name that none of the copies made by this object has, and where it cannot be read.
+        """
+        path = self._made.get(name)
+        if path is None:
+            raise KnowledgeError(f"{name}: is no copy of this run of the program; save or export again")
+        return await anyio.to_thread.run_sync(_read, path, offset, most_bytes)
+
+    async def _copied(self, folder_name: str, copy: Callable[[Path], SavedCopy]) -> SavedCopy:
+        folder = self._knowledge.parent / folder_name
+
         def flush_and_copy() -> SavedCopy:
             if not self._writer.flush(_FLUSH_S):
                 raise KnowledgeError(f"{self._knowledge}: the newest lessons are not saved yet; try again later")
-            return copy()
+            return copy(folder)
 
-        return await anyio.to_thread.run_sync(flush_and_copy)
+        made = await anyio.to_thread.run_sync(flush_and_copy)
+        self._made[made.name] = folder / made.name
+        return made
 
-    def _folder(self, name: str) -> Path:
-        return self._knowledge.parent / name
+
+def _read(path: Path, offset: int, most_bytes: int) -> FilePart:
+    try:
+        with path.open("rb") as file:
+            size_bytes = os.fstat(file.fileno()).st_size
+            content = os.pread(file.fileno(), most_bytes, min(offset, size_bytes))
+    except OSError as error:
+        raise KnowledgeError(f"{path}: cannot be read ({error.strerror}); save or export again") from error
+    return FilePart(size_bytes, content)

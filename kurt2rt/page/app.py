@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
-from starlette.routing import Mount, WebSocketRoute
+from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -14,7 +14,9 @@ from kurt2rt.channel.schema import WireError
 from kurt2rt.page.access import Access
 from kurt2rt.page.bridge import Bridge
 from kurt2rt.page.door import Door
+from kurt2rt.page.downloads import Downloads
 from kurt2rt.page.messages import parse
+from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.visitor import Visitor
 
 STATIC = Path(__file__).parent / "static"
@@ -23,15 +25,16 @@ _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
 
 
-def build_app(bridge: Bridge, access: Access) -> Starlette:
-    """The application for a bridge that runs."""
+def build_app(bridge: Bridge, access: Access, robot: RobotLink) -> Starlette:
+    """The application for a bridge that runs, and the robot whose files it hands on."""
 
-    async def robot(websocket: WebSocket) -> None:
+    async def pictures_and_orders(websocket: WebSocket) -> None:
         await _serve_page(websocket, bridge)
 
     return Starlette(
         routes=[
-            WebSocketRoute("/robot", robot),
+            WebSocketRoute("/robot", pictures_and_orders),
+            Route("/files/{name}", Downloads(robot), methods=["GET"]),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[Middleware(Door, access=access)],

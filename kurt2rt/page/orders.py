@@ -1,5 +1,6 @@
 """An order of a page becomes a command to the robot."""
 
+from kurt2rt.channel.requests import PACKAGE
 from kurt2rt.page.messages import Order
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.rla.rla import Phase
@@ -59,7 +60,7 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
         case "save":
             return await robot.save(given["label"])
         case "export":
-            return await robot.export()
+            return await robot.export(PACKAGE)
         case "move":
             return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
         case "place":

@@ -3,9 +3,11 @@
 from collections.abc import AsyncIterator
 from typing import Protocol
 
+from kurt2rt.channel.requests import TABLE
 from kurt2rt.channel.state import State
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
@@ -158,8 +160,12 @@ class RobotLink(Protocol):
         """A copy of the knowledge on the robot."""
         ...
 
-    async def export(self) -> Answer:
-        """The RLAs as a table on the robot."""
+    async def export(self, form: str = TABLE) -> Answer:
+        """The RLAs as a table on the robot, or with PACKAGE all of the knowledge as one file."""
+        ...
+
+    def file_parts(self, name: str) -> AsyncIterator[FilePart]:
+        """The parts of a file that `save` or `export` made. Raises RefusedError where the robot has none such."""
         ...
 
     async def move_wall(self, name: str, dx: float, dy: float) -> Answer:

@@ -51,7 +51,8 @@ async def run_page(
     async with anyio.create_task_group() as tasks:
         await tasks.start(bridge.run)
         async with anyio.create_task_group() as serving:
-            server: uvicorn.Server = await serving.start(_serve, build_app(bridge, access), listener, request_within_s)
+            app = build_app(bridge, access, robot)
+            server: uvicorn.Server = await serving.start(_serve, app, listener, request_within_s)
             await told_to_end()
             # The robot lets go by itself when it hears nothing, so one that does not answer is not waited for.
             with anyio.move_on_after(_ENDING_S), contextlib.suppress(NoAnswerError):

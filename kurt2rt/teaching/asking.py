@@ -29,6 +29,11 @@ def facts_of(response: Response) -> dict[str, Any]:
     return body
 
 
+def answer_to(response: Response) -> Answer:
+    """The robot's answer in a response, a refusal too. Raises WireError."""
+    return answer_of(response.code, _body(response))
+
+
 class Asking:
     """Requests to one robot. All of them raise NoAnswerError when nobody answers within the patience."""
 
@@ -67,7 +72,7 @@ class Asking:
         boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot
         response = await self._answered(request.path, payload, patience_s)
         try:
-            answer = answer_of(response.code, _body(response))
+            answer = answer_to(response)
         except WireError as error:
             raise _not_understood(request, error) from error
         if answer.why != "boot":

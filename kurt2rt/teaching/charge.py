@@ -1,17 +1,27 @@
 """A teacher's device in charge: who teaches, since when, in which phase, and what is kept of it on the robot."""
 
+from collections.abc import AsyncIterator
+
 import anyio
 
 from kurt2rt.channel.requests import (
+    LARGEST_NUMBER,
+    PART_BYTES,
+    TABLE,
     ExportRequest,
+    FileRequest,
     PhaseRequest,
     ReleaseRequest,
     SaveRequest,
     SessionRequest,
     TakeRequest,
 )
+from kurt2rt.channel.schema import Whole, WireError
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.answer import Answer, RefusedError
+from kurt2rt.teaching.asking import answer_to, facts_of
+from kurt2rt.teaching.oscore_requests import Response
 from kurt2rt.teaching.sight import Sight
 
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
@@ -50,12 +60,36 @@ class Charge(Sight):
         """A copy of the knowledge on the robot; its `name` and `sha256` are in `extra`."""
         return await self._asking.command(SaveRequest, label=label)
 
-    async def export(self) -> Answer:
-        """The RLAs as a readable table on the robot; `name` and `sha256` are in `extra`."""
-        return await self._asking.command(ExportRequest)
+    async def export(self, form: str = TABLE) -> Answer:
+        """The RLAs as a readable table on the robot, or with PACKAGE one file to give away, as `save` answers."""
+        return await self._asking.command(ExportRequest, form=form)
+
+    async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
+        """Yield the parts of a file that `save` or `export` made on the robot, in order, at least one.
+
+        Raises RefusedError for a file that the robot does not have, NoAnswerError.
+        """
+        offset = 0
+        while True:
+            part = await self._asking.told(FileRequest(name, offset), _part_of)
+            yield part
+            offset += len(part.content)
+            if offset >= part.size_bytes or not part.content:
+                return
 
     async def set_phase(self, phase: Phase) -> Answer:
         """Another training phase. In phase 5 the robot drives without its teacher, so a stop ends that command."""
         if phase is not Phase.AUTONOMOUS:
             return await self._asking.command(PhaseRequest, phase=phase)
         return await self._stopping.move("phase 5", lambda: self._asking.command(PhaseRequest, moves=True, phase=phase))
+
+
+def _part_of(response: Response) -> FilePart:
+    """Raises RefusedError where the robot says why not, WireError."""
+    if not response.successful:
+        raise RefusedError(answer_to(response).text or response.code)
+    body = facts_of(response)
+    content = body.get("part")
+    if not isinstance(content, bytes) or len(content) > PART_BYTES:
+        raise WireError(f"part has to be up to {PART_BYTES} bytes")
+    return FilePart(Whole(0, LARGEST_NUMBER)("size", body.get("size")), content)

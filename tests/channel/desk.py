@@ -25,6 +25,7 @@ from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.runtime import Runtime, build_runtime
@@ -61,6 +62,7 @@ class Shelf:
 
     def __init__(self) -> None:
         self.labels: list[str | None] = []
+        self.files: dict[str, bytes] = {}
         self.may_finish = asyncio.Event()
         self.may_finish.set()
         self.problem = ""
@@ -70,6 +72,15 @@ class Shelf:
 
     async def export(self) -> SavedCopy:
         return await self._copy(None, "lessons.csv")
+
+    async def package(self) -> SavedCopy:
+        return await self._copy(None, "lessons.zip")
+
+    async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
+        if name not in self.files:
+            raise KnowledgeError(f"{name}: is no copy of this run of the program; save or export again")
+        content = self.files[name]
+        return FilePart(len(content), content[offset : offset + most_bytes])
 
     async def _copy(self, label: str | None, name: str) -> SavedCopy:
         self.labels.append(label)

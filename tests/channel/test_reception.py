@@ -7,6 +7,8 @@ import pytest
 from kurt2rt.channel.reception import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import (
+    PACKAGE,
+    PART_BYTES,
     AnswerRequest,
     AppraiseRequest,
     BeAtRequest,
@@ -15,6 +17,7 @@ from kurt2rt.channel.requests import (
     CorrectRequest,
     DeleteRequest,
     ExportRequest,
+    FileRequest,
     HealthRequest,
     HelloRequest,
     LessonsRequest,
@@ -80,7 +83,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
 }
 COMMANDS = {**MOVING, **LASTING}
-READING = {HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest, WorldRequest}
+READING = {FileRequest, HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest, WorldRequest}
 
 
 @pytest.fixture
@@ -436,6 +439,7 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
         "text": "lessons.knowledge, 4096 bytes",
         "name": "lessons.knowledge",
         "sha256": "ab" * 32,
+        "size": 4096,
     }
     assert await reply_of(again) == reply
     assert desk.shelf.labels == ["before lunch"]
@@ -444,6 +448,20 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
 async def test_an_export_likewise(desk: Desk) -> None:
     reply = await desk.ask(desk.command(ExportRequest))
     assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.csv")
+
+
+async def test_an_export_as_package_makes_the_archive(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(ExportRequest, PACKAGE))
+    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.zip")
+
+
+async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Desk) -> None:
+    content = bytes(range(256)) * 80
+    desk.shelf.files["lessons.zip"] = content
+    parts = [await desk.ask(FileRequest("lessons.zip", offset)) for offset in (0, PART_BYTES, 2 * PART_BYTES)]
+    assert b"".join(each.body["part"] for each in parts) == content
+    assert [each.body["size"] for each in parts] == [len(content)] * 3
+    assert why(await desk.ask(FileRequest("../robot.key", 0))) == "refused"
 
 
 @pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])

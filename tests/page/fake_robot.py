@@ -9,12 +9,13 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.requests import VERSION
+from kurt2rt.channel.requests import TABLE, VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
+from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.rla.rla import BASIC, Phase
-from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.hello import Hello, SensorPlace
 from kurt2rt.teaching.lesson_line import LessonLine
 from kurt2rt.teaching.link import Link
@@ -93,6 +94,9 @@ class FakeRobot:
     state: State | None = None
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
+    files: dict[str, bytes] = field(default_factory=dict)
+    answers_with: dict[str, object] = field(default_factory=dict)
+    """What else its answers hold."""
     report: HealthReport | None = None
     decided: DecisionFacts | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
@@ -220,8 +224,15 @@ class FakeRobot:
     async def save(self, label: str = "") -> Answer:
         return await self._answer("save", label)
 
-    async def export(self) -> Answer:
-        return await self._answer("export")
+    async def export(self, form: str = TABLE) -> Answer:
+        return await self._answer("export", form)
+
+    async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
+        await self._answer("file_parts", name)
+        if name not in self.files:
+            raise RefusedError(f"{name}: is no copy of this run of the program; save or export again")
+        for offset in range(0, len(self.files[name]), 1000):
+            yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
 
     async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
         return await self._answer("move_wall", name, dx, dy)
@@ -236,7 +247,7 @@ class FakeRobot:
         await anyio.lowlevel.checkpoint()
         if self.refuses:
             return Answer(False, "refused", self.refuses, 0)
-        return Answer(True, "", f"{told[0]} done", 0)
+        return Answer(True, "", f"{told[0]} done", 0, self.answers_with)
 
     def _hear(self, told: tuple[Any, ...]) -> None:
         self.told.append(told)

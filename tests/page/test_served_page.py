@@ -29,7 +29,11 @@ TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
 class Got:
     status: int
     headers: http.client.HTTPMessage
-    body: str
+    content: bytes
+
+    @property
+    def body(self) -> str:
+        return self.content.decode()
 
 
 @dataclass
@@ -49,7 +53,7 @@ class Served:
             try:
                 connection.request(method, path, headers=headers or {})
                 response = connection.getresponse()
-                return Got(response.status, response.headers, response.read().decode())
+                return Got(response.status, response.headers, response.read())
             finally:
                 connection.close()
 

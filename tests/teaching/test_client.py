@@ -19,6 +19,7 @@ from kurt2rt.channel.credentials import Pairing, pair, renew
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
+    PACKAGE,
     VERSION,
     AnswerRequest,
     AppraiseRequest,
@@ -310,6 +311,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.hand_over("laptop")
     await client.save("after lunch")
     await client.export()
+    await client.export(PACKAGE)
     await client.run("quarter_turn_left", seconds=3.0)
     await client.move_wall("north", 0.5, -0.25)
     await client.place(1.0, 2.0, 0.5)
@@ -340,7 +342,8 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (TakeRequest, {}),
         (ReleaseRequest, {"to": "laptop"}),
         (SaveRequest, {"label": "after lunch"}),
-        (ExportRequest, {}),
+        (ExportRequest, {"form": "table"}),
+        (ExportRequest, {"form": "package"}),
         (BehaviourRequest, {"action": "quarter_turn_left", "ticks": 300}),
         (MoveWallRequest, {"name": "north", "dx_m": 0.5, "dy_m": -0.25}),
         (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),

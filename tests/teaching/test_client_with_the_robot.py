@@ -1,19 +1,24 @@
 """The client against the robot's own program: the simulated robot, its journal and its channel, in real time."""
 
+import hashlib
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
 import anyio
+import pytest
 
 from kurt2rt.channel.channel import Channel
 from kurt2rt.channel.credentials import Pairing, pair
+from kurt2rt.channel.requests import PACKAGE
 from kurt2rt.channel.state import State
+from kurt2rt.exchange.given import read_given
 from kurt2rt.rla.rla import Phase
 from kurt2rt.rounds import Screen
 from kurt2rt.service import Openness, serve
 from kurt2rt.simulated_ground import SimulatedGround
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.answer import RefusedError
 from simbridge.world_settings import load_world
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
@@ -88,6 +93,29 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             await state_where(robot, lessons=0)
             (line,) = await robot.lessons()
             assert line.undone
+
+
+async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            LossyLink(port, up=A_BAD_LINK, down=A_BAD_LINK) as link,
+            TeacherClient(device.folder, port=link.port) as robot,
+        ):
+            assert (await robot.take()).accepted
+            asks = await state_where(robot, teacher="phone", cause="unknown")
+            assert (await robot.answer("forward", of=asks.tick)).accepted
+            for made, folder in ((await robot.save("noon"), "saved"), (await robot.export(PACKAGE), "exported")):
+                assert made.accepted, made.text
+                parts = [part async for part in robot.file_parts(made.extra["name"])]
+                content = b"".join(part.content for part in parts)
+                assert hashlib.sha256(content).hexdigest() == made.extra["sha256"]
+                assert content == (tmp_path / folder / made.extra["name"]).read_bytes()
+            with pytest.raises(RefusedError, match="no copy of this run"):
+                await anext(robot.file_parts("knowledge.sqlite"))
+    given = read_given(tmp_path / "exported" / str(made.extra["name"]))
+    assert len(given.lessons) == 1
 
 
 async def test_the_hand_drives_while_it_presses_and_the_robot_stands_when_it_lets_go(tmp_path: Path) -> None:

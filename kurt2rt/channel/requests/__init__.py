@@ -25,10 +25,13 @@ from kurt2rt.channel.requests.limits import (
     MOST_GOAL_FEATURES,
     MOST_LESSONS,
     MOST_SITUATIONS,
+    PART_BYTES,
     VERSION,
 )
 from kurt2rt.channel.requests.moving import BehaviourRequest, DriveRequest, ResumeRequest, StopRequest, WatchRequest
 from kurt2rt.channel.requests.organising import (
+    PACKAGE,
+    TABLE,
     ExportRequest,
     PhaseRequest,
     ReleaseRequest,
@@ -36,7 +39,14 @@ from kurt2rt.channel.requests.organising import (
     SessionRequest,
     TakeRequest,
 )
-from kurt2rt.channel.requests.reading import HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest
+from kurt2rt.channel.requests.reading import (
+    FileRequest,
+    HealthRequest,
+    HelloRequest,
+    LessonsRequest,
+    SituationsRequest,
+    WhyRequest,
+)
 from kurt2rt.channel.requests.request import CommandRequest, Request, StreamRequest
 from kurt2rt.channel.requests.world import MoveWallRequest, PlaceRequest, WorldRequest
 from kurt2rt.channel.schema import Check
@@ -52,7 +62,10 @@ __all__ = [
     "MOST_GOAL_FEATURES",
     "MOST_LESSONS",
     "MOST_SITUATIONS",
+    "PACKAGE",
+    "PART_BYTES",
     "REQUESTS",
+    "TABLE",
     "VERSION",
     "AnswerRequest",
     "AppraiseRequest",
@@ -63,6 +76,7 @@ __all__ = [
     "DeleteRequest",
     "DriveRequest",
     "ExportRequest",
+    "FileRequest",
     "HealthRequest",
     "HelloRequest",
     "LessonsRequest",
@@ -119,6 +133,7 @@ REQUESTS: tuple[type[Request], ...] = (
     ReleaseRequest,
     SaveRequest,
     ExportRequest,
+    FileRequest,
     LessonsRequest,
     HealthRequest,
     WhyRequest,

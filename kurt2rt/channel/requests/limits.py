@@ -11,6 +11,9 @@ MOST_LESSONS = 20
 MOST_GOAL_FEATURES = 16
 MOST_SITUATIONS = 250
 """Of names that are told: so many of the longest ones fit into one answer."""
+PART_BYTES = 8192
+"""Of a file that one answer brings: a few datagrams of the network, as a world with many walls is."""
+LONGEST_FILE_NAME = 128
 LARGEST_NUMBER = 2**53
 """Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
 LONGEST_BEHAVIOUR_TICKS = 60_000

@@ -6,8 +6,11 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.requests.field_types import NameOrNone
 from kurt2rt.channel.requests.limits import LONGEST_TEXT
 from kurt2rt.channel.requests.request import CommandRequest
-from kurt2rt.channel.schema import OneOf, Text
+from kurt2rt.channel.schema import OneOf, OneWord, Text
 from kurt2rt.rla.rla import Phase
+
+TABLE, PACKAGE = "table", "package"
+"""Forms of an export: CSV, and the archive of `kurt2rt knowledge export`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,8 @@ class SaveRequest(CommandRequest):
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest(CommandRequest):
-    """The RLAs as a readable table on the robot."""
+    """The RLAs as a readable table on the robot, or all of the knowledge as one file to give away."""
 
     path: ClassVar[str] = "/export"
+    may_lack: ClassVar[int] = 1
+    form: Annotated[str, OneWord((TABLE, PACKAGE))] = TABLE

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from kurt2rt.channel.requests.limits import MOST_LESSONS
+from kurt2rt.channel.requests.field_types import Number
+from kurt2rt.channel.requests.limits import LONGEST_FILE_NAME, MOST_LESSONS
 from kurt2rt.channel.requests.request import Request
-from kurt2rt.channel.schema import Whole
+from kurt2rt.channel.schema import Text, Whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,3 +43,13 @@ class WhyRequest(Request):
     """What the newest decision rested on."""
 
     path: ClassVar[str] = "/why"
+
+
+@dataclass(frozen=True, slots=True)
+class FileRequest(Request):
+    """One part of a file that `/save` or `/export` of this start made."""
+
+    path: ClassVar[str] = "/file"
+    name: Annotated[str, Text(LONGEST_FILE_NAME, least=1)]
+    offset: Number
+    """Where the part begins, in bytes."""

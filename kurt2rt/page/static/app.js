@@ -3,6 +3,7 @@
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Critic, CRITIC } from "./critic.js";
 import { Explanation } from "./explanation.js";
+import { Files } from "./files.js";
 import { Goals } from "./goals.js";
 import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
@@ -36,6 +37,7 @@ const critic = new Critic(appraise);
 const health = new Health();
 const explanation = new Explanation(link);
 const organising = new Organising(tell);
+new Files(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
 let hello = null;

@@ -1,4 +1,4 @@
-// What organises a lesson: training phase, the behaviour to follow, session, copies of the knowledge, who teaches.
+// What organises a lesson: training phase, the behaviour to follow, session, who teaches.
 
 import { words } from "./actions.js";
 import { twice } from "./lessons.js";
@@ -31,8 +31,6 @@ export class Organising {
   constructor(tell) {
     this.#tell = tell;
     $("session-button").addEventListener("click", () => this.#beginOrEnd());
-    $("save").addEventListener("click", () => this.#keep("save", { label: $("save-label").value.trim() }));
-    $("export").addEventListener("click", () => this.#keep("export", {}));
     $("hand-over").addEventListener("click", () => tell("hand_over", { to: null }, "hand over"));
   }
 
@@ -95,12 +93,5 @@ export class Organising {
     } else {
       this.#tell("begin_session", { name: $("session-name").value.trim() || newSession() });
     }
-  }
-
-  async #keep(name, args) {
-    const answer = await this.#tell(name, args);
-    if (!answer.accepted) return;
-    const { name: file, sha256 } = answer.extra;
-    setText($("saved"), `${file ?? ""}  sha256 ${(sha256 ?? "").slice(0, 12)}…`);
   }
 }
