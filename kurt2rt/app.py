@@ -8,10 +8,8 @@ from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
+from kurt2rt.bus_names import NO_WIRE, SIMULATED
 from kurt2rt.channel.ground import Ground
-
-SIMULATED = "sim"
-NO_WIRE = "none"
 
 
 class OpenedRobot(NamedTuple):

@@ -1,20 +1,17 @@
-"""`kurt2rt run`."""
+"""`kurt2rt run`. The robot's packages are imported by the command, not by its help."""
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from hal.robot_settings import load_robot
-from kurt2rt.app import NO_WIRE, SIMULATED
+from kurt2rt.bus_names import NO_WIRE, SIMULATED
+from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.options import WireName
-from kurt2rt.cli.robot_program import Orders, RobotProgram
-from kurt2rt.layers.wanted import Wanted
-from kurt2rt.recording.live_view import parse_address
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching.scripted_lesson import two_levels
+
+if TYPE_CHECKING:
+    from kurt2rt.service_settings import ServiceSettings
 
 
 def run(
@@ -142,6 +139,15 @@ def run(
 
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
+    with end_at_interrupt():
+        from hal.robot_settings import load_robot
+        from kurt2rt.cli.robot_program import Orders, RobotProgram
+        from kurt2rt.layers.wanted import Wanted
+        from kurt2rt.recording.live_view import parse_address
+        from kurt2rt.service_settings import load_service
+        from kurt2rt.tasks.settings import load_task
+        from kurt2rt.teaching.scripted_lesson import two_levels
+
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
     if auto and robot != SIMULATED:
@@ -159,7 +165,7 @@ def run(
     if service and (auto or teacher == "none"):
         raise typer.BadParameter("after each start it waits for a person who says Go", param_hint="--service")
 
-    def read() -> ServiceSettings:
+    def read() -> "ServiceSettings":
         return _changed(load_service(settings), task, knowledge, world, port, record)
 
     loaded = read()
@@ -192,13 +198,15 @@ def run(
 
 
 def _changed(
-    service: ServiceSettings,
+    service: "ServiceSettings",
     task: str | None,
     knowledge: Path | None,
     world: str | None,
     port: int | None,
     record: Path | None,
-) -> ServiceSettings:
+) -> "ServiceSettings":
+    from kurt2rt.tasks.settings import load_task
+
     if task is not None:
         taught = load_task(task)
         beside = str(Path(service.knowledge).with_name(f"{taught.name}.knowledge"))

@@ -1,12 +1,13 @@
 import subprocess
 import sys
 from collections.abc import Iterator
-from importlib import metadata
+from importlib import import_module, metadata
 
 import pytest
 import typer
 
-from kurt2rt.cli.main import command_line
+from kurt2rt.cli.command_line import command_line
+from kurt2rt.cli.main import _ONE_LINERS
 from tests.cli.helpers import CommandLine
 
 
@@ -19,7 +20,7 @@ def commands() -> dict[tuple[str, ...], list[str]]:
 
 
 def _found() -> Iterator[tuple[tuple[str, ...], object]]:
-    waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(command_line(())))]
+    waiting: list[tuple[tuple[str, ...], object]] = [((), typer.main.get_command(command_line()))]
     while waiting:
         words, command = waiting.pop()
         yield words, command
@@ -149,3 +150,30 @@ def test_completion_offers_what_was_begun(
     monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
     said = kurt2rt()
     assert (said.exit_code, said.out.split(), said.err) == (0, [offered], "")
+
+
+HEAVY = ("numpy", "can", "cantools", "aiocoap", "anyio", "cryptography", "matplotlib", "pymunk", "segno", "starlette")
+"""What they import in turn takes most of the time."""
+OUR_PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service_settings")
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"]], ids=" ".join)
+def test_help_imports_nothing_of_what_a_command_needs(words: list[str]) -> None:
+    tell = "import atexit, sys; atexit.register(lambda: print(*sys.modules, file=sys.stderr))"
+    command = [sys.executable, "-c", f"{tell}; sys.argv[1:] = {words}; from kurt2rt.cli.main import main; main()"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    imported = set(done.stderr.split())
+    assert "typer" in imported
+    assert imported.isdisjoint({*HEAVY, *OUR_PACKAGES})
+
+
+def test_the_list_of_commands_says_what_each_says_of_itself() -> None:
+    listed, whole = (getattr(typer.main.get_command(command_line(words)), "commands") for words in ((), None))  # noqa: B009
+    assert [*listed] == [name for name in listed if name in whole]
+    first_lines = {name: " ".join(each.help.split("\n\n")[0].split()) for name, each in whole.items()}
+    assert {name: each.help for name, each in listed.items()} == first_lines
+
+
+def test_errors_that_are_said_in_one_line_are_there() -> None:
+    for module, name in _ONE_LINERS:
+        assert issubclass(getattr(import_module(module), name), Exception)

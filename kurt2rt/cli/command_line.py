@@ -1,0 +1,128 @@
+"""The commands of `kurt2rt`, in groups. The list of all is shown without importing any of them."""
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module, metadata
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+_PANELS = {
+    "Teach": {
+        "run": "Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.",
+        "teach": "Teach a robot that runs: from a browser, from a terminal, or by a script.",
+        "pair": "Pair a teacher's device with this robot, and show the code that opens its page.",
+        "demo": "Teach a simulated robot from nothing, examine it without its teacher, show what came of it.",
+        "lesson": "Teach the simulated robot with a scripted teacher, in simulated time.",
+    },
+    "Examine": {
+        "exam": "Let the simulated robot drive without its teacher, and its teacher's policy for comparison.",
+        "why": "Explain what the robot did, and why: at a moment of a run, in a whole run, or now.",
+        "replay": "Replay a recorded run, and compare every decision and all that is known, bit for bit.",
+        "recover": "Copy what is whole of a recorded run to files that Foxglove opens.",
+    },
+    "Knowledge": {
+        "knowledge": "Look after what the robot was taught. A file is changed only while no robot runs on it; it is "
+        "read also while one does.",
+    },
+    "Robot and service": {
+        "status": "Tell how a robot program that runs is: from another terminal, or another machine.",
+        "doctor": "Look at this machine: what it offers the robot, what is missing, what to do.",
+        "sim": "Be a KURT2: its micro-controllers, sensors and wheels in a simulated world, on a CAN bus, in real "
+        "time.",
+        "commission": "Switch a real robot on for the first time: a checklist that walks you through.",
+        "service": "Run the robot's program as a unit of systemd, which starts it with the machine and again "
+        "whenever it fell.",
+    },
+    "Studies": {
+        "paper": "Teach and examine every basic task of the paper, and set its results beside ours.",
+        "phases": "Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.",
+        "surprise": "Measure how surprised taught robots are: on known ground, and where something is different.",
+        "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
+        "soak": "Let a day of the robot pass in simulated time in which everything fails.",
+        "bench": "Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.",
+    },
+}
+"""Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its
+module of kurt2rt.cli. The first line of its help stands here as well."""
+
+_PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
+
+_HELP = (
+    "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
+    "Begin with `kurt2rt run --page`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
+    "scripted teacher teach it wall following and examines it, in a minute. "
+    "`kurt2rt doctor` says what this machine offers for the real one."
+)
+
+USAGE_ERROR: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "ClickException")
+"""Base of all that the parser refuses: click's, or typer's own copy of it, by typer's version."""
+
+
+class _CommandGroup(TyperGroup):
+    """All commands, listed in the order of their panels."""
+
+    def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - a context of click or of typer
+        """Names of the commands that were loaded."""
+        return [name for name in _PANEL_OF if name in self.commands]
+
+
+def command_line(words: Sequence[str] | None = None) -> typer.Typer:
+    """Return the commands, imported; with `words`, only the command that they begin with.
+
+    Each brings its own packages, and as long as a robot's program takes to start, the robot stands. If `words` begin
+    with no command, the commands are listed with their first lines, and none is imported.
+    """
+    app = typer.Typer(cls=_CommandGroup, no_args_is_help=True, pretty_exceptions_enable=False)
+    app.callback(help=_HELP)(_options)  # a group, also where there is but one command
+    chosen = [*_PANEL_OF] if words is None else [name for name in words[:1] if name in _PANEL_OF]
+    for name in chosen:
+        command = getattr(import_module(f"kurt2rt.cli.{name}"), name)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name, rich_help_panel=_PANEL_OF[name])
+        else:
+            app.command(name, rich_help_panel=_PANEL_OF[name])(command)
+    for panel, lines in () if chosen else _PANELS.items():
+        for name, line in lines.items():
+            app.command(name, rich_help_panel=panel, help=line)(lambda: None)
+    return app
+
+
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=lambda asked: _print_version(asked), help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Take the options of kurt2rt itself."""
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"kurt2rt {metadata.version('kurt2rt')}")
+        raise typer.Exit
+
+
+def typed() -> list[str]:
+    """Return the words after `kurt2rt`: of the command line, or of the line that a shell asks to complete.
+
+    There the first one may be unfinished, and stands for all commands.
+    """
+    if "_KURT2RT_COMPLETE" not in os.environ:
+        return sys.argv[1:]
+    words = os.environ.get("COMP_WORDS", os.environ.get("_TYPER_COMPLETE_ARGS", "")).split()[1:]
+    return words if len(words) > 1 else []
+
+
+def misuse(error: Any) -> str:
+    """Return what the parser refuses, and which help explains it."""
+    told = " ".join(error.format_message().split())
+    context = getattr(error, "ctx", None)
+    if type(error).__name__ == "NoArgsIsHelpError":  # rich has printed the help
+        sys.exit(2)
+    where = "kurt2rt" if context is None else context.command_path
+    return f"{told.rstrip('.')}; see {where} --help"
