@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rla.rla import MID
@@ -70,6 +71,7 @@ class Rounds:
         self._channel = channel
         self._health = health
         self._recorder = recorder
+        self._words = words_for(runtime.robot.infrared)
         self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
         self._go_by(service)
         self._asking = False
@@ -80,6 +82,7 @@ class Rounds:
     def __call__(self, record: TickRecord) -> None:
         """The round after one tick."""
         runtime, writer, ticks = self._runtime, self._writer, self._runtime.ledger.ticks
+        runtime.progress.follow(record)
         if self._teacher is not None:
             command = self._teacher(record)
             if command is not None:
@@ -146,4 +149,4 @@ class Rounds:
         if runtime.mid is not None and record.decision.asks_at == MID:
             return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
         weights, names = runtime.level.system.weights, runtime.definition.names
-        return ask(match, record.situation.vector, weights, names, record.behaviour)
+        return ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)

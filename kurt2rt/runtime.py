@@ -34,6 +34,7 @@ from kurt2rt.teaching.errands import Errands
 from kurt2rt.teaching.happenings import SetDown
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.mid_lessons import MidLessons
+from kurt2rt.teaching.progress_meter import ProgressMeter
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.school import School
 from kurt2rt.tick import LessonKeeper, Tick
@@ -62,6 +63,8 @@ class Runtime:
     statistics: StatisticsCounter
     expecting: Expecting
     ledger: Ledger
+    progress: ProgressMeter
+    """Counts what its owner hands it after each tick."""
     tick: Tick
     scheduler: Scheduler
 
@@ -194,6 +197,7 @@ def build_runtime(
         statistics,
         expecting,
         ledger,
+        ProgressMeter(period_s),
         tick,
         scheduler,
     )

@@ -20,6 +20,7 @@ from kurt2rt.channel.wire import encode_state
 from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.perception.sensor_words import law_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import HandOver, Stop
@@ -191,6 +192,8 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,
+        "what": runtime.task.sentence,
+        "law": list(law_of(robot.infrared)),
         "simulated": simulated,
         "phases": {int(phase): phase.name.lower() for phase in Phase},
     }

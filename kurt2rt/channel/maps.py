@@ -13,6 +13,17 @@ LINE: Final = Text(512)
 ToldT = TypeVar("ToldT")
 
 
+@dataclass(frozen=True, slots=True)
+class MayLack:
+    """A check of a key that an older robot does not tell: the value's default stands for it."""
+
+    check: Check
+
+    def __call__(self, what: str, value: object) -> Any:
+        """Return what the check made of the value. Raises WireError."""
+        return self.check(what, value)
+
+
 class MapOf:
     """A map with a check for each of its keys; unknown keys are left out, for a newer robot may tell more."""
 
@@ -25,10 +36,10 @@ class MapOf:
         """What `kind` makes of it. Raises WireError."""
         if not isinstance(value, Mapping):
             raise WireError(f"{what} has to be a map")
-        missing = [name for name in self.checks if name not in value]
+        missing = [name for name, check in self.checks.items() if name not in value and not isinstance(check, MayLack)]
         if missing:
             raise WireError(f"{what} has no {', '.join(missing)}")
-        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items()})
+        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items() if name in value})
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +86,8 @@ def _plainly(value: Any, check: Check) -> Any:
             return list(value[:most])
         case ManyOf(check=inner, most=most):
             return [_plainly(each, inner) for each in value[:most]]
+        case MayLack(check=inner):
+            return _plainly(value, inner)
         case OrNone(check=inner) if value is not None:
             return _plainly(value, inner)
         case OrNotFinite():

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from kurt2rt.rla.rla import BASIC
+from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
 
@@ -154,3 +155,5 @@ class State:
     """The behaviours that lead there, the next one first."""
     plan_says: str = ""
     """How far the plan is, or why there is none, in a line; empty without a goal."""
+    progress: Progress = NO_PROGRESS
+    """How much the robot drove by itself, and asked, in the last minute."""

@@ -114,6 +114,7 @@ class Telling:
             goal="" if plan is None else plan.goal,
             plan=() if plan is None else plan.behaviours,
             plan_says="" if plan is None else plan.says,
+            progress=runtime.progress.progress(),
         )
 
     def _late(self) -> float:

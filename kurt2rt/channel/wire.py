@@ -24,6 +24,7 @@ from kurt2rt.channel.schema import (
 )
 from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.rla.rla import BASIC, MID
+from kurt2rt.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
 __all__ = [
@@ -159,6 +160,8 @@ _MID = (
 """The fields of MidState."""
 _SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag())
 """The fields of SurpriseState."""
+_PROGRESS = (Whole(0, WINDOW_S), OrNone(Whole(0, 100)), _NUMBER)
+"""The fields of Progress."""
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -175,6 +178,7 @@ def encode_state(state: State) -> bytes:
     )
     picture["mid"] = _row(state.mid, _MID)
     picture["su"] = _row(state.surprise, _SURPRISE)
+    picture["pg"] = _row(state.progress, _PROGRESS)
     return encode_plainly(picture)
 
 
@@ -192,6 +196,8 @@ def decode_state(payload: bytes) -> State:
     place = _PLACE("place", _take(picture, "pl"))
     mid = OrNone(Row(_MID))("mid level", _take(picture, "mid"))
     surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
+    # Younger than the rest of version 4: a robot that does not count yet leaves it out.
+    progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
     return State(
         left_m_s=left_m_s,
         right_m_s=right_m_s,
@@ -199,11 +205,12 @@ def decode_state(payload: bytes) -> State:
         place=None if place is None else SimulatedPlace(*place),
         mid=None if mid is None else MidState(*mid),
         surprise=None if surprise is None else SurpriseState(*surprise),
+        progress=NO_PROGRESS if progress is None else Progress(*progress),
         **values,
     )
 
 
-def _row(value: MidState | SurpriseState | None, checks: tuple[Check, ...]) -> list[Any] | None:
+def _row(value: MidState | SurpriseState | Progress | None, checks: tuple[Check, ...]) -> list[Any] | None:
     if value is None:
         return None
     return [_tidied(getattr(value, each.name), check) for each, check in zip(fields(value), checks, strict=True)]

@@ -29,6 +29,7 @@ from kurt2rt.cli.terminal_words import (
 )
 from kurt2rt.health.words import lines_of
 from kurt2rt.layers.decision import Cause
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
@@ -119,6 +120,8 @@ class TerminalTeacher:
         """Meet the robot when it comes, and again whenever it was started anew."""
         hello = self._hello = await self._meet()
         self._say(f"{hello.robot}, task {hello.task}; help shows what can be typed; Enter alone stops the robot")
+        if hello.what:
+            self._say(hello.what)
         self._say_all(name_lines(hello))
         await self._anyhow(self._tell(self._robot.take()))
         self._met = True
@@ -130,6 +133,10 @@ class TerminalTeacher:
                 boot = state.boot
                 self._say("the robot program was started anew")
                 await self._anyhow(self._meet_again())
+
+    @property
+    def _words(self) -> SensorWords:
+        return NO_WORDS if self._hello is None else self._hello.sensor_words
 
     async def _meet(self) -> Hello:
         told = ""
@@ -207,7 +214,7 @@ class TerminalTeacher:
                 self._say(f"critic: {trust_in(state)}")
             if state.cause == Cause.UNKNOWN:
                 if state.asks_at != asking:
-                    self._say(str(question_in(state)))
+                    self._say(str(question_in(state, self._words)))
                 asking = state.asks_at
                 told = ""
                 continue
@@ -265,7 +272,7 @@ class TerminalTeacher:
             case ["release"]:
                 await self._tell(robot.hand_over())
             case ["way"] if hello.mid is not None and line.state is not None and line.state.mid is not None:
-                self._say(way_in(line.state, hello.mid) or str(question_in(line.state)))
+                self._say(way_in(line.state, hello.mid) or str(question_in(line.state, self._words)))
                 self._say(came_by_in(line.state.mid, hello.mid))
             case ["places"] if hello.seeks:
                 self._say(f"named: {', '.join(await robot.situations()) or 'nothing yet'}")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.critic.role import Role
 from kurt2rt.layers.decision import Cause
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import ASK, MID, rla_title
 from kurt2rt.teaching.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -66,14 +67,16 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def question_in(state: State) -> Question | WayQuestion:
-    """The question that a picture shows."""
+def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | WayQuestion:
+    """Return the question that a picture shows, in the robot's `words` for its sensors."""
     if state.asks_at == MID and state.mid is not None:
         mid = state.mid
         came_by = tuple(word for word in mid.here if word)
         return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
-    return Question(state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour)
+    return Question(
+        state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour, words
+    )
 
 
 def asks_in(state: State) -> bool:

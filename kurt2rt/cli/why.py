@@ -19,6 +19,7 @@ from kurt2rt.explain.from_run import Explained, explain_run
 from kurt2rt.explain.render import render_timeline, render_why
 from kurt2rt.explain.timeline import timeline_of
 from kurt2rt.explain.tipping import Tip
+from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.run_folder import find_run
 from kurt2rt.replay.reading import read_run
@@ -144,7 +145,7 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
             f"the run ends at {explained.at_s:.2f} s; give a moment before that", param_hint="--at"
         )
     where = f"{_of(run)}, {explained.at_s:.2f} s (tick {explained.facts.tick})"
-    console.print(render_why(explained.facts, explained.tips, where))
+    console.print(render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
     if explained.difference is not None:
         console.print(
             f"This program decides otherwise than the one that was recorded: {explained.difference}. "
@@ -165,7 +166,7 @@ def _show_live(
     robot = load_robot(service.robot)
     facts, found = ask_why(device, host or device.host, port or device.port, robot)
     where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
-    console_of(_WIDE).print(render_why(facts, found, where))
+    console_of(_WIDE).print(render_why(facts, found, where, words_for(robot.infrared)))
     if picture is not None:
         if not set(robot.infrared.names) <= set(facts.basic.names):
             raise SettingsError(

@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 
 from kurt2rt.explain.colours import ASKS, INK, PALE_INK, STANDS
 from kurt2rt.explain.facts import LevelFacts, RlaStory
-from kurt2rt.explain.sentences import far, number
+from kurt2rt.explain.sentences import far
 from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.surroundings import DIFFERS
+from kurt2rt.perception.sensor_words import SensorWords
 
 _KNOWN, _LIMIT, _LIMIT_INK = "#e3f1e6", "#3f9b5c", "#2b7a45"
 _SMALLER = "#f0b27f"
@@ -59,7 +60,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, story: RlaStory | None, colours
     axes.text(0.0, 1.0, "how near each RLA is", fontsize=9.5, color=PALE_INK, ha="left", va="bottom")
 
 
-def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows: int) -> None:
+def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows: int, words: SensorWords) -> None:
     """The features that made the distance what it is: their shares, and both values."""
     _bare(axes)
     found = () if story is None else shares(level, story)[:rows]
@@ -74,8 +75,8 @@ def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows
             axes,
             -0.03 * highest,
             row,
-            share.name,
-            f"{number(share.here)} now, {number(share.there)} taught",
+            words.place(share.name),
+            f"{words.reading(share.name, share.here)} now, {words.reading(share.name, share.there)} taught",
             ha="right",
         )
         axes.text(
@@ -92,7 +93,7 @@ def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows
 
 
 def draw_tug_of_war(
-    axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str], rows: int
+    axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str], rows: int, words: SensorWords
 ) -> None:
     """Which features speak for the one, which for the other."""
     _bare(axes)
@@ -112,8 +113,8 @@ def draw_tug_of_war(
     for row, pull in enumerate(found):
         mine = pull.pull > 0
         axes.barh(row, pull.pull, height=0.56, color=_dot(story if mine else other, colours), zorder=2)
-        values = f"{number(pull.here)} now, {number(pull.in_first)} or {number(pull.in_second)}"
-        _name_row(axes, -2.15 * widest, row, pull.name, values, ha="left")
+        here, first, second = (words.reading(pull.name, each) for each in (pull.here, pull.in_first, pull.in_second))
+        _name_row(axes, -2.15 * widest, row, words.place(pull.name), f"{here} now, {first} or {second}", ha="left")
     axes.plot([0, 0], [-0.45, len(found) - 0.55], color=INK, linewidth=0.9, zorder=3)
     below = len(found) - 0.45
     axes.text(0.05 * widest, below, f"for {story.rla_id}", ha="left", va="top", fontsize=9, color=INK)

@@ -21,6 +21,7 @@ from kurt2rt.explain.surroundings import LEGEND, Mark, draw_surroundings
 from kurt2rt.explain.tipping import Tip
 from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.definition import AVERAGED
+from kurt2rt.perception.sensor_words import SensorWords, words_for
 from kurt2rt.rla.rla import MID
 
 _FEATURES, _FEATURES_BELOW_MID = 7, 4
@@ -56,13 +57,18 @@ def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings,
     )
     _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, story, colours)
     draw_nearness(figure.add_subplot(grid[1, 0:2]), level, story, colours)
-    _right_column(figure, grid[:, 2], facts, story, colours)
+    _right_column(figure, grid[:, 2], facts, story, colours, words_for(robot.infrared))
     figure.text(0.02, 0.014, LEGEND, fontsize=8.5, color=PALE_INK)
     save(figure, path)
 
 
 def _right_column(
-    figure: Figure, spec: SubplotSpec, facts: DecisionFacts, story: RlaStory | None, colours: Mapping[str, str]
+    figure: Figure,
+    spec: SubplotSpec,
+    facts: DecisionFacts,
+    story: RlaStory | None,
+    colours: Mapping[str, str],
+    words: SensorWords,
 ) -> None:
     """What mattered: at the level that decided, with the level above where there is one."""
     level, mid = facts.basic, facts.mid
@@ -71,7 +77,7 @@ def _right_column(
     if mid is not None and facts.asks_at == MID and mid.nearest is not None and not mid.lost:
         right = spec.subgridspec(2, 1, hspace=0.3, height_ratios=(2.0, 1.0))
         draw_mid(figure.add_subplot(right[0]), mid, colours)
-        draw_differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID)
+        draw_differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID, words)
         return
     rows = _FEATURES if mid is None else _FEATURES_BELOW_MID
     if mid is None:
@@ -79,8 +85,8 @@ def _right_column(
     else:
         right = spec.subgridspec(3, 1, hspace=0.42, height_ratios=(1.5, 1.0, 1.0))
         draw_mid(figure.add_subplot(right[0]), mid, colours)
-    draw_differences(figure.add_subplot(right[-2]), level, story, rows)
-    draw_tug_of_war(figure.add_subplot(right[-1]), level, story, colours, rows)
+    draw_differences(figure.add_subplot(right[-2]), level, story, rows, words)
+    draw_tug_of_war(figure.add_subplot(right[-1]), level, story, colours, rows, words)
 
 
 def _heading(

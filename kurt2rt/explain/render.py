@@ -9,11 +9,12 @@ from rich.text import Text
 
 from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
-from kurt2rt.explain.sentences import beside, guarded, mid_lines, number, still_kept, taught, used, when, would_change
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when, would_change
 from kurt2rt.explain.shares import pulls, shares
 from kurt2rt.explain.timeline import Kind, Stretch, Timeline, summary
 from kurt2rt.explain.tipping import Tip
 from kurt2rt.knowledge.shown import plain
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import MID
 
 _FEATURES = 6
@@ -21,16 +22,21 @@ _STYLES = {Kind.DRIVES: "green", Kind.LED: "magenta", Kind.ASKS: "red", Kind.STA
 _BAR = 20
 
 
-def render_why(facts: DecisionFacts, found: tuple[Tip, ...], where: str) -> RenderableType:
-    """One decision. `found`: what would have changed it; `where`: of which run, and when."""
+def render_why(
+    facts: DecisionFacts, found: tuple[Tip, ...], where: str, words: SensorWords = NO_WORDS
+) -> RenderableType:
+    """Render one decision.
+
+    `found`: what would have changed it; `where`: of which run, and when; `words`: for the robot's sensors.
+    """
     parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
     parts += [plain(line) for line in because(facts)]
     if guarded(facts):
         parts.append(plain(guarded(facts)))
     if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
-        parts += _of_level(facts.mid, None)
+        parts += _of_level(facts.mid, None, words)
     else:
-        parts += _of_level(facts.basic, facts.basic.driver)
+        parts += _of_level(facts.basic, facts.basic.driver, words)
     changes = would_change(found)
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
@@ -44,20 +50,20 @@ def render_why(facts: DecisionFacts, found: tuple[Tip, ...], where: str) -> Rend
     return Group(*parts)
 
 
-def _of_level(level: LevelFacts, driver: RlaStory | None) -> list[RenderableType]:
+def _of_level(level: LevelFacts, driver: RlaStory | None, words: SensorWords) -> list[RenderableType]:
     """The RLA it went by, those beside it, and the features."""
     story = driver or level.nearest
     if story is None:
         return []
     parts: list[RenderableType] = [plain(line) for line in beside(level)]
-    parts.append(_differences(level, story))
+    parts.append(_differences(level, story, words))
     parts += [Text("Taught", style="bold"), plain(taught(story)), plain(used(story))]
     if len(story.acts) > 1:
         parts.append(_history(story))
     return parts
 
 
-def _differences(level: LevelFacts, story: RlaStory) -> RenderableType:
+def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> RenderableType:
     found = shares(level, story)
     other = level.rival_of(story)
     pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
@@ -71,13 +77,19 @@ def _differences(level: LevelFacts, story: RlaStory) -> RenderableType:
         table.add_column(f"RLA {other.rla_id}", justify="right")
         table.add_column("speaks for", justify="left")
     for share in found[:_FEATURES]:
-        cells: list[str | Text] = [plain(share.name), number(share.here), number(share.there)]
+        cells: list[str | Text] = [
+            plain(words.place(share.name)),
+            *(words.reading(share.name, each) for each in (share.here, share.there)),
+        ]
         cells.append(f"{100 * share.share:3.0f} % {'█' * round(_BAR * share.share)}")
         if other is not None:
             of_feature = pull.get(share.name, 0.0)
             ahead = f"{100 * abs(of_feature):.0f} %"
             side = story if of_feature > 0 else other
-            cells += [number(theirs[share.name]), "" if abs(of_feature) < 0.005 else f"{ahead} for RLA {side.rla_id}"]
+            cells += [
+                words.reading(share.name, theirs[share.name]),
+                "" if abs(of_feature) < 0.005 else f"{ahead} for RLA {side.rla_id}",
+            ]
         table.add_row(*cells)
     hidden = len(found) - table.row_count
     if not found:

@@ -30,7 +30,7 @@ def beside(level: LevelFacts) -> list[str]:
 def would_change(found: tuple[Tip, ...], most: int = 3) -> list[str]:
     """What would have had to be otherwise for the robot to do something else, the smallest change first."""
     return [
-        f"{tip.sensor} ({tip.label}) at {tip.needed_counts} instead of {tip.counts} counts{_metres(tip)}: {_then(tip)}"
+        f"{tip.label}{_readings(tip)} ({tip.sensor}: {tip.needed_counts} counts, not {tip.counts}): {_then(tip)}"
         for tip in found[:most]
     ]
 
@@ -143,10 +143,9 @@ def _margin(level: LevelFacts, other: RlaStory) -> str:
     return "" if border is None else f"; the border to it is {far(border)} away"
 
 
-def _metres(tip: Tip) -> str:
-    if abs(tip.distance_m - tip.needed_m) < 0.005:
-        return ""
-    return f" ({tip.needed_m:.2f} m, not {tip.distance_m:.2f} m)"
+def _readings(tip: Tip) -> str:
+    # Less than a centimetre is told in counts alone.
+    return "" if tip.needs == tip.reads else f" at {tip.needs} instead of {tip.reads}"
 
 
 def _then(tip: Tip) -> str:

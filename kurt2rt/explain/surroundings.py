@@ -77,7 +77,7 @@ def draw_surroundings(
             _wall(axes, sensor, distance_m)
             ends.setdefault(sensor.heading_deg, []).append(_along(sensor, distance_m))
         if differs:
-            _label(axes, sensor, distance_m, f"{sensor.name}: {counts[sensor.name]:.0f}", sees=sees)
+            _label(axes, sensor, distance_m, f"{distance_m * 100:.0f} cm" if sees else "nothing", sees=sees)
         if sensor.name in averages:
             average_m = law.distance_m(averages[sensor.name])
             if _sees(law, averages[sensor.name]):

@@ -11,6 +11,7 @@ from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.definition import SituationDefinition, WheelSpeed
 from kurt2rt.perception.features import FeatureExtractor
+from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.rla.rla import BASIC
 
 
@@ -27,6 +28,10 @@ class Tip:
     distance_m: float
     """What it read, as the sensors' law has it."""
     needed_m: float
+    reads: str
+    """What it read, in words."""
+    needs: str
+    """The needed reading, in words."""
     rla: RlaStory | None
     """Who answers then; None: the robot stands and asks."""
     action: str | None
@@ -52,6 +57,7 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
     wheels = [place for place, feature in enumerate(definition.features) if isinstance(feature, WheelSpeed)]
     of_average = 0.0 if facts.history_frozen else 1 / definition.history_steps
     here = np.array(level.vector)
+    words = words_for(law)
     spread = 1 + 2 * law.gain_spread_share
     possible = set(range(round(law.floor_counts / spread), round(law.plateau_counts * spread) + 1))
     for place, sensor in enumerate(law.sensors):
@@ -73,6 +79,8 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
                     needed,
                     law.distance_m(counts[place]),
                     law.distance_m(needed),
+                    words.reading(sensor.name, counts[place]),
+                    words.reading(sensor.name, needed),
                     answer,
                     _does(answer, facts.kept),
                 )

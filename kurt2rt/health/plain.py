@@ -1,6 +1,6 @@
 """The report as plain values, for JSON and CBOR, and back."""
 
-from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf
+from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf, MayLack
 from kurt2rt.channel.schema import Flag, ManyOf, OrNone, Real
 from kurt2rt.health.report import (
     BusHealth,
@@ -13,6 +13,7 @@ from kurt2rt.health.report import (
     SensorAges,
     Trouble,
 )
+from kurt2rt.teaching.progress import Progress
 
 MOST_ROWS = 16
 """Of troubles, disks and queues; more are not told."""
@@ -60,6 +61,7 @@ _REPORT = MapOf(
     ),
     drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
     troubles=ManyOf(MapOf(Trouble, about=NAME, what=LINE, since_s=_TIME, to_do=LINE, urgent=Flag()), most=MOST_ROWS),
+    progress=MayLack(MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT)),
 )
 
 _FORM = Form[HealthReport]("the health report", _REPORT)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from kurt2rt.teaching.progress import NO_PROGRESS, Progress
+
 SENSORS = "sensors"
 """What a trouble with them is about."""
 
@@ -143,6 +145,8 @@ class HealthReport:
     drops: tuple[Drops, ...]
     troubles: tuple[Trouble, ...]
     """The urgent ones first, then those that have lasted longest."""
+    progress: Progress = NO_PROGRESS
+    """Of teaching, in the last minute."""
 
     @property
     def urgent(self) -> bool:

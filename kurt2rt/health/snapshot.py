@@ -7,6 +7,7 @@ from hal.health import Health
 from kurt2rt.health.instruments import Instruments, Keeping
 from kurt2rt.rla.rla import rla_title
 from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.tick import TickRecord
 
 
@@ -33,6 +34,7 @@ class Snapshot:
     rlas: int
     lessons: int
     doing: str
+    progress: Progress = NO_PROGRESS
 
 
 def take_snapshot(
@@ -59,6 +61,7 @@ def take_snapshot(
         rlas=len(system),
         lessons=system.standing_lessons,
         doing=_doing(runtime, record),
+        progress=runtime.progress.progress(),
     )
 
 

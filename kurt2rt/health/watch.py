@@ -118,6 +118,7 @@ class HealthWatch:
             disks=disks,
             safety=Safety(snapshot.unwritten, None if last_write_s is None else last_write_s * 1000),
             machine=machine,
+            progress=snapshot.progress,
             drops=tuple(Drops(of, count) for of, count in snapshot.drops.items()),
             troubles=self._troubles.judge(snapshot, punctuality, disks, machine, self._counted),
         )

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from kurt2rt.health.report import HealthReport, Punctuality, SensorAges, Trouble
+from kurt2rt.teaching.progress import WINDOW_S, Progress
 
 FINE, WARNS, URGENT = "", "warns", "urgent"
 """How a row is: a trouble is about it, or an urgent one."""
@@ -44,6 +45,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     took_ms = report.safety.last_write_ms
     took = "" if took_ms is None else f"; the disk took {took_ms:.0f} ms for the last"
     rows.append(("lessons", f"{report.lessons} stand, {report.rlas} RLAs, {written}{took}"))
+    rows.append(("progress", progress_in(report.progress)))
     rooms = [
         f"{each.of}: {'no answer' if each.free_bytes is None else f'{size(each.free_bytes)} free'}"
         for each in report.disks
@@ -76,6 +78,15 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
         return ("nothing is known yet, the robot program has just begun",)
     troubles = (f"{'!!' if each.urgent else '!'} {trouble_in(each)}" for each in report.troubles)
     return (headline(report), *(f"{row.name:<9} {row.text}" for row in rows_of(report)), *troubles)
+
+
+def progress_in(progress: Progress) -> str:
+    """Return the share driven without help and the questions, over the last minute."""
+    if progress.driven_percent is None:
+        return "nothing was driven yet"
+    asks = "1 question" if progress.asks == 1 else f"{progress.asks} questions"
+    over = "the last minute" if progress.seconds >= WINDOW_S else f"the first {progress.seconds} s"
+    return f"{progress.driven_percent} % driven by itself, {asks} in {over}"
 
 
 def headline(report: HealthReport) -> str:

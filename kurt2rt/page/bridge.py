@@ -211,7 +211,7 @@ class Bridge:
     async def _explain(self, visitor: Visitor, number: int) -> None:
         visitor.orders += 1
         try:
-            view = why_view(number, await self._robot.why())
+            view = why_view(number, await self._robot.why(), self._rarely.words)
         except NoAnswerError as error:
             view = refusal_view(number, "unknown", str(error))
         finally:

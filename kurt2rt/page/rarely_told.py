@@ -10,6 +10,7 @@ from kurt2rt.channel.state import State
 from kurt2rt.page.mirror import Mirror
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.views import health_view, hello_view, lessons_view, situations_view, world_view
+from kurt2rt.perception.sensor_words import NO_WORDS
 from kurt2rt.teaching.answer import NoAnswerError
 
 _LESSONS = 10
@@ -28,6 +29,8 @@ class RarelyTold:
         self._robot = robot
         self._carried_out = carried_out
         self._seeks = False
+        self.words = NO_WORDS
+        """For the robot's sensors."""
         fetches = {
             "hello": self._fetch_hello,
             "world": self._fetch_world,
@@ -68,6 +71,7 @@ class RarelyTold:
     async def _fetch_hello(self) -> dict[str, Any]:
         hello = await self._robot.hello()
         self._seeks = hello.seeks
+        self.words = hello.sensor_words
         return hello_view(hello)
 
     async def _fetch_world(self) -> dict[str, Any]:

@@ -65,6 +65,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "plan": state.plan,
         "plan_says": state.plan_says,
         "place": None if place is None else asdict(place),
+        "progress": asdict(state.progress),
         "link": {
             "age_ms": round(age_s * 1000),
             "rtt_ms": None if link.rtt_ms is None else _finite(link.rtt_ms),

@@ -4,16 +4,17 @@ from typing import Any
 
 from kurt2rt.explain.because import because, headline
 from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
-from kurt2rt.explain.sentences import beside, guarded, mid_lines, number, taught, used
+from kurt2rt.explain.sentences import beside, guarded, mid_lines, taught, used
 from kurt2rt.explain.shares import shares
 from kurt2rt.layers.decision import Cause
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import MID
 
 _FEATURES = 6
 
 
-def why_view(number: int, facts: DecisionFacts | None) -> dict[str, Any]:
-    """The answer to a page that asked why; there is nothing to explain before the first tick."""
+def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_WORDS) -> dict[str, Any]:
+    """Return the answer to a page that asked why; there is nothing to explain before the first tick."""
     view = {"kind": "answer", "number": number, "accepted": True, "text": "nothing was decided yet"}
     if facts is None:
         return {**view, "lines": [], "features": []}
@@ -27,7 +28,7 @@ def why_view(number: int, facts: DecisionFacts | None) -> dict[str, Any]:
         "tick": facts.tick,
         "lines": [line for line in (*lines, *mid_lines(facts)) if line],
         "rla": "" if story is None else story.title,
-        "features": [] if story is None else _features(level, story),
+        "features": [] if story is None else _features(level, story, words),
     }
 
 
@@ -39,8 +40,13 @@ def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaStory | None]:
     return facts.basic, driver or facts.basic.nearest
 
 
-def _features(level: LevelFacts, story: RlaStory) -> list[dict[str, Any]]:
+def _features(level: LevelFacts, story: RlaStory, words: SensorWords) -> list[dict[str, Any]]:
     return [
-        {"name": each.name, "here": number(each.here), "there": number(each.there), "share": round(each.share, 3)}
+        {
+            "name": words.place(each.name),
+            "here": words.reading(each.name, each.here),
+            "there": words.reading(each.name, each.there),
+            "share": round(each.share, 3),
+        }
         for each in shares(level, story)[:_FEATURES]
     ]

@@ -26,6 +26,7 @@ AnyMid = Annotated[
     Annotated[Name, Tag("name")] | Annotated[MidSettings, Tag("settings")],
     Discriminator(lambda mid: "settings" if isinstance(mid, dict | MidSettings) else "name"),
 ]
+Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
 
 Place = Literal["starts", "in_sight"]
 """Where a hand sets the robot down: at a start pose, or anywhere free from where it sees something near (a post, where
@@ -147,6 +148,10 @@ class TaskSettings(Settings):
 
     name: Name
     """Files that hold what was taught and found are called after it."""
+    what: Sentence | None = None
+    """The task in one sentence to its teacher, such as "Teach it to follow the wall on its left". Default: made from
+    the name.
+    """
     system: Name | None = None
     """The RLA system that is taught, where it is not only this task's: tasks that name the same one have the same
     situation and behaviours, and go on in each other's knowledge. Named as the task when absent."""
@@ -172,6 +177,11 @@ class TaskSettings(Settings):
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult
+
+    @property
+    def sentence(self) -> str:
+        """The task in one sentence to its teacher."""
+        return self.what or f"Teach it the task {self.name.replace('_', ' ')}"
 
     @property
     def system_name(self) -> str:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, VERSION
 from kurt2rt.channel.schema import Flag, ManyOf, Octets, OrNone, Real, Row, Text, Whole, WireError
+from kurt2rt.perception.sensor_words import InfraredLaw, SensorWords
 
 _NAME = Text(64)
 _METRES = Real(1000.0, "m")
@@ -15,6 +16,9 @@ _SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))),
 _APPRAISALS = ManyOf(Row((_NAME, Whole(-1, 1))), most=16)
 _MID = OrNone(Row((_NAME, Whole(0, 256), Real(1e9))))
 _OUTLINE = Row((_METRES, _METRES))
+_WHAT = Text(128)
+_COUNTS = Real(1e6, "counts")
+_LAW = OrNone(Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS)))
 
 
 class AppraisalName(NamedTuple):
@@ -79,6 +83,15 @@ class Hello:
     """None where no mid level chooses the behaviours."""
     seeks: bool = False
     """Whether the robot can be given a goal."""
+    what: str = ""
+    """The task in one sentence to its teacher; empty from a robot that does not tell it."""
+    law: InfraredLaw | None = None
+    """Law of the infra-red sensors; None from a robot that does not tell it."""
+
+    @property
+    def sensor_words(self) -> SensorWords:
+        """Words for features by the sensors' places."""
+        return SensorWords({each.name: each.label for each in self.sensors}, self.law)
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
@@ -107,6 +120,8 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             trusted_from=Real(1.0)("trusted_from", body["trusted_from"]),
             mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),
             seeks=Flag()("seeks", body["seeks"]),
+            what=_WHAT("what", body.get("what", "")),
+            law=None if (law := _LAW("law", body.get("law"))) is None else InfraredLaw(*law),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import ASK, MID, rla_title
 
@@ -34,12 +35,18 @@ class Question:
     """The features that differ most, most first."""
     behaviour: str = ""
     """The taught behaviour that is wanted; empty where the task has only one."""
+    words: SensorWords = field(default=NO_WORDS, compare=False, repr=False)
+    """For the features that differ."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
             of = f" of {self.behaviour}" if self.behaviour else ""
             return f"I know nothing{of} yet, teach me"
-        features = ", ".join(f"{each.name} {each.here:.0f} not {each.in_condition:.0f}" for each in self.differing)
+        features = "; ".join(
+            self.words.difference(each.name, each.here, each.in_condition)
+            for each in self.differing
+            if self.words.differs(each.name, each.here, each.in_condition)
+        )
         nearest = rla_title(self.nearest_rla, self.behaviour)
         if self.action != ASK and self.distance <= self.radius:
             # It was chosen, and is a taught system itself, in which no RLA is near enough.
@@ -47,7 +54,7 @@ class Question:
         action = "its action was withdrawn" if self.action == ASK else self.action
         return (
             f"I don't know this situation, teach me: nearest is {nearest} ({action}) "
-            f"at {self.distance:.0f} of {self.radius:.0f}; {features}"
+            f"at {self.distance:.0f} of {self.radius:.0f}{'; ' if features else ''}{features}"
         )
 
 
@@ -94,10 +101,14 @@ def ask(
     feature_names: tuple[str, ...],
     behaviour: str = "",
     most: int = 5,
+    words: SensorWords = NO_WORDS,
 ) -> Question:
-    """Question about a situation vector (d,) whose nearest RLA of `behaviour` is `match`, found with `weights` (d,)."""
+    """Return the question about a situation vector whose nearest RLA of `behaviour` is `match`.
+
+    `situation` and `weights`, with which the match was found, have shape (d,).
+    """
     if match is None:
-        return Question(None, None, float("inf"), 0.0, (), behaviour)
+        return Question(None, None, float("inf"), 0.0, (), behaviour, words)
     condition = np.array(match.rla.condition)
     differences = np.abs(situation - condition) * weights
     order = np.argsort(-differences, kind="stable")[:most]
@@ -106,4 +117,4 @@ def ask(
         for i in order
         if differences[i] > 0.0
     )
-    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour)
+    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour, words)

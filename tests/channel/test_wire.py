@@ -36,6 +36,7 @@ from kurt2rt.channel.wire import (
     encode_state,
 )
 from kurt2rt.rla.rla import BASIC, MID, Phase
+from kurt2rt.teaching.progress import Progress
 from kurt2rt.teaching.question import FeatureDifference
 from tests.channel.states import COMMANDS, SURPRISED, state
 
@@ -143,6 +144,7 @@ STATES = st.builds(
     goal=NAMES,
     plan=WORDS,
     plan_says=NAMES,
+    progress=st.builds(Progress, st.integers(0, 60), st.none() | st.integers(0, 100), NUMBERS),
 )
 
 ANYTHING = st.recursive(
@@ -198,6 +200,12 @@ def test_a_state_with_anything_in_one_place_is_valid_or_is_refused(key: str, any
     except WireError:
         return
     assert decode_state(encode_state(decoded)) == decoded
+
+
+def test_state_of_a_robot_without_progress_is_understood() -> None:
+    picture = cbor2.loads(encode_state(state(progress=Progress(60, 87, 3))))
+    del picture["pg"]
+    assert decode_state(cbor2.dumps(picture)) == state()
 
 
 @given(st.binary(max_size=80))
@@ -311,7 +319,7 @@ def test_a_whole_number_is_taken_for_a_way() -> None:
 
 
 def test_a_state_leaves_room_in_its_datagram() -> None:
-    assert len(encode_state(state())) < 450
+    assert len(encode_state(state())) < 480
     assert len(encode_state(state(mid=COMMANDS, surprise=SURPRISED, plan=("turn_left",) * 12))) < 900
 
 

@@ -10,10 +10,11 @@ from kurt2rt.channel.schema import WireError
 from kurt2rt.channel.wire import decode_answer, encode_answer
 from kurt2rt.health.plain import MOST_ROWS, plain_of, report_of
 from kurt2rt.health.report import HealthReport
+from kurt2rt.teaching.progress import Progress
 from tests.health.reports import ILL, LATE, WELL
 
 
-@pytest.mark.parametrize("report", [WELL, ILL, replace(WELL, bus=None)])
+@pytest.mark.parametrize("report", [WELL, ILL, replace(WELL, bus=None), replace(WELL, progress=Progress(60, 87, 3))])
 def test_it_comes_back_as_it_went(report: HealthReport) -> None:
     assert report_of(json.loads(json.dumps(plain_of(report), allow_nan=False))) == report
     assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
@@ -22,6 +23,12 @@ def test_it_comes_back_as_it_went(report: HealthReport) -> None:
 def test_what_a_newer_robot_tells_besides_is_left_out() -> None:
     plain = plain_of(WELL)
     assert report_of({**plain, "mood": "good", "ages": {**plain["ages"], "lidar_s": 1.0}}) == WELL
+
+
+def test_report_of_a_robot_without_progress_is_understood() -> None:
+    plain = plain_of(replace(WELL, progress=Progress(60, 87, 3)))
+    del plain["progress"]
+    assert report_of(plain) == WELL
 
 
 def test_an_error_message_of_any_shape_costs_nobody_the_report() -> None:

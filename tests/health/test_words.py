@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.health.words import URGENT, WARNS, headline, lasting, lines_of, rows_of, size, trouble_in
+from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from tests.health.reports import ILL, LATE, WELL
 
 
@@ -28,6 +29,19 @@ def test_a_trouble_says_what_since_when_and_what_to_do() -> None:
     assert trouble_in(LATE) == told
     assert trouble_in(replace(LATE, to_do="")) == told.rpartition(": ")[0]
     assert f"! {told}" in lines_of(ILL)
+
+
+@pytest.mark.parametrize(
+    ("progress", "words"),
+    [
+        (NO_PROGRESS, "nothing was driven yet"),
+        (Progress(12, 0, 1), "0 % driven by itself, 1 question in the first 12 s"),
+        (Progress(60, 87, 3), "87 % driven by itself, 3 questions in the last minute"),
+    ],
+)
+def test_progress_row_tells_share_and_questions(progress: Progress, words: str) -> None:
+    rows = {row.name: row.text for row in rows_of(replace(WELL, progress=progress))}
+    assert rows["progress"] == words
 
 
 def test_what_is_not_there_is_said_so() -> None:

@@ -220,6 +220,7 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
     assert hello.phases == ("supervised", "corrections")
     assert hello.appraisals == (("bad", -1), ("neutral", 0), ("good", 1))
     assert hello.trusted_from == 0.8
+    assert (hello.what, hello.law) == ("", None)  # a robot of before
     assert robot.orders() == [HelloRequest()]
 
 

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 
+from hal.robot_settings import load_robot
 from kurt2rt.mid.settings import load_mid
+from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.rla.rla import MID
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.space import Space
@@ -28,8 +30,22 @@ def test_it_names_the_nearest_rla_its_action_distance_radius_and_what_differs_mo
     assert [each.name for each in question.differing] == ["s2 (10 s average)", "s1", "s2", "s3", "maximum left"]
     assert str(question) == (
         "I don't know this situation, teach me: nearest is RLA 1 (curve_left) at 500 of 300; "
-        "s2 (10 s average) 500 not 100, s1 400 not 100, s2 90 not 100, s3 105 not 100, maximum left 98 not 100"
+        "s2 (10 s average): 500, was 100; s1: 400, was 100; s2: 90, was 100; s3: 105, was 100; "
+        "maximum left: 98, was 100"
     )
+
+
+def test_question_with_words_tells_places_and_centimetres() -> None:
+    names = ("s9", "s14", "s9 (10 s average)", "maximum front", "orientation left s1>s2")
+    system = RlaSystem(5, 300.0)
+    system.apply(created(1, (108.0, 400.0, 70.0, 500.0, 0.0), "forward"))
+    here = np.array((441.0, 70.0, 72.0, 505.0, 42.0))
+    question = ask(system.match(here), here, system.weights, names, words=words_for(load_robot().infrared))
+    assert str(question).split("; ")[1:] == [
+        "front left: 13 cm, was 46 cm",
+        "rear centre: nothing within 60 cm, was 15 cm",
+        "left front nearer than left back: 42, was 0",
+    ]  # the average and the nearest in front differ by less than a centimetre
 
 
 def test_it_names_an_own_radius() -> None:
@@ -37,7 +53,7 @@ def test_it_names_an_own_radius() -> None:
 
 
 def test_features_that_do_not_differ_are_not_named() -> None:
-    assert str(asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0))).endswith("at 400 of 300; s3 400 not 0")
+    assert str(asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0))).endswith("at 400 of 300; s3: 400, was 0")
 
 
 def test_of_features_that_differ_alike_the_first_come_first() -> None:
@@ -58,7 +74,8 @@ def test_where_behaviours_have_names_it_asks_about_the_one_that_is_wanted() -> N
     here = np.array((0, 0, 400, 0, 0, 0, 0))
     question = ask(system.match(here, "turn_left"), here, system.weights, NAMES, "turn_left")
     assert str(question) == (
-        "I don't know this situation, teach me: nearest is RLA 1 of turn_left (curve_left) at 400 of 300; s3 400 not 0"
+        "I don't know this situation, teach me: nearest is RLA 1 of turn_left (curve_left) at 400 of 300; "
+        "s3: 400, was 0"
     )
 
 

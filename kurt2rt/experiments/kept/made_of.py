@@ -86,9 +86,10 @@ class Fingerprints:
     ) -> None:
         """`source`: as `source_hash` tells. `leave_out`: parts of a task that change nothing in these experiments.
 
-        The task's own numbers of the paper, and the reading that is not taken, never do.
+        The task's own numbers of the paper, and the reading that is not taken, never do; nor does its sentence to the
+        teacher, which is always left out.
         """
-        self._leave_out = set(leave_out)
+        self._leave_out = {*leave_out, "what"}
         self._source = source
         self._versions = versions()
         self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
