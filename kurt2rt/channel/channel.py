@@ -144,7 +144,8 @@ async def open_channel(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health
     )
     site = RobotSite(teachers, reception)
-    endpoint = await open_endpoint(site, LOOPBACK if teachers.only_local else EVERYWHERE, port, hears=site.hears)
+    host = LOOPBACK if teachers.only_local else EVERYWHERE
+    endpoint = await open_endpoint(site, host, port, hears=site.hears, key_of=site.key_of)
     site.doorkeeper = endpoint
     try:
         async with anyio.create_task_group() as tasks:

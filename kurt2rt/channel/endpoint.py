@@ -15,6 +15,7 @@ from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
 
 from kurt2rt.channel.gate import Counters, Gate, Limits, SocketAddress
 from kurt2rt.channel.port import bound_socket
+from kurt2rt.channel.sealed_request import SealedRequest
 
 
 class Site(Protocol):
@@ -174,16 +175,18 @@ async def open_endpoint(
     *,
     limits: Limits | None = None,
     hears: Callable[[Any], bool] = _nobody,
+    key_of: Callable[[SealedRequest], Any] | None = None,
     now: Callable[[], float] = time.monotonic,
 ) -> Endpoint:
     """Listen on an address of this machine, "::" for all; port 0 takes a free one.
 
-    `hears`: whether somebody (a request's `remote`) is there for certain, though he confirmed nothing.
+    `hears`: whether somebody (a request's `remote`) is there for certain, though he confirmed nothing. `key_of`: the
+    security context that an OSCORE request names, or None.
     Raises ChannelError when the address is none of ours, or another program has the port.
     """
     loop = asyncio.get_running_loop()
     counters = Counters()
-    gate = Gate(limits or Limits(), counters, now)
+    gate = Gate(limits or Limits(), counters, now, key_of)
     failures = _Failures(counters)
     # Not registered anywhere: aiocoap's lines about single messages are neither formatted nor passed on.
     log = logging.Logger("kurt2rt.channel.coap", logging.ERROR)

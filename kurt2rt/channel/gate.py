@@ -1,10 +1,22 @@
-"""Which datagrams are worth decoding: a flood must end here, in microseconds, and leave nothing in memory."""
+"""Filter in front of aiocoap: a flood must end here, in microseconds, and leave nothing in memory.
+
+A sender can forge its address and copy a key id, so neither buys work:
+
+- An OSCORE request is dropped if no key of ours has its key id, or if that key did not make its tag. Checking a tag
+  costs some 20 µs and has a rate of its own.
+- A request with the highest sequence number of its key is no copy. It has the key's rate, from any address. So
+  strangers who flood do not keep out a device that has just opened its socket.
+- Any other datagram has the rate of its address if a key holder proved that address, otherwise the strangers' rate:
+  requests without OSCORE, pings, confirmations of pictures, and requests that were sent again, overtaken or copied.
+"""
 
 import time
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
+from kurt2rt.channel.sealed_request import SealedRequest
 from kurt2rt.channel.token_bucket import TokenBucket
 
 LONGEST_DATAGRAM = 1500
@@ -23,10 +35,12 @@ _Sender = tuple[str, int, int]
 
 @dataclass(slots=True)
 class Counters:
-    """What came in since the endpoint was opened; the last three are among those received."""
+    """What came in since the endpoint was opened; the last four are among those received."""
 
     received: int = 0
     dropped_by_bucket: int = 0
+    forged: int = 0
+    """OSCORE requests that no key of ours made; dropped."""
     junk: int = 0
     failed: int = 0
     """Errors while a datagram was handled or sent; none of them left the endpoint."""
@@ -44,17 +58,47 @@ class Limits:
     """Each sender who proved that he holds a key."""
     proven_senders: int = 64
     """Who was not heard for longest is a stranger again."""
+    tags_at_once: float = 500
+    tags_per_s: float = 5_000
+    """Tags checked, all keys together: at most a tenth of a core."""
+    key_at_once: float = 200
+    key_per_s: float = 200
+    """New requests of each key, from all addresses together."""
+
+
+@dataclass(slots=True)
+class _Key:
+    """Requests of one key that were certainly made with it."""
+
+    bucket: TokenBucket
+    newest: int
+    """Highest sequence number so far."""
 
 
 class Gate:
-    """Lets in what may be a request and comes at a bearable rate."""
+    """Accepts what may be a request and comes at a bearable rate."""
 
-    def __init__(self, limits: Limits, counters: Counters, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        limits: Limits,
+        counters: Counters,
+        now: Callable[[], float] = time.monotonic,
+        key_of: Callable[[SealedRequest], Any] | None = None,
+    ) -> None:
+        """Begin with full buckets.
+
+        Args:
+            key_of: the security context that an OSCORE request names, or None if there is none. Without `key_of` no
+                tag is checked.
+        """
         self._limits = limits
         self._counters = counters
         self._now = now
+        self._key_of = key_of
         self._strangers = TokenBucket(limits.strangers_at_once, limits.strangers_per_s, now)
+        self._tags = TokenBucket(limits.tags_at_once, limits.tags_per_s, now)
         self._proven: OrderedDict[_Sender, TokenBucket] = OrderedDict()
+        self._keys: OrderedDict[bytes, _Key] = OrderedDict()
 
     @property
     def proven_senders(self) -> int:
@@ -67,16 +111,42 @@ class Gate:
         if not may_be_request(data):
             self.count_junk()
             return False
+        sealed = None if self._key_of is None else SealedRequest.parse(data)
+        if self._key_of is not None and sealed is not None:
+            key = self._key_of(sealed)
+            if key is not None and not self._tags.take():
+                return self._counted(admitted=False)
+            if key is None or not sealed.fits(key):
+                self._counters.forged += 1
+                return False
+            if self._is_newest(sealed):
+                return self._counted(self._keys[sealed.kid].bucket.take())
         sender = (address[0], address[1], address[3])
         bucket = self._proven.get(sender)
         if bucket is None:
             bucket = self._strangers
         else:
             self._proven.move_to_end(sender)
-        if bucket.take():
+        return self._counted(bucket.take())
+
+    def _is_newest(self, sealed: SealedRequest) -> bool:
+        """Note an authentic request; whether its number is higher than all before it."""
+        key = self._keys.get(sealed.kid)
+        if key is None:
+            limits = self._limits
+            self._keys[sealed.kid] = _Key(TokenBucket(limits.key_at_once, limits.key_per_s, self._now), sealed.number)
+            if len(self._keys) > limits.proven_senders:
+                self._keys.popitem(last=False)
             return True
-        self._counters.dropped_by_bucket += 1
-        return False
+        self._keys.move_to_end(sealed.kid)
+        if sealed.number <= key.newest:
+            return False
+        key.newest = sealed.number
+        return True
+
+    def _counted(self, admitted: bool) -> bool:
+        self._counters.dropped_by_bucket += not admitted
+        return admitted
 
     def count_junk(self) -> None:
         """A datagram that is none of CoAP's; also called for what only its decoding showed."""

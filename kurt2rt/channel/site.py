@@ -10,6 +10,7 @@ from aiocoap.numbers.constants import TransportTuning
 
 from kurt2rt.channel.reception import Reception, Sender
 from kurt2rt.channel.reply import Reply, Verdict, malformed
+from kurt2rt.channel.sealed_request import SealedRequest
 from kurt2rt.channel.wire import CONTENT_FORMAT, PATHS, WireError, decode_request, encode_answer
 
 _CODES = {
@@ -120,6 +121,16 @@ class RobotSite:
         """Whether an observer there has just said something, so that he is not gone."""
         now_s = asyncio.get_running_loop().time()
         return any(each.remote == remote and now_s - each.heard_s < _CONFIRMED_EVERY_S for each in self._observers)
+
+    def key_of(self, sealed: SealedRequest) -> Any:
+        """Return the security context that an OSCORE request names; None if there is none."""
+        header = {oscore.COSE_KID: sealed.kid}
+        if sealed.kid_context is not None:
+            header[oscore.COSE_KID_CONTEXT] = sealed.kid_context
+        try:
+            return self._keys.find(header)
+        except KeyError:
+            return None
 
     def show(self, picture: bytes) -> None:
         """A new encoded picture for everyone who looks."""

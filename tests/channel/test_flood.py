@@ -1,10 +1,12 @@
-"""Junk by the thousand a second: the robot's memory does not grow, and its teacher keeps control."""
+"""Junk by the thousand a second: the robot's memory does not grow, its teacher keeps control, a stop gets through."""
 
 import json
 import os
 import re
 import signal
+import statistics
 import sys
+import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
@@ -18,11 +20,15 @@ from anyio.abc import Process
 from anyio.streams.text import TextReceiveStream
 
 from kurt2rt.channel.credentials import Pairing, local_pairing
+from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.answer import NoAnswerError
 from tests.channel.robot_at_work import service_settings
 from tests.channel.robot_process import resident_kb
 
 _PATIENCE_S = 30.0
 _MOST_GROWTH_KB = 20 * 1024
+_STOP_WITHIN_S = 1.0
+"""Ten times what a stop took at most on a machine with two busy cores."""
 
 
 class Child:
@@ -102,7 +108,7 @@ async def _taught_under_flood(robot: Child, port: int, device: Path, calm_s: flo
         await teacher.line(lambda line: line == "teaching")
         await anyio.sleep(calm_s)
         resident = [resident_kb(str(robot.pid))]
-        async with child("-m", "tests.channel.junk_process", str(port)) as junk:
+        async with child("-m", "tests.channel.junk_process", str(port), "2000", "") as junk:
             for _ in range(round(flood_s)):
                 await anyio.sleep(1.0)
                 resident.append(resident_kb(str(robot.pid)))
@@ -136,11 +142,14 @@ def _pairing(folder: Path) -> Pairing:
 
 
 def _report(name: str, seen: Seen, more: str = "") -> None:
-    """Appended to the file that KURT2RT_FLOOD_REPORT names, if any."""
+    last = seen.robot[-1] if seen.robot else more
+    _append(f"{name}: grew {seen.growth_kb} kB, each 10 s {seen.resident_kb[::10]}; {seen.teacher}; robot {last}\n")
+
+
+def _append(lines: str) -> None:
+    """To the file that KURT2RT_FLOOD_REPORT names, if any."""
     path = os.environ.get("KURT2RT_FLOOD_REPORT")
     if path:
-        last = seen.robot[-1] if seen.robot else more
-        lines = f"{name}: grew {seen.growth_kb} kB, each 10 s {seen.resident_kb[::10]}; {seen.teacher}; robot {last}\n"
         with Path(path).open("a", encoding="utf-8") as file:
             file.write(lines)
 
@@ -177,3 +186,46 @@ async def test_a_minute_of_junk_at_the_simulated_robot(tmp_path: Path) -> None:
     _must_have_kept_control(seen)
     assert seen.growth_kb < _MOST_GROWTH_KB
     assert seen.answered >= 0.99
+
+
+async def _stops_under_flood(folder: Path, per_s: int, kid_of: Callable[[Pairing], str], stops: int) -> list[float]:
+    """Seconds that each stop from a fresh socket took, infinite for one that was not answered."""
+    pairing = _pairing(folder)
+    took_s = []
+    async with child("-m", "tests.channel.robot_process", str(folder), "sweep") as robot:
+        port = int(await robot.line(str.isdigit))
+        async with child("-m", "tests.channel.junk_process", str(port), str(per_s), kid_of(pairing)) as junk:
+            await junk.line(lambda line: line == "flooding")
+            await anyio.sleep(0.5)
+            for _ in range(stops):
+                async with TeacherClient(pairing.device.folder, port=port, patience_s=_STOP_WITHIN_S) as device:
+                    began_s = time.monotonic()
+                    try:
+                        await device.stop()
+                    except NoAnswerError:
+                        took_s.append(float("inf"))
+                    else:
+                        took_s.append(time.monotonic() - began_s)
+        await robot.over()
+    return took_s
+
+
+def _no_kid(_: Pairing) -> str:
+    return ""
+
+
+def _copied_kid(pairing: Pairing) -> str:
+    settings = json.loads((pairing.teacher / "settings.json").read_text(encoding="utf-8"))
+    return str(settings["recipient-id_hex"])
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("kid_of", [_no_kid, _copied_kid])
+@pytest.mark.parametrize("per_s", [4_000, 10_000])
+async def test_every_stop_from_a_fresh_socket_gets_through(
+    tmp_path: Path, per_s: int, kid_of: Callable[[Pairing], str]
+) -> None:
+    took_s = await _stops_under_flood(tmp_path, per_s, kid_of, stops=16)
+    in_ms = f"median {1000 * statistics.median(took_s):.0f} ms, longest {1000 * max(took_s):.0f} ms"
+    _append(f"stops at {per_s}/s with {kid_of.__name__}: {in_ms}\n")
+    assert max(took_s) < float("inf")
