@@ -145,6 +145,8 @@ class Mischief:
             "to": None,
             "label": "a",
             "count": 3,
+            "form": chance.choice(("table", "package")),
+            "offset": chance.randrange(2**20),
             "dx_m": 0.1,
             "dy_m": 0.1,
             "x_m": 1.0,
