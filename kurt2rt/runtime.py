@@ -110,6 +110,7 @@ def build_runtime(
     wanted: Wanted | None = None,
     saved: Statistics | None = None,
     asked: bool = True,
+    tolerates_stalls: bool = False,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
@@ -119,6 +120,7 @@ def build_runtime(
     `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
     `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
     `asked`: False where nobody is there who could be asked: RLAs whose action was withdrawn are passed over.
+    `tolerates_stalls`: whether the robot stalls with this program, as one does that is simulated in it.
     Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
     """
     sensors = settings.infrared.names
@@ -180,6 +182,7 @@ def build_runtime(
         stale_infrared_s=settings.guard.stale_infrared_s,
         circumstances=CircumstancesPerception(critic, settings),
         expecting=expecting,
+        tolerates_stalls=tolerates_stalls,
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
     return Runtime(

@@ -79,6 +79,7 @@ async def serve(
     upkeep: Upkeep | None = None,
     knowledge: OpenedKnowledge | None = None,
     recording: Recording | None = None,
+    tolerates_stalls: bool = False,
 ) -> Status | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
@@ -86,7 +87,7 @@ async def serve(
     `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
     `instruments`: what the health report reads beside the runtime. `upkeep`: of the program around, with a service
     manager perhaps. `knowledge`: that of the settings, where it is open already; it is closed here.
-    `recording`: what is kept of the run; None: nothing.
+    `recording`: what is kept of the run; None: nothing. `tolerates_stalls`: of a robot simulated in this program.
     Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
     UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
@@ -102,7 +103,12 @@ async def serve(
         stamps = opened.stamps
         boot = secrets.token_bytes(BOOT_BYTES)
         circumstances = Circumstances(
-            boot.hex(), str(path), openness is not None, _STARTED if stopped else "", behaviour or ""
+            boot.hex(),
+            str(path),
+            openness is not None,
+            _STARTED if stopped else "",
+            behaviour or "",
+            tolerates_stalls=tolerates_stalls,
         )
         recorder = None
         if recording is not None:
@@ -119,6 +125,7 @@ async def serve(
                 attended=openness is not None,
                 wanted=wanted,
                 saved=opened.saved,
+                tolerates_stalls=tolerates_stalls,
             )
             if stopped:
                 runtime.school.stop(_STARTED)

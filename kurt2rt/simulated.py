@@ -13,6 +13,7 @@ from hal.tap import Tap
 from kurt2rt.experiments.arena import Plan, Position, Post, Street
 from kurt2rt.experiments.arena import Pose as TruePose
 from kurt2rt.simulated_ground import SimulatedGround
+from kurt2rt.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.drawing import draw_robot, draw_world
 from simbridge.free_poses import FreePoses
 from simbridge.nearest import Nearest
@@ -29,10 +30,19 @@ if TYPE_CHECKING:
 class SimulatedArena:
     """The simulated KURT2 in one world, on a CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int, purpose: str, wire: str = NO_WIRE) -> None:
+    def __init__(
+        self,
+        settings: RobotSettings,
+        world: str,
+        seed: int,
+        purpose: str,
+        wire: str = NO_WIRE,
+        driver: type[Kurt2] = Kurt2,
+    ) -> None:
         """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
 
         `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
+        `driver`: drives the simulated robot over its bus.
         """
         self._world = load_world(world, settings)
         self._cycle_s = settings.can.cycle_s
@@ -40,7 +50,7 @@ class SimulatedArena:
         noise_seed = chance.getrandbits(32)
         self._line = open_line(wire, self._cycle_s, noise_seed)
         self.simulation = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
-        self.robot = Kurt2(settings, self._line.notebook_end)
+        self.robot = driver(settings, self._line.notebook_end)
         self._settings = settings
         self._starts = [start.pose for start in self._world.start_poses]
         self.simulation.place(chance.choice(self._starts))
@@ -181,9 +191,11 @@ def simulated_robot(
 ) -> Iterator[tuple[Kurt2, SimulatedGround]]:
     """The simulated robot in real time, its second guard awake, and the ground that it stands on.
 
+    A stall of this program does not keep the robot stopped: its wheels stalled with it.
+
     `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
     """
-    arena = SimulatedArena(settings, world, seed, "run", wire)
+    arena = SimulatedArena(settings, world, seed, "run", wire, StallTolerantKurt2)
     arena.look_on(tap)
     try:
         with arena.live() as simulation:

@@ -15,6 +15,7 @@ from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import BASIC, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.standing import DRIVES, Standing, StandingWatch
 from kurt2rt.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
 from kurt2rt.teaching.inbox import TeacherInbox
@@ -68,6 +69,8 @@ class TickRecord(NamedTuple):
     """1, 2, 3 ... of the ticks that were run; `tick` skips those that were missed."""
     knowledge: tuple[Rla, ...] | None = None
     """All RLAs that live after it, where something was taught, and once a second; None in the ticks between."""
+    standing: Standing = DRIVES
+    """Whether the robot drives, and if not why."""
 
     @property
     def mid(self) -> MidDecision | None:
@@ -97,10 +100,13 @@ class Tick:
         stale_infrared_s: float,
         circumstances: CircumstancesPerception | None = None,
         expecting: Expecting | None = None,
+        tolerates_stalls: bool = False,
     ) -> None:
         """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
 
         `circumstances`: what the school's critic looks at. `expecting`: None: nothing is expected.
+        `tolerates_stalls`: whether ticks that are missed count against no lease of the teacher, as in a simulation that
+        stalls with this program.
         """
         self._robot = robot
         self._perception = perception
@@ -116,14 +122,20 @@ class Tick:
         self._now = now
         self._stale_infrared_s = stale_infrared_s
         self._driving = self._latched = False
+        self._standing = StandingWatch()
         self._trouble: str | None = None
         self._tell_knowledge_at = 0
         self._run = 0
+        self._tolerates_stalls = tolerates_stalls
+        self._last_tick: int | None = None
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
         mark = self._ledger.mark
         self._run += 1
+        if self._tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
+            self._school.authority.pause(tick - self._last_tick - 1)
+        self._last_tick = tick
         senses = self._robot.sense(now_s)
         mark(Stage.SENSE)
 
@@ -170,7 +182,8 @@ class Tick:
         # What names no action gets no speed. The clock is read anew: a tick that was held up must not pass its old
         # decision for a fresh one.
         wheel_speeds = decision.wheel_speeds if decision.driving else STANDSTILL
-        grant = self._robot.drive(wheel_speeds, now_s, self._now())
+        drove_at_s = self._now()
+        grant = self._robot.drive(wheel_speeds, now_s, drove_at_s)
         mark(Stage.GUARD)
 
         if grant.latched and not self._latched:
@@ -206,6 +219,9 @@ class Tick:
         if events or tick >= self._tell_knowledge_at:
             knowledge = self._school.living
             self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
+        # A replay's clock stands still within a tick.
+        stopped_because = self._school.stopped_because
+        standing = self._standing.update(decision, grant, max(now_s, drove_at_s), stopped_because, trouble)
         mark(Stage.PUBLISH)
         return TickRecord(
             tick,
@@ -224,6 +240,7 @@ class Tick:
             tuple(events),
             self._run,
             knowledge,
+            standing,
         )
 
     def _set_down(self) -> None:

@@ -76,7 +76,9 @@ class Notebook:
 class Corridor:
     """All that stands round a Tick, and one tick in a call."""
 
-    def __init__(self, *, attended: bool = False, behaviours: tuple[str, ...] = ("",)) -> None:
+    def __init__(
+        self, *, attended: bool = False, behaviours: tuple[str, ...] = ("",), tolerates_stalls: bool = False
+    ) -> None:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
         self.held_up_s = 0.0
@@ -102,6 +104,7 @@ class Corridor:
             self.ledger,
             now=lambda: self.ticks * 0.01 + self.held_up_s,
             stale_infrared_s=0.05,
+            tolerates_stalls=tolerates_stalls,
         )
         self.ticks = 0
 

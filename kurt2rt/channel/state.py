@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from kurt2rt.rla.rla import BASIC
+from kurt2rt.standing import DRIVES, Standing, standing_for
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
@@ -157,3 +158,14 @@ class State:
     """How far the plan is, or why there is none, in a line; empty without a goal."""
     progress: Progress = NO_PROGRESS
     """How much the robot drove by itself, and asked, in the last minute."""
+    standing: Standing | None = None
+    """None from a robot that is too old to tell."""
+
+    @property
+    def stands(self) -> Standing:
+        """Whether the robot drives, and if not why."""
+        if self.standing is not None:
+            return self.standing
+        if self.action is not None and (self.by_hand or not self.stopped_because):
+            return DRIVES
+        return standing_for(self.cause, self.asks_at, self.stopped_because, self.plan_says or self.trouble)

@@ -115,6 +115,7 @@ class Telling:
             plan=() if plan is None else plan.behaviours,
             plan_says="" if plan is None else plan.says,
             progress=runtime.progress.progress(),
+            standing=record.standing,
         )
 
     def _late(self) -> float:

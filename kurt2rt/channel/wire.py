@@ -24,6 +24,7 @@ from kurt2rt.channel.schema import (
 )
 from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.rla.rla import BASIC, MID
+from kurt2rt.standing import Standing, StandReason
 from kurt2rt.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
@@ -162,6 +163,8 @@ _SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag()
 """The fields of SurpriseState."""
 _PROGRESS = (Whole(0, WINDOW_S), OrNone(Whole(0, 100)), _NUMBER)
 """The fields of Progress."""
+_STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
+"""The fields of Standing."""
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -179,6 +182,7 @@ def encode_state(state: State) -> bytes:
     picture["mid"] = _row(state.mid, _MID)
     picture["su"] = _row(state.surprise, _SURPRISE)
     picture["pg"] = _row(state.progress, _PROGRESS)
+    picture["sd"] = _row(state.standing, _STANDING)
     return encode_plainly(picture)
 
 
@@ -198,6 +202,7 @@ def decode_state(payload: bytes) -> State:
     surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
     # Younger than the rest of version 4: a robot that does not count yet leaves it out.
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
+    standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
     return State(
         left_m_s=left_m_s,
         right_m_s=right_m_s,
@@ -206,14 +211,23 @@ def decode_state(payload: bytes) -> State:
         mid=None if mid is None else MidState(*mid),
         surprise=None if surprise is None else SurpriseState(*surprise),
         progress=NO_PROGRESS if progress is None else Progress(*progress),
+        standing=None if standing is None else _standing(*standing),
         **values,
     )
 
 
-def _row(value: MidState | SurpriseState | Progress | None, checks: tuple[Check, ...]) -> list[Any] | None:
+def _row(value: MidState | SurpriseState | Progress | Standing | None, checks: tuple[Check, ...]) -> list[Any] | None:
     if value is None:
         return None
-    return [_tidied(getattr(value, each.name), check) for each, check in zip(fields(value), checks, strict=True)]
+    names = value._fields if isinstance(value, Standing) else [each.name for each in fields(value)]
+    return [_tidied(getattr(value, name), check) for name, check in zip(names, checks, strict=True)]
+
+
+def _standing(reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str) -> Standing:
+    """Return the standing that was told; a newer robot may have reasons that are not known here."""
+    if reason in StandReason.__members__.values():
+        return Standing(StandReason(reason), needs_go, asks, stall_s, says)
+    return Standing(StandReason.HALTED, needs_go, asks, stall_s, says or reason)
 
 
 def _take(picture: dict[Any, Any], key: str) -> object:

@@ -168,6 +168,7 @@ class RobotProgram:
             upkeep=self._upkeep,
             knowledge=self._knowledge,
             recording=self._recording(opened),
+            tolerates_stalls=opened.ground is not None,
         )
 
     async def _start(self, waiting: anyio.CancelScope) -> None:

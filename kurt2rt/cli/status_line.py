@@ -3,6 +3,7 @@
 from hal.health import Health
 from kurt2rt.rla.rla import MID, rla_title
 from kurt2rt.rounds import Status
+from kurt2rt.standing_text import in_short
 
 
 def status_line(status: Status, health: Health) -> str:
@@ -21,22 +22,20 @@ def status_line(status: Status, health: Health) -> str:
 
 def doing(status: Status) -> str:
     """What drives the wheels and why, or why the robot stands."""
-    record, runtime = status.record, status.runtime
-    decision, match = record.decision, record.decision.match
+    record = status.record
+    decision, match, stands = record.decision, record.decision.match, in_short(record.standing)
     near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
+    if stands:
+        return stands
     if decision.rla_id is not None:
         text = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
     elif decision.driving:
         text = f"{decision.action}, as the teacher says"
     elif decision.asking and decision.asks_at == MID:
         text = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
-    elif decision.asking:
+    else:
         about = f" about {record.behaviour}" if record.behaviour else ""
         text = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
-    elif runtime.school.stopped_because or record.grant.latched:
-        text = f"stands until Go: {runtime.school.stopped_because or record.grant.reasons[0]}"
-    else:
-        text = f"stands: {decision.cause.value}"
     if decision.mid is not None and decision.driving:
         by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
         text += f", sent by {by}"

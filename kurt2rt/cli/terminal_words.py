@@ -5,9 +5,10 @@ from collections.abc import Sequence
 
 from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.critic.role import Role
-from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import ASK, MID, rla_title
+from kurt2rt.standing import StandReason
+from kurt2rt.standing_text import GO_IN_TERMINAL, headline_of
 from kurt2rt.teaching.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.teaching.lesson_line import LessonLine
 from kurt2rt.teaching.question import FeatureDifference, Question, WayQuestion
@@ -132,13 +133,14 @@ def is_worth_saying(surprise: SurpriseState) -> bool:
 
 def sentence_of(state: State) -> str:
     """What the robot does and why, without what changes all the time."""
+    stands = state.stands
+    if stands.reason is not StandReason.DRIVES:
+        return headline_of(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
     if state.action is not None:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"
         return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
-    if state.plan_says and state.cause in (Cause.AT_GOAL, Cause.NO_WAY):
-        return f"stands: {state.plan_says}"
-    return f"stands: {state.stopped_because or state.cause}" + (f"; {state.trouble}" if state.trouble else "")
+    return ""
 
 
 def opinion_in(state: State, appraisals: Sequence[AppraisalName]) -> str:

@@ -7,6 +7,7 @@ from hal.health import Health
 from kurt2rt.health.instruments import Instruments, Keeping
 from kurt2rt.rla.rla import rla_title
 from kurt2rt.runtime import Runtime
+from kurt2rt.standing_text import in_short
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.tick import TickRecord
 
@@ -60,19 +61,17 @@ def take_snapshot(
         missed_ticks=ledger.missed_ticks,
         rlas=len(system),
         lessons=system.standing_lessons,
-        doing=_doing(runtime, record),
         progress=runtime.progress.progress(),
+        doing=_doing(record),
     )
 
 
-def _doing(runtime: Runtime, record: TickRecord) -> str:
-    decision = record.decision
+def _doing(record: TickRecord) -> str:
+    decision, stands = record.decision, in_short(record.standing)
+    if stands:
+        return stands
     if decision.rla_id is not None:
         return f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}"
     if decision.driving:
         return f"{decision.action}, as the teacher says"
-    if decision.asking:
-        return "stands and asks"
-    if runtime.school.stopped_because or record.grant.latched:
-        return f"stands until Go: {runtime.school.stopped_because or ', '.join(record.grant.reasons)}"
-    return f"stands: {decision.cause.value}"
+    return "stands and asks"

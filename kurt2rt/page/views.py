@@ -8,6 +8,7 @@ from typing import Any
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, rows_of, trouble_in
+from kurt2rt.standing_text import GO_ON_PAGE, headline_of
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -17,7 +18,7 @@ from kurt2rt.teaching.world import World
 
 def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str, Any]:
     """One picture of the robot; `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing."""
-    place = state.place
+    place, stands = state.place, state.stands
     return {
         "kind": "state",
         "tick": state.tick,
@@ -28,6 +29,12 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "left_m_s": state.left_m_s,
         "right_m_s": state.right_m_s,
         "cause": state.cause,
+        "stands": {
+            "reason": stands.reason,
+            "needs_go": stands.needs_go,
+            "asks": stands.asks,
+            "text": headline_of(stands, GO_ON_PAGE),
+        },
         "action": state.action,
         "rla": state.rla,
         "nearest": state.nearest,

@@ -33,6 +33,7 @@ class Circumstances:
     behaviour: str = ""
     """The taught behaviour that is wanted at first."""
     asked: bool = True
+    tolerates_stalls: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +82,7 @@ class Recording:
             stopped=circumstances.stopped,
             behaviour=circumstances.behaviour,
             fingerprints=fingerprints_of(attachments),
+            tolerates_stalls=circumstances.tolerates_stalls,
         )
         return open_run_recorder(
             self.recordings,

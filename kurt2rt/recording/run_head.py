@@ -1,7 +1,7 @@
 """What a run is, for the one who reads its recording: it stands in every segment's metadata."""
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, fields
 from typing import Any
 
 from kurt2rt.recording.error import RecordingError
@@ -42,6 +42,8 @@ class RunHead:
     fingerprints: dict[str, str]
     """SHA-256 of each attachment, by its name."""
     version: int = RUN_VERSION
+    tolerates_stalls: bool = False
+    """Whether ticks that were missed counted against no lease of the teacher. Before 2026-11-22 they always did."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:
@@ -60,6 +62,8 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
             )
         content: dict[str, Any] = {}
         for each in fields(RunHead):
+            if each.name not in metadata and each.default is not MISSING:
+                continue  # an older program did not know it
             text = metadata[each.name]
             content[each.name] = text if each.type is str else json.loads(text)
         return RunHead(**content)

@@ -70,6 +70,7 @@ class Replay:
                     wanted=wanted,
                     saved=run.saved,
                     asked=head.asked,
+                    tolerates_stalls=head.tolerates_stalls,
                 )
         except (SettingsError, KnowledgeError, UnfitEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error

@@ -60,6 +60,12 @@ class Authority:
         if teacher == self.teacher:
             self._there_until = max(self._there_until, self._until(tick, seen_tick))
 
+    def pause(self, ticks: int) -> None:
+        """Extend every lease by ticks that were missed, in which nothing could move and no message be read."""
+        self._there_until += ticks
+        self._driven_until += ticks
+        self._behaviour_until += ticks
+
     def present(self, tick: int) -> bool:
         """Whether the teacher is there; always where none is needed."""
         return not self.attended or tick < self._there_until

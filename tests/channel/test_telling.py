@@ -20,6 +20,7 @@ from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble
 from kurt2rt.rla.rla import Phase
+from kurt2rt.standing import Standing, StandReason
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
 from tests.health.reports import ILL, WELL
@@ -94,6 +95,7 @@ def test_a_robot_that_knows_nothing(desk: Desk) -> None:
         missed_ticks=0,
         place=None,
         signals_missing=(LEAST, LEAST),
+        standing=Standing(StandReason.ASKS, asks=True),
     )
 
 

@@ -10,6 +10,7 @@ import pytest
 from kurt2rt.channel.requests import VERSION, checks_of
 from kurt2rt.channel.wire import PATHS, encode_state
 from kurt2rt.health.plain import plain_of
+from kurt2rt.standing import Standing
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.health.reports import ILL
 
@@ -35,9 +36,9 @@ def test_every_key_of_the_picture_is_explained() -> None:
     assert keys <= explained, keys - explained
 
 
-@pytest.mark.parametrize("key", ["mid", "su"])
+@pytest.mark.parametrize("key", ["mid", "su", "sd"])
 def test_the_rows_of_the_picture_have_the_places_that_are_written(key: str) -> None:
-    row = cbor2.loads(encode_state(state(mid=COMMANDS, surprise=SURPRISED)))[key]
+    row = cbor2.loads(encode_state(state(mid=COMMANDS, surprise=SURPRISED, standing=Standing())))[key]
     written = re.search(rf"`{key}` is `\[(.*?)\]`", PICTURE)
     assert written is not None
     assert len(written[1].split(", ")) == len(row)

@@ -429,7 +429,7 @@ async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: St
         desk.type("places")
         await desk.reads("named: the door, the window")
         robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
-        await desk.reads("stands: no way from here to door")
+        await desk.reads("Stands: no way from here to door")
         desk.type("seek x_m=high")  # no number: the name of a place, then
         await robot.hears(SeekRequest, 3)
         assert robot.all_of(SeekRequest)[-1].name == "x_m=high"

@@ -109,6 +109,8 @@ def test_a_head_comes_back_and_one_of_a_newer_program_is_refused() -> None:
     metadata = encode_head(head)
     assert all(isinstance(value, str) for value in metadata.values())
     assert decode_head(metadata) == head
+    old = {key: value for key, value in metadata.items() if key != "tolerates_stalls"}
+    assert decode_head(old) == head  # of a program that did not know it
     with pytest.raises(RecordingError, match="newer kurt2rt"):
         decode_head({**metadata, "version": "99"})
     with pytest.raises(RecordingError, match="boot"):

@@ -255,8 +255,7 @@ function show() {
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
-  const stopped = Boolean(state.stopped_because);
-  $("go").disabled = !stopped || state.by_hand || !inCharge();
+  $("go").disabled = !state.stands.needs_go || state.by_hand || !inCharge();
   showLink(state);
   why.show(state, hello);
   pad.show(state);

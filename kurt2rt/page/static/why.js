@@ -25,7 +25,14 @@ function taught(state) {
   return parts.length ? `, taught ${parts.join(", ")}` : "";
 }
 
+// Whether the robot says itself why it stands; what it does not know is put below as a question, with the nearest RLA.
+function standsFor(state) {
+  const { needs_go: waits, reason } = state.stands;
+  return waits || !["drives", "asks", "asks the way"].includes(reason);
+}
+
 export function sentence(state) {
+  if (standsFor(state)) return state.stands.text;
   switch (state.cause) {
     case "rla":
       return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
@@ -50,20 +57,8 @@ export function sentence(state) {
         return `RLA ${state.nearest}${of(state)}: ${words(state.nearest_action)} is lost here, teach me another`;
       }
       return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
-    case "stopped":
-      return `Stands: ${state.stopped_because || "stopped"}. GO lets it drive on`;
-    case "unattended":
-      return "Stands: no teacher looks at it";
-    case "blind":
-      return "Stands: its infra-red sensors are silent";
-    case "at goal":
-      return `Stands: it has come to ${state.goal}`;
-    case "no way":
-      return `Stands: no way from here to ${state.goal}`;
-    case "unsaved":
-      return "Stands: lessons cannot be saved";
     default:
-      return `Stands: ${words(state.cause)}`;
+      return state.stands.text;
   }
 }
 
@@ -79,7 +74,8 @@ export class Why {
   #shown = "";
 
   show(state, hello) {
-    const asks = state.cause === "unknown";
+    const asks = state.stands.asks && !state.stands.needs_go;
+    this.#box.classList.toggle("stands", standsFor(state));
     const which = asks && state.asks_at === MID && state.mid; // the mid level asks which way
     this.#box.classList.toggle("asks", asks);
     this.#box.classList.toggle("which", Boolean(which));

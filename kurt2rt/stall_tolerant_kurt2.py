@@ -1,0 +1,41 @@
+"""A KURT2 that drives on by itself after its computer stalled, for a simulator in the same program."""
+
+from typing import Final
+
+from hal.kurt2 import Kurt2
+from hal.robot import Grant, WheelSpeeds
+from hal.watchdog import TICKS_CEASED
+
+
+class StallTolerantKurt2(Kurt2):
+    """Brakes while ticks cease, as every KURT2 does, and releases that latch with the next tick.
+
+    Nothing can come to harm: wheels and walls are in the program that stalled. Never for a robot on a real bus, nor for
+    a simulator in another program, which goes on while this one stalls.
+    """
+
+    _stopped_because = ""
+    """What `emergency_stop` was told last; empty since the last release."""
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+        """Ask for wheel speeds; the tick that ends a stall stands, and its latch is not kept."""
+        grant = super().drive(wanted, decided_at_s, now_s)
+        if not grant.latched or grant.reasons != _STALLED or self._stopped_because:
+            return grant
+        super().release()
+        if self._stopped_because:  # by a signal's thread, just before the release
+            super().emergency_stop(self._stopped_because)
+        return grant._replace(latched=self.health.latched is not None)
+
+    def emergency_stop(self, reason: str) -> None:
+        """Brake now and stay stopped until `release`, whatever stalled before."""
+        self._stopped_because = reason
+        super().emergency_stop(reason)
+
+    def release(self) -> None:
+        """End a latched stop."""
+        self._stopped_because = ""
+        super().release()
+
+
+_STALLED: Final = (TICKS_CEASED,)

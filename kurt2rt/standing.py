@@ -1,0 +1,188 @@
+"""Standing: whether the robot drives after a tick, and if not, why and whether it waits for Go.
+
+The one source of this for page, terminal, status line, status and channel; `kurt2rt.standing_text` puts it into words.
+"""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from hal import guard, watchdog
+from hal.robot import STANDSTILL, Grant
+from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.rla.rla import MID
+
+
+class StandReason(StrEnum):
+    """Why the wheels stand."""
+
+    DRIVES = "drives"
+    """They do not."""
+    ASKS = "asks"
+    """The basic level does not know its situation."""
+    ASKS_THE_WAY = "asks the way"
+    """The mid level does not."""
+    FRONT_BUMPER = "front bumper"
+    """The robot touches something in front, and is to drive on toward it."""
+    REAR_BUMPER = "rear bumper"
+    BOTH_BUMPERS = "both bumpers"
+    STOPPED = "stopped"
+    """A teacher stopped the robot, or it lost its teacher, or it was just started."""
+    UNATTENDED = "unattended"
+    BLIND = "blind"
+    UNSAVED = "unsaved"
+    AT_GOAL = "at goal"
+    NO_WAY = "no way"
+    COMPUTER_TOO_SLOW = "computer too slow"
+    """The second guard braked, for ticks had ceased; until Go."""
+    BUS_LOST = "bus lost"
+    BUS_BLOCKED = "bus blocked"
+    BUS_OFF = "bus off"
+    FOREIGN_CONTROL = "foreign control"
+    WHEELS_DISOBEY = "wheels disobey"
+    INFRARED_FROZEN = "infra-red frozen"
+    HALTED = "halted"
+    """The robot program itself had the guard stop the robot: it ends, or waits for what it needs."""
+    LATE = "late"
+    """Decisions are too old when they come to the guard."""
+    CLOCK = "clock"
+    """The computer's clock ran backwards."""
+    ENCODERS_SILENT = "encoders silent"
+    BUMPERS_SILENT = "bumpers silent"
+    NOT_A_NUMBER = "not a number"
+    """What was decided is no speed."""
+
+
+class Standing(NamedTuple):
+    """Whether the robot drives, and if not why."""
+
+    reason: StandReason = StandReason.DRIVES
+    needs_go: bool = False
+    """Whether the robot stands until its teacher says Go, whatever else ends."""
+    asks: bool = False
+    """Whether an answer of its teacher lets it drive on."""
+    stall_s: float | None = None
+    """For how long no tick ran before the second guard braked, where that is the reason; None else."""
+    says: str = ""
+    """What the reason alone does not tell: who stopped it and how, what came of the goal, what the disk says."""
+
+
+DRIVES = Standing()
+
+LATCHED = {
+    watchdog.TICKS_CEASED: StandReason.COMPUTER_TOO_SLOW,
+    guard.BUS_LOST: StandReason.BUS_LOST,
+    guard.BUS_BLOCKED: StandReason.BUS_BLOCKED,
+    guard.BUS_OFF: StandReason.BUS_OFF,
+    guard.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
+    guard.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
+    guard.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
+}
+"""By the guard's word for why it keeps the robot stopped; any other word is one that the program gave it."""
+
+_HELD = {
+    guard.INFRARED_STALE: StandReason.BLIND,
+    guard.ENCODER_STALE: StandReason.ENCODERS_SILENT,
+    guard.BUMPER_STALE: StandReason.BUMPERS_SILENT,
+    guard.COMMAND_TOO_OLD: StandReason.LATE,
+    guard.CLOCK_RAN_BACKWARDS: StandReason.CLOCK,
+    guard.NOT_A_NUMBER: StandReason.NOT_A_NUMBER,
+}
+"""By the guard's word for what it lets no set point through, tick by tick."""
+
+_CAUSES = {
+    Cause.STOPPED: StandReason.STOPPED,
+    Cause.UNATTENDED: StandReason.UNATTENDED,
+    Cause.BLIND: StandReason.BLIND,
+    Cause.UNSAVED: StandReason.UNSAVED,
+    Cause.AT_GOAL: StandReason.AT_GOAL,
+    Cause.NO_WAY: StandReason.NO_WAY,
+}
+
+
+def standing_for(cause: str, asks_at: str, stopped_because: str, says: str = "") -> Standing:
+    """Return the standing of a robot that no guard holds, from why it decided to stand.
+
+    Args:
+        cause: a value of Cause; one that is not known here stands without a reason of its own.
+        asks_at: the level that does not know its situation, where `cause` says that one does not.
+        stopped_because: why a teacher's stop, or something like it, holds; empty while none does.
+        says: in words what came of the goal, or why lessons cannot be saved.
+    """
+    asks = cause == Cause.UNKNOWN
+    if stopped_because:
+        return Standing(StandReason.STOPPED, True, asks, says=stopped_because)
+    if asks:
+        return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
+    if cause in (Cause.RLA, Cause.HELD, Cause.TEACHER):
+        return DRIVES
+    if cause not in Cause.__members__.values():
+        return Standing(StandReason.HALTED, says=cause)
+    return Standing(_CAUSES[Cause(cause)], says=says)
+
+
+HELD_TICKS = 10
+"""For so long a set point has to be held back before the robot is told to stand: a late tick is over in one."""
+
+
+def touched(grant: Grant) -> StandReason | None:
+    """Return which bumpers hold wheels that were to drive on; None where they turn, or none of the bumpers holds."""
+    if grant.wheel_speeds != STANDSTILL:
+        return None
+    front, rear = guard.FRONT_BUMPER in grant.reasons, guard.REAR_BUMPER in grant.reasons
+    if front and rear:
+        return StandReason.BOTH_BUMPERS
+    return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None
+
+
+class StandingWatch:
+    """Tells after each tick whether the robot drives, and if not why; remembers how long a stall lasted."""
+
+    def __init__(self) -> None:
+        self._drove_at_s: float | None = None
+        self._latched = False
+        self._stall_s: float | None = None
+        self._held: StandReason | None = None
+        self._held_ticks = 0
+
+    def update(
+        self, decision: Decision, grant: Grant, drove_at_s: float, stopped_because: str, trouble: str | None
+    ) -> Standing:
+        """Return the standing after one tick.
+
+        Args:
+            decision: of the tick, as it is told.
+            grant: what the guard let through.
+            drove_at_s: when the guard was asked, on the runtime's clock.
+            stopped_because: why a teacher's stop, or something like it, holds; empty while none does.
+            trouble: why lessons cannot be saved; None while they can.
+        """
+        if grant.latched and not self._latched:
+            self._stall_s = None if self._drove_at_s is None else drove_at_s - self._drove_at_s
+        self._latched = grant.latched
+        self._drove_at_s = drove_at_s
+        held = self._held_back(decision, grant)
+        asks = decision.asking
+        if grant.latched:
+            word = grant.reasons[0] if grant.reasons else ""
+            reason = LATCHED.get(word, StandReason.HALTED)
+            stall_s = self._stall_s if reason is StandReason.COMPUTER_TOO_SLOW else None
+            return Standing(reason, True, asks, stall_s, word if reason is StandReason.HALTED else "")
+        if held is not None:
+            return Standing(held, asks=asks)
+        if decision.driving:
+            return DRIVES
+        says = trouble if trouble is not None else "" if decision.plan is None else decision.plan.says
+        return standing_for(decision.cause, decision.asks_at, stopped_because, says)
+
+    def _held_back(self, decision: Decision, grant: Grant) -> StandReason | None:
+        """Return why the guard lets none of what was decided through, once it has for some ticks."""
+        if grant.latched or not decision.driving:
+            self._held, self._held_ticks = None, 0
+            return None
+        bumpers = touched(grant)
+        if bumpers is not None:
+            return bumpers
+        held = next((_HELD[each] for each in grant.reasons if each in _HELD), None)
+        self._held_ticks = self._held_ticks + 1 if held is not None and held is self._held else 0
+        self._held = held
+        return held if self._held_ticks >= HELD_TICKS else None
