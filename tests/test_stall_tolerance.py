@@ -11,7 +11,8 @@ from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from hal.robot_settings import load_robot
 from hal.watchdog import TICKS_CEASED
-from kurt2rt.app import SIMULATED, open_robot
+from kurt2rt.app import open_robot
+from kurt2rt.bus_names import SIMULATED
 from kurt2rt.layers.decision import Cause
 from kurt2rt.stall_tolerant_kurt2 import StallTolerantKurt2
 from kurt2rt.teaching.commands import Watch
