@@ -26,6 +26,7 @@ from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.live_exam import LiveExam
 from kurt2rt.recording.recording import Circumstances, Recording
 from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rounds import Rounds, Screen, Status, Watcher
@@ -61,6 +62,8 @@ class Openness:
     """Of a simulated robot."""
     listening: Callable[[Channel], None]
     """Called when the channel is open."""
+    exam: LiveExam | None = None
+    """Of a robot that is simulated in this program."""
 
 
 async def serve(
@@ -193,9 +196,16 @@ async def _channel(
         stamp_of=lambda command_id: stamps.get(command_id, ""),
     )
     package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)
-    safe = Safe(Path(service.knowledge), writer, package)
+    exam = openness.exam
+    safe = Safe(Path(service.knowledge), writer, package, None if exam is None else exam.begin)
     surroundings = Surroundings(
-        safekeeping, safe, openness.bus_trouble, openness.ground, boot=boot, health=lambda: watch.newest
+        safekeeping,
+        safe,
+        openness.bus_trouble,
+        openness.ground,
+        boot=boot,
+        health=lambda: watch.newest,
+        exam=None if exam is None else lambda: exam.standing,
     )
     teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
     try:

@@ -9,6 +9,7 @@ from typing import Any
 import anyio
 
 from kurt2rt.channel.endpoint import Endpoint, open_endpoint
+from kurt2rt.channel.exam_standing import ExamStanding
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.reception import Copies, Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
@@ -45,6 +46,8 @@ class Surroundings:
     """Random bytes of this start."""
     health: Callable[[], HealthReport | None] = lambda: None
     """The newest report; None before the first."""
+    exam: Callable[[], ExamStanding] | None = None
+    """How the exam stands; None where the robot is not examined."""
 
 
 class Channel:
@@ -139,6 +142,7 @@ async def open_channel(
         surroundings.ground,
         health=surroundings.health,
         why=explaining.tell,
+        exam=surroundings.exam,
     )
     telling = Telling(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health

@@ -1,11 +1,12 @@
 """The rules by which the robot takes what its teachers send. Who sent it is certain here; when and why is not."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from typing import Any, NamedTuple, Protocol
 
 from kurt2rt.channel.allowance import Allowance
 from kurt2rt.channel.command_of import command_of
+from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
@@ -16,6 +17,8 @@ from kurt2rt.channel.requests import (
     BehaviourRequest,
     CommandRequest,
     DriveRequest,
+    ExamRequest,
+    ExamStandingRequest,
     ExportRequest,
     FileRequest,
     HealthRequest,
@@ -79,6 +82,10 @@ class Copies(Protocol):
         """All of the knowledge as one file to give away. Raises KnowledgeError."""
         ...
 
+    def examine(self) -> Awaitable[None]:
+        """Begin an exam of a copy of the knowledge. Raises KnowledgeError."""
+        ...
+
     def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
         """Part of a copy that was made here. Raises KnowledgeError."""
         ...
@@ -109,10 +116,12 @@ class Reception:
         longest_wait_s: float = LONGEST_WAIT_S,
         health: Callable[[], HealthReport | None] = lambda: None,
         why: Callable[[], dict[str, Any] | None] = lambda: None,
+        exam: Callable[[], ExamStanding] | None = None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
         `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
+        `exam`: how the exam stands; None where the robot is not examined.
         """
         self._runtime = runtime
         self._boot = boot
@@ -123,6 +132,7 @@ class Reception:
         self._longest_wait_s = longest_wait_s
         self._health = health
         self._why = why
+        self._exam = exam
         self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
         self._outcomes = Outcomes()
         self._newest: dict[str, Sender] = {}
@@ -164,6 +174,10 @@ class Reception:
                 return Reply(Verdict.DONE, {"why": self._why()})
             case WorldRequest():
                 return self._world()
+            case ExamStandingRequest():
+                if self._exam is None:
+                    return _not_simulated()
+                return Reply(Verdict.DONE, {"exam": EXAM.plain_of(self._exam())})
             case FileRequest(name=name, offset=offset):
                 return await self._part(name, offset)
         return Reply(Verdict.NOT_HERE)
@@ -218,14 +232,14 @@ class Reception:
     def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
         match request:
+            case ExamRequest():
+                return self._begin_exam(device, command_id)
             case SaveRequest() | ExportRequest():
                 held = self._runtime.school.authority.held_by_another(device)
                 if held is not None:
                     return refusal("held", held, self.tick)
                 self._outcomes.begin(command_id)
-                task = asyncio.get_running_loop().create_task(self._copy(command_id, self._copying(request)))
-                self._under_way.add(task)
-                task.add_done_callback(self._under_way.discard)
+                self._do_outside(self._copy(command_id, self._copying(request)))
                 return None
             case MoveWallRequest() | PlaceRequest():
                 reply = self._change_world(device, request)
@@ -239,6 +253,41 @@ class Reception:
             reply = self._too_many()
             self._outcomes.settle(command_id, reply)
         return None
+
+    def _begin_exam(self, device: str, command_id: str) -> Reply | None:
+        if self._exam is None:
+            return _not_simulated()
+        refused = self._not_in_charge(device)
+        if refused is not None:
+            return refused
+        if self._exam().running:
+            return refusal("refused", "an exam is under way; wait for its end", self.tick)
+        self._outcomes.begin(command_id)
+        self._do_outside(self._examine(command_id))
+        return None
+
+    async def _examine(self, command_id: str) -> None:
+        try:
+            await self._copies.examine()
+        except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
+            text = str(error) if isinstance(error, KnowledgeError) else f"the exam failed: {error!r}"
+            self._outcomes.settle(command_id, refusal("refused", text, self.tick))
+        else:
+            self._outcomes.settle(command_id, done(self.tick, "the exam has begun; the robot goes on meanwhile"))
+
+    def _not_in_charge(self, device: str) -> Reply | None:
+        """A refusal for a device that is not the robot's teacher."""
+        authority = self._runtime.school.authority
+        held = authority.held_by_another(device)
+        if held is None and authority.teacher is None:
+            held = "nobody teaches the robot; take it first"
+        return None if held is None else refusal("held", held, self.tick)
+
+    def _do_outside(self, work: Coroutine[Any, Any, None]) -> None:
+        """Do what waits for threads, without the tick; given up when the channel closes."""
+        task = asyncio.get_running_loop().create_task(work)
+        self._under_way.add(task)
+        task.add_done_callback(self._under_way.discard)
 
     def _copying(self, request: SaveRequest | ExportRequest) -> Awaitable[SavedCopy]:
         if isinstance(request, SaveRequest):
@@ -265,7 +314,7 @@ class Reception:
 
     def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest) -> Reply:
         if self._ground is None:
-            return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+            return _not_simulated()
         held = self._runtime.school.authority.held_by_another(device)
         if held is not None:
             return refusal("held", held, self.tick)
@@ -334,7 +383,7 @@ class Reception:
 
     def _world(self) -> Reply:
         if self._ground is None:
-            return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+            return _not_simulated()
         view = self._ground.world()
         body = {
             "version": view.version,
@@ -345,3 +394,7 @@ class Reception:
             "round": [list(post) for post in view.posts],
         }
         return Reply(Verdict.DONE, body)
+
+
+def _not_simulated() -> Reply:
+    return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})

@@ -5,8 +5,9 @@ import gc
 import os
 import re
 import signal
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +29,7 @@ from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.live_exam import LiveExam
 from kurt2rt.memory import give_back_large_pieces
 from kurt2rt.recording.can_log import CanLog, open_can_log
 from kurt2rt.recording.recording import Recording
@@ -153,7 +155,7 @@ class RobotProgram:
         if self._service.real_time_priority:  # not before the second guard is there
             self._say(take_real_time_priority(self._service.real_time_priority, self._guards()))
         self._upkeep.notifier.ping()  # the next one comes from the first tick
-        openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening)
+        openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening, self._exam(opened))
         return await serve(
             opened.robot,
             self._robot,
@@ -268,6 +270,17 @@ class RobotProgram:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}
         return Instruments(lambda: opened.robot.health, drops, says, folders)
+
+    def _exam(self, opened: OpenedRobot) -> LiveExam | None:
+        if opened.ground is None:
+            return None
+        words = (self._service.robot, self._service.task, str(self._orders.seed))
+
+        def command(knowledge: Path, picture: Path) -> Sequence[str]:
+            # Without -P the present folder would be searched for modules.
+            return (sys.executable, "-P", "-m", "kurt2rt.cli.exam_process", str(knowledge), str(picture), *words)
+
+        return self._around.enter_context(LiveExam(command))
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
         orders, service = self._orders, self._service

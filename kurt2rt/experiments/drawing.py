@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kurt2rt.experiments.arena import Position, Stage
-from kurt2rt.experiments.curriculum import CurriculumResult
+from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.trails import ASKED, TRAIL, columns, draw_trail
 from kurt2rt.tasks.settings import TaskSettings
@@ -29,19 +29,30 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
     axes[0].set_title(f"Lesson in world {label_of(lesson.world)}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
     _draw_growth(axes[1], lesson.growth, task)
     for panel, each in zip(axes[2:], result.exams, strict=False):
-        exam = each.learned
-        teachers = each.teacher.trail
-        draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
-        unknown = _places("situation unknown", len(exam.unknown_positions))
-        _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
-        verdict = "success" if each.succeeded else "failed"
-        panel.set_title(
-            f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
-            f"{verdict}"
-        )
+        _draw_exam(panel, each, stage)
     for panel in axes[panels:]:
         panel.set_axis_off()
     figure.savefig(path, dpi=110)
+
+
+def draw_exams(exams: Sequence[WorldResult], stage: Stage, path: Path) -> None:
+    """Write a PNG: the panels of the exams that `draw_curriculum` draws, one below the other as a phone shows them."""
+    figure = Figure(figsize=(5.2, 5.2 * len(exams)), layout="constrained")
+    for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
+        _draw_exam(panel, each, stage)
+    figure.savefig(path, dpi=110, format="png")
+
+
+def _draw_exam(panel: Axes, result: WorldResult, stage: Stage) -> None:
+    exam, teachers = result.learned, result.teacher.trail
+    draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
+    unknown = _places("situation unknown", len(exam.unknown_positions))
+    _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
+    verdict = "success" if result.succeeded else "failed"
+    panel.set_title(
+        f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
+        f"{verdict}"
+    )
 
 
 def _draw_drive(

@@ -55,6 +55,15 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
     return Group(driven, *measured)
 
 
+def verdict_of(result: WorldResult) -> str:
+    """One exam in a line: `2.31 of the teacher's 2.40 laps, no collision`, with what ended it early."""
+    exam = result.learned
+    collisions = {0: "no collision", 1: "1 collision"}.get(exam.collisions, f"{exam.collisions} collisions")
+    of = f"of the teacher's {result.teacher.progress:.2f} {exam.unit}{_not_well(result.teacher)}"
+    parts = [f"{exam.progress:.2f} {of}", collisions, _early_end(exam, "stuck after")]
+    return ", ".join(part for part in parts if part)
+
+
 def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[Table]:
     """What courses found besides, a column for the exams of each world; no table where they found nothing."""
     names = dict.fromkeys(name for each in exams for exam in each for name in exam.findings)

@@ -18,6 +18,13 @@ Package = Callable[[Path, Path, str], SavedCopy]
 """Makes one file to give away of a knowledge file: its path, folder of the new file, stamp. Raises KnowledgeError."""
 
 
+Examine = Callable[[Path, Path], None]
+"""Begins an exam of the copy at the first path, which it deletes at the end; the picture gets the second path.
+
+Raises KnowledgeError.
+"""
+
+
 class FilePart(NamedTuple):
     """Some bytes of a file, in order."""
 
@@ -30,8 +37,14 @@ class FilePart(NamedTuple):
 class Safe:
     """What was taught until now is in the copy, or there is no copy."""
 
-    def __init__(self, knowledge: Path, writer: JournalWriter, package: Package) -> None:
-        """Copies go to the folders `saved` and `exported` beside the knowledge file."""
+    def __init__(
+        self, knowledge: Path, writer: JournalWriter, package: Package, examine: Examine | None = None
+    ) -> None:
+        """Copies go to the folders `saved` and `exported` beside the knowledge file, exams to `exams`.
+
+        `examine`: None: this robot is not examined.
+        """
+        self._examine = examine
         self._knowledge = knowledge
         self._writer = writer
         self._package = package
@@ -48,6 +61,17 @@ class Safe:
     async def package(self) -> SavedCopy:
         """All of the knowledge as one file to give away. Raises KnowledgeError."""
         return await self._copied("exported", lambda folder: self._package(self._knowledge, folder, utc_now()))
+
+    async def examine(self) -> None:
+        """Begin an exam of a copy of the knowledge file. Raises KnowledgeError."""
+        examine = self._examine
+        if examine is None:
+            raise KnowledgeError("this robot is not simulated here; examine its knowledge with kurt2rt exam")
+        examined = await self._copied("exams", lambda folder: save_copy(self._knowledge, folder, "", utc_now()))
+        copy = self._made.pop(examined.name)
+        picture = copy.with_suffix(".png")
+        await anyio.to_thread.run_sync(examine, copy, picture)
+        self._made[picture.name] = picture
 
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
         """Return up to `most_bytes` of a copy from `offset` on.

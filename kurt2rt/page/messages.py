@@ -100,6 +100,7 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "hand_over": {"to": OrNone(_NAME)},
     "save": {"label": Text(64)},
     "export": {},
+    "examine": {},
     "move": {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
     "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Real(7.0, "rad")},
 }

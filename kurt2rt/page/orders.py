@@ -61,6 +61,8 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.save(given["label"])
         case "export":
             return await robot.export(PACKAGE)
+        case "examine":
+            return await robot.examine()
         case "move":
             return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
         case "place":

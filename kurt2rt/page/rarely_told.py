@@ -9,11 +9,13 @@ import anyio.abc
 from kurt2rt.channel.state import State
 from kurt2rt.page.mirror import Mirror
 from kurt2rt.page.robot_link import RobotLink
-from kurt2rt.page.views import health_view, hello_view, lessons_view, situations_view, world_view
+from kurt2rt.page.views import exam_view, health_view, hello_view, lessons_view, situations_view, world_view
 from kurt2rt.perception.sensor_words import NO_WORDS
 from kurt2rt.teaching.answer import NoAnswerError
 
 _LESSONS = 10
+_EXAM_TICKS = 50
+"""Between two looks at an exam that runs."""
 _HEALTH_TICKS = 100
 """The robot makes a report of its health each second."""
 
@@ -29,6 +31,7 @@ class RarelyTold:
         self._robot = robot
         self._carried_out = carried_out
         self._seeks = False
+        self._exam_runs = False
         self.words = NO_WORDS
         """For the robot's sensors."""
         fetches = {
@@ -37,6 +40,7 @@ class RarelyTold:
             "lessons": self._fetch_lessons,
             "situations": self._fetch_situations,
             "health": self._fetch_health,
+            "exam": self._fetch_exam,
         }
         self._mirrors = {about: Mirror(fetch, partial(_tell, tell, about)) for about, fetch in fetches.items()}
 
@@ -50,6 +54,8 @@ class RarelyTold:
         """A picture came; `watched`: somebody has a page open."""
         self._mirrors["hello"].want(state.boot)
         if state.place is not None:
+            looks = state.tick // _EXAM_TICKS if self._exam_runs else 0
+            self._mirrors["exam"].want((state.boot, self._carried_out(), looks))
             self._mirrors["world"].want((state.boot, state.place.world_version))
         if watched:
             self._mirrors["health"].want((state.boot, state.tick // _HEALTH_TICKS))
@@ -86,6 +92,13 @@ class RarelyTold:
 
     async def _fetch_situations(self) -> dict[str, Any]:
         return situations_view(await self._robot.situations())
+
+    async def _fetch_exam(self) -> dict[str, Any]:
+        standing = await self._robot.exam()
+        if standing is None:
+            raise NoAnswerError("the robot says where it is in a world, and cannot be examined")
+        self._exam_runs = standing.running
+        return exam_view(standing)
 
     async def _fetch_health(self) -> dict[str, Any]:
         return health_view(await self._robot.health())

@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator
 from typing import Protocol
 
+from kurt2rt.channel.exam_standing import ExamStanding
 from kurt2rt.channel.requests import TABLE
 from kurt2rt.channel.state import State
 from kurt2rt.explain.facts import DecisionFacts
@@ -162,6 +163,14 @@ class RobotLink(Protocol):
 
     async def export(self, form: str = TABLE) -> Answer:
         """The RLAs as a table on the robot, or with PACKAGE all of the knowledge as one file."""
+        ...
+
+    async def examine(self) -> Answer:
+        """Examine a copy of the knowledge of a simulated robot."""
+        ...
+
+    async def exam(self) -> ExamStanding | None:
+        """How the exam stands; None where the robot is not simulated in its own program."""
         ...
 
     def file_parts(self, name: str) -> AsyncIterator[FilePart]:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from typing import Any
 
+from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, rows_of, trouble_in
@@ -132,6 +133,11 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
         "rows": [each._asdict() for each in rows_of(report)],
         "troubles": troubles,
     }
+
+
+def exam_view(standing: ExamStanding) -> dict[str, Any]:
+    """How the exam stands."""
+    return {"kind": "exam", **EXAM.plain_of(standing)}
 
 
 def plain(value: Any) -> Any:

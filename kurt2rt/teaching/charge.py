@@ -4,10 +4,13 @@ from collections.abc import AsyncIterator
 
 import anyio
 
+from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.requests import (
     LARGEST_NUMBER,
     PART_BYTES,
     TABLE,
+    ExamRequest,
+    ExamStandingRequest,
     ExportRequest,
     FileRequest,
     PhaseRequest,
@@ -63,6 +66,18 @@ class Charge(Sight):
     async def export(self, form: str = TABLE) -> Answer:
         """The RLAs as a readable table on the robot, or with PACKAGE one file to give away, as `save` answers."""
         return await self._asking.command(ExportRequest, form=form)
+
+    async def examine(self) -> Answer:
+        """Examine a copy of the present knowledge, a simulated robot's only; `exam` tells how it stands."""
+        return await self._asking.command(ExamRequest)
+
+    async def exam(self) -> ExamStanding | None:
+        """Return how the newest exam stands; None for a robot that is not simulated in its own program."""
+
+        def read(response: Response) -> ExamStanding | None:
+            return None if response.code.startswith("4.04") else EXAM.read(facts_of(response).get("exam"))
+
+        return await self._asking.told(ExamStandingRequest(), read)
 
     async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
         """Yield the parts of a file that `save` or `export` made on the robot, in order, at least one.

@@ -8,6 +8,7 @@ from hal.robot import Grant, Senses
 from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel, describe
 from kurt2rt.channel.endpoint import Endpoint
+from kurt2rt.channel.exam_standing import NO_EXAM
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.reception import LONGEST_WAIT_S, Copies, Reception, Sender
 from kurt2rt.channel.reply import Reply
@@ -62,6 +63,7 @@ class Shelf:
 
     def __init__(self) -> None:
         self.labels: list[str | None] = []
+        self.examined = 0
         self.files: dict[str, bytes] = {}
         self.may_finish = asyncio.Event()
         self.may_finish.set()
@@ -75,6 +77,12 @@ class Shelf:
 
     async def package(self) -> SavedCopy:
         return await self._copy(None, "lessons.zip")
+
+    async def examine(self) -> None:
+        await self.may_finish.wait()
+        if self.problem:
+            raise KnowledgeError(self.problem)
+        self.examined += 1
 
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
         if name not in self.files:
@@ -109,6 +117,7 @@ class Desk:
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
+        self.exam = NO_EXAM
         self.health: HealthReport | None = None
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
@@ -129,6 +138,7 @@ class Desk:
             longest_wait_s=longest_wait_s,
             health=lambda: self.health,
             why=explaining.tell,
+            exam=None if ground is None else lambda: self.exam,
         )
         safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
         self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
+from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.reception import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import (
@@ -16,6 +17,8 @@ from kurt2rt.channel.requests import (
     CommandRequest,
     CorrectRequest,
     DeleteRequest,
+    ExamRequest,
+    ExamStandingRequest,
     ExportRequest,
     FileRequest,
     HealthRequest,
@@ -81,9 +84,19 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     ExportRequest: (),
     MoveWallRequest: ("box", 0.1, 0.0),
     PlaceRequest: (1.0, 1.0, 0.0),
+    ExamRequest: (),
 }
 COMMANDS = {**MOVING, **LASTING}
-READING = {FileRequest, HealthRequest, HelloRequest, LessonsRequest, SituationsRequest, WhyRequest, WorldRequest}
+READING = {
+    ExamStandingRequest,
+    FileRequest,
+    HealthRequest,
+    HelloRequest,
+    LessonsRequest,
+    SituationsRequest,
+    WhyRequest,
+    WorldRequest,
+}
 
 
 @pytest.fixture
@@ -230,7 +243,7 @@ async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest
     for age in (longest + 1, -1):
         assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=age))) == "stale"
         assert desk.record.results == ()
-    assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=longest))) in ("", "refused")
+    assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=longest))) in ("", "refused", "held")
 
 
 @pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not TakeRequest])
@@ -482,6 +495,31 @@ async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again(
     await turns()
     assert (await reply_of(await desk.send(request))).body["name"] == "lessons.knowledge"
     assert desk.shelf.labels == [""]
+
+
+# Exams.
+
+
+async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
+    desk = Desk(ground=Yard())
+    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
+    await desk.ask(desk.command(TakeRequest), "bob")
+    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
+    request = desk.command(ExamRequest)
+    first = await desk.ask(request, "bob")
+    assert (first.verdict, await desk.ask(request, "bob")) == (Verdict.DONE, first)
+    assert desk.shelf.examined == 1
+    desk.exam = ExamStanding(True, 0.25, "exam without teacher, world a")
+    assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
+    told = (await desk.ask(ExamStandingRequest())).body["exam"]
+    assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam
+
+
+async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest))
+    for request in (desk.command(ExamRequest), ExamStandingRequest()):
+        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
+    assert desk.shelf.examined == 0
 
 
 # Looking.

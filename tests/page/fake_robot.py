@@ -9,6 +9,7 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
+from kurt2rt.channel.exam_standing import NO_EXAM, ExamStanding
 from kurt2rt.channel.requests import TABLE, VERSION
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.explain.facts import DecisionFacts
@@ -94,6 +95,7 @@ class FakeRobot:
     state: State | None = None
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
+    examined: ExamStanding = NO_EXAM
     files: dict[str, bytes] = field(default_factory=dict)
     answers_with: dict[str, object] = field(default_factory=dict)
     """What else its answers hold."""
@@ -226,6 +228,15 @@ class FakeRobot:
 
     async def export(self, form: str = TABLE) -> Answer:
         return await self._answer("export", form)
+
+    async def examine(self) -> Answer:
+        return await self._answer("examine")
+
+    async def exam(self) -> ExamStanding | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.examined
 
     async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
         await self._answer("file_parts", name)

@@ -3,6 +3,7 @@
 from dataclasses import fields
 from typing import get_args, get_type_hints
 
+from kurt2rt.channel.requests.exams import ExamRequest, ExamStandingRequest
 from kurt2rt.channel.requests.goals import BeAtRequest, PursueRequest, SeekLikeRequest, SeekRequest, SeekRlaRequest
 from kurt2rt.channel.requests.lessons import (
     AnswerRequest,
@@ -75,6 +76,8 @@ __all__ = [
     "CorrectRequest",
     "DeleteRequest",
     "DriveRequest",
+    "ExamRequest",
+    "ExamStandingRequest",
     "ExportRequest",
     "FileRequest",
     "HealthRequest",
@@ -134,6 +137,8 @@ REQUESTS: tuple[type[Request], ...] = (
     SaveRequest,
     ExportRequest,
     FileRequest,
+    ExamRequest,
+    ExamStandingRequest,
     LessonsRequest,
     HealthRequest,
     WhyRequest,

@@ -2,6 +2,7 @@
 
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Critic, CRITIC } from "./critic.js";
+import { Exam } from "./exam.js";
 import { Explanation } from "./explanation.js";
 import { Files } from "./files.js";
 import { Goals } from "./goals.js";
@@ -38,6 +39,7 @@ const health = new Health();
 const explanation = new Explanation(link);
 const organising = new Organising(tell);
 new Files(tell);
+const exam = new Exam(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
 let hello = null;
@@ -204,6 +206,7 @@ link.addEventListener("hello", ({ detail }) => {
   goals.build(hello);
   critic.build(hello);
   world.greet(hello);
+  exam.build(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
   setText($("keys-actions"), (hello.mid ? "the ways, or " : "") + hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
   $("view").hidden = !hello.simulated;
@@ -215,6 +218,7 @@ link.addEventListener("hello", ({ detail }) => {
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
+link.addEventListener("exam", ({ detail }) => exam.see(detail));
 link.addEventListener("health", ({ detail }) => health.see(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
 link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));

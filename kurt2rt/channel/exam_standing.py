@@ -1,0 +1,51 @@
+"""How the exam of a simulated robot stands, as it is told to its teachers."""
+
+from dataclasses import dataclass
+
+from kurt2rt.channel.maps import LINE, NAME, Form, MapOf
+from kurt2rt.channel.schema import Flag, ManyOf, Real
+
+_MOST_WORLDS = 32
+
+
+@dataclass(frozen=True, slots=True)
+class WorldVerdict:
+    """The exam in one world."""
+
+    world: str
+    passed: bool
+    text: str
+    """Progress beside that of the teacher's own policy, collisions, an early end."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExamStanding:
+    """The exam that is under way, or the newest one."""
+
+    running: bool
+    share: float
+    """Of the robot time that is over, 0 to 1."""
+    text: str
+    """What is being driven, or the verdict in a sentence; empty before the first exam."""
+    verdicts: tuple[WorldVerdict, ...] = ()
+    """One per world; empty until the exam is over."""
+    picture: str = ""
+    """Name of the PNG file, to be fetched as `/file`; empty until it is drawn."""
+    trouble: str = ""
+    """Why there is no verdict, in a line; empty where nothing went wrong."""
+
+
+NO_EXAM = ExamStanding(False, 0.0, "")
+
+EXAM = Form[ExamStanding](
+    "the exam",
+    MapOf(
+        ExamStanding,
+        running=Flag(),
+        share=Real(1.0),
+        text=LINE,
+        verdicts=ManyOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE), most=_MOST_WORLDS),
+        picture=NAME,
+        trouble=LINE,
+    ),
+)

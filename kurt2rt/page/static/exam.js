@@ -1,0 +1,62 @@
+// The exam of a simulated robot: begun here, driven by another process of the robot's program, shown as a picture.
+
+import { setText } from "./why.js";
+
+const $ = (id) => document.getElementById(id);
+
+export class Exam {
+  #tell;
+  #running = false;
+  #wanted = false; // begun from this page: its verdict opens by itself
+  #shown = "";
+
+  // `tell` gives an order and resolves with its answer.
+  constructor(tell) {
+    this.#tell = tell;
+    $("examine").addEventListener("click", () => this.#begin());
+    $("show-exam").addEventListener("click", () => $("exam-result").show()); // not modal: STOP and GO stay free
+    $("close-exam").addEventListener("click", () => $("exam-result").close());
+  }
+
+  build(hello) {
+    $("exam").hidden = !hello.simulated;
+  }
+
+  see(exam) {
+    this.#running = exam.running;
+    $("examine").disabled = exam.running;
+    $("exam-progress").hidden = !exam.running;
+    $("exam-progress").value = exam.share;
+    const share = Math.round(exam.share * 100);
+    setText($("exam-says"), exam.running ? `${share} %: ${exam.text}` : exam.trouble || exam.text || "No exam yet.");
+    $("show-exam").hidden = exam.running || !exam.picture;
+    if (exam.running || !exam.picture || exam.picture === this.#shown) return;
+    this.#shown = exam.picture;
+    this.#fill(exam);
+    if (this.#wanted) $("exam-result").show();
+    this.#wanted = false;
+  }
+
+  async #begin() {
+    const answer = await this.#tell("examine", {}, "exam");
+    this.#wanted = answer.accepted;
+  }
+
+  #fill(exam) {
+    setText($("exam-verdict"), exam.text);
+    $("exam-worlds").replaceChildren(
+      ...exam.verdicts.map(({ world, passed, text }) => {
+        const row = document.createElement("li");
+        const verdict = document.createElement("b");
+        verdict.textContent = `World ${world}: ${passed ? "passed" : "failed"}`;
+        const told = document.createElement("span");
+        told.textContent = text;
+        row.append(verdict, told);
+        return row;
+      }),
+    );
+    const picture = $("exam-picture");
+    picture.alt = `Floor plans with the robot's drive in blue and the teacher's own in grey. ${exam.text}`;
+    picture.src = `/files/${encodeURIComponent(exam.picture)}`;
+  }
+}

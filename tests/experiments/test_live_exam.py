@@ -1,0 +1,90 @@
+"""The exam of a robot that runs: its process, and what the robot's program makes of it."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from hal.robot_settings import load_robot
+from kurt2rt.channel.exam_standing import EXAM, ExamStanding
+from kurt2rt.cli import exam_process
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.live_exam import LiveExam
+from kurt2rt.tasks.settings import load_task
+
+OVER = ExamStanding(False, 1.0, "Passed in 0 of 1 worlds.")
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    path = tmp_path / "copy.knowledge"
+    path.write_bytes(b"")
+    return path
+
+
+def saying(*lines: str, after: str = "") -> "LiveExam":
+    """An exam whose process prints these lines, then runs `after`."""
+    script = "import sys, time\n" + "".join(f"print({line!r}, flush=True)\n" for line in lines) + after
+    return LiveExam(lambda _, picture: (sys.executable, "-c", script, str(picture)))
+
+
+def ended(exam: LiveExam) -> ExamStanding:
+    assert exam._reading is not None
+    exam._reading.join(10.0)
+    return exam.standing
+
+
+def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tmp_path: Path) -> None:
+    drawn = "open(sys.argv[1], 'wb').close()"
+    with saying("a word of some library", json.dumps(EXAM.plain_of(OVER)), after=drawn) as exam:
+        exam.begin(copy, tmp_path / "exam.png")
+        told = ended(exam)
+    assert (told.text, told.picture, told.trouble, told.running) == (OVER.text, "exam.png", "", False)
+    assert not copy.exists()
+
+
+def test_a_process_that_dies_is_told_as_trouble(copy: Path, tmp_path: Path) -> None:
+    with saying("[1", after="sys.exit(3)") as exam:
+        exam.begin(copy, tmp_path / "exam.png")
+        told = ended(exam)
+    assert told.trouble == "the exam ended without a verdict (code 3); examine again"
+    assert not told.running
+
+
+def test_one_exam_at_a_time_and_the_end_of_the_program_ends_it(copy: Path, tmp_path: Path) -> None:
+    exam = saying(after="time.sleep(60)")
+    exam.begin(copy, tmp_path / "exam.png")
+    with pytest.raises(KnowledgeError, match="an exam is under way"):
+        exam.begin(tmp_path / "second.knowledge", tmp_path / "second.png")
+    exam.close()
+    assert not exam.standing.running
+    assert not copy.exists()
+
+
+def test_its_process_draws_and_judges(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    settings = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
+    settings["exam"] |= {"worlds": ["a"], "duration_s": 2.0}
+    task, picture = tmp_path / "short.yaml", tmp_path / "exams" / "exam.png"
+    task.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    knowledge = tmp_path / "nothing.knowledge"
+    open_knowledge(knowledge, load_robot(), load_task(str(task))).close()
+    exam_process._examine(knowledge, picture, "kurt2", str(task), 1)
+    standings = [EXAM.read(json.loads(line)) for line in capsys.readouterr().out.splitlines()]
+    shares = [each.share for each in standings]
+    assert shares == sorted(shares)
+    (verdict,) = standings[-1].verdicts
+    assert (standings[-1].text, verdict.passed, verdict.world) == ("Passed in 0 of 1 worlds.", False, "A")
+    assert "of the teacher's" in verdict.text
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_knowledge_of_another_task_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    knowledge = tmp_path / "eight.knowledge"
+    open_knowledge(knowledge, load_robot(), load_task("eight")).close()
+    with pytest.raises(KnowledgeError, match="taught for the task"):
+        exam_process._examine(knowledge, tmp_path / "exam.png", "kurt2", "wall_following", 1)
+    assert capsys.readouterr().out == ""
