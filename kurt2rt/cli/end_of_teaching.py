@@ -24,17 +24,25 @@ async def end_of_teaching(device: Device, *, while_stdin: bool) -> str:
             because = await _end_of_pairing(device)
             tasks.cancel_scope.cancel()
 
+        tasks.start_soon(pairing_ends)
+        await told_to_end(while_stdin=while_stdin)
+        tasks.cancel_scope.cancel()
+    return because
+
+
+async def told_to_end(*, while_stdin: bool) -> None:
+    """Wait for a signal that ends the program, or with `while_stdin` for the end of its input."""
+    async with anyio.create_task_group() as tasks:
+
         async def input_ends() -> None:
             await _end_of_input()
             tasks.cancel_scope.cancel()
 
-        tasks.start_soon(pairing_ends)
         if while_stdin:
             tasks.start_soon(input_ends)
         with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT, signal.SIGHUP) as signals:
             async for _ in signals:
                 tasks.cancel_scope.cancel()
-    return because
 
 
 async def _end_of_pairing(device: Device) -> str:

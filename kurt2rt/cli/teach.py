@@ -40,6 +40,10 @@ def teach(
     auto: Annotated[
         bool, typer.Option("--auto", help="Let the scripted teacher teach, a simulated robot only; no page is served.")
     ] = False,
+    phone: Annotated[
+        bool,
+        typer.Option("--phone", help="Serve every device: this machine and, once one is paired, the network."),
+    ] = False,
     name: Annotated[
         str | None,
         typer.Option(
@@ -55,7 +59,13 @@ def teach(
         int | None, typer.Option(min=1, max=65535, help="UDP port of the robot. Default: as noted with the pairing.")
     ] = None,
     page_port: Annotated[
-        int | None, typer.Option(min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say.")
+        int | None,
+        typer.Option(
+            min=0,
+            max=65535,
+            help="TCP port of the page; 0: any. Default: as the settings say, or one of the next nine where another "
+            "page has that.",
+        ),
     ] = None,
     host_name: Annotated[
         list[str] | None, typer.Option(help="Another name of this machine that browsers may use; can be repeated.")
@@ -74,6 +84,7 @@ def teach(
     while_stdin: Annotated[
         bool, typer.Option("--while-stdin", help="End when the standard input ends, as kurt2rt run needs it.")
     ] = False,
+    pages_as_json: Annotated[bool, typer.Option("--pages-as-json", hidden=True)] = False,
 ) -> None:
     """Teach a robot that runs: from a browser, from a terminal, or by a script.
 
@@ -83,11 +94,16 @@ def teach(
         kurt2rt run
         kurt2rt teach
 
-    For a phone, pair it once and scan the code; the page is then open to the
-    phone's network:
+    For a phone, pair it once and scan the code that this shows; the page is open
+    to the phone's network while a device is paired:
 
         kurt2rt pair phone
-        kurt2rt teach --as phone
+        kurt2rt teach --phone
+
+    kurt2rt run --phone does both. On another machine than the robot, for the one
+    device whose folder is there:
+
+        kurt2rt teach --as phone --robot 192.168.0.7
 
     Without a browser, type: an action answers or corrects, Enter alone stops the
     robot, help shows the rest.
@@ -105,7 +121,26 @@ def teach(
     """
     if terminal and auto:
         raise typer.BadParameter("one teacher at a time: --terminal or --auto", param_hint="--auto")
+    if phone and (terminal or auto or name is not None or robot is not None or public_address is not None):
+        raise typer.BadParameter(
+            "it serves the pages of all devices, beside the robot's program; leave out --terminal, --auto, --as, "
+            "--robot and --public-address",
+            param_hint="--phone",
+        )
     service = load_service(settings)
+    if phone:
+        from kurt2rt.cli.teach_page import FURTHER_PORTS, serve_pages
+
+        serve_pages(
+            service,
+            port or service.port,
+            service.page_port if page_port is None else page_port,
+            tuple(host_name or ()),
+            further=FURTHER_PORTS if page_port is None else 0,
+            while_stdin=while_stdin,
+            as_json=pages_as_json,
+        )
+        return
     device = _device(service, name or (TERMINAL if terminal else AUTO if auto else LOCAL))
     way = _Way(device, robot or device.host, port or device.port)
     if terminal:
@@ -118,11 +153,21 @@ def teach(
         )
     else:
         # Here, because the robot's own machine may do without the packages that a page needs: they are an extra.
-        from kurt2rt.cli.teach_page import serve_page
+        from kurt2rt.cli.teach_page import FURTHER_PORTS, serve_page
 
+        further = FURTHER_PORTS if page_port is None else 0
         at = service.page_port if page_port is None else page_port
         names = tuple(host_name or ())
-        serve_page(device, way.host, way.port, at, names, while_stdin=while_stdin, public_address=public_address)
+        serve_page(
+            device,
+            way.host,
+            way.port,
+            at,
+            names,
+            further=further,
+            while_stdin=while_stdin,
+            public_address=public_address,
+        )
 
 
 def _device(service: ServiceSettings, name: str) -> Device:

@@ -1,17 +1,29 @@
-"""`kurt2rt teach` without --terminal or --auto: the page."""
+"""`kurt2rt teach` without --terminal or --auto: the page of one device, or with --phone those of all."""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
 
 import anyio
-import segno
 from rich.console import Console
 
-from kurt2rt.channel.credentials import OF_THIS_MACHINE, Device
-from kurt2rt.cli.end_of_teaching import end_of_teaching
+from kurt2rt.channel.credentials import OF_THIS_MACHINE, Device, local_pairing
+from kurt2rt.cli.end_of_teaching import end_of_teaching, told_to_end
+from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.page.access import Access
+from kurt2rt.page.device_server import PageAddress, Pairings, ServedPages, link_of, run_device_pages
 from kurt2rt.page.error import PageError
 from kurt2rt.page.hosts import own_address, own_names
 from kurt2rt.page.public_address import public_address as read_public_address
 from kurt2rt.page.server import listen, run_page
+from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.teaching.client import TeacherClient
+
+FURTHER_PORTS = 9
+"""How many ports above that of the settings are tried where another page has it."""
+ROBOT_HERE = "127.0.0.1"
+PAIR_A_PHONE = "for a phone: kurt2rt pair phone, in another terminal"
 
 
 def serve_page(
@@ -21,36 +33,103 @@ def serve_page(
     page_port: int,
     host_names: tuple[str, ...],
     *,
+    further: int,
     while_stdin: bool,
     public_address: str | None = None,
 ) -> None:
     """Serve the page of a device until it is told to end; `host` and `port` are the robot's.
 
+    `further`: as `kurt2rt.page.server.listen` has it.
     `public_address` is where a TLS proxy serves it, such as https://robot.example. Raises PageError.
     """
     public = None if public_address is None else read_public_address(public_address)
     everywhere = device.name not in OF_THIS_MACHINE
-    listener = listen(page_port, everywhere=everywhere)
-    address = own_address() if everywhere else "127.0.0.1"
-    origin = f"http://{address}:{listener.getsockname()[1]}" if public is None else public.origin
-    link = f"{origin}/pair?token={device.token}"
+    listener = listen(page_port, everywhere=everywhere, further=further)
+    served_port: int = listener.getsockname()[1]
+    if public is None:
+        link = link_of(device, own_address() if everywhere else ROBOT_HERE, served_port)
+    else:
+        link = f"{public.origin}/pair?token={device.token}"
     access = Access(device.name, device.token, own_names() | {each.lower() for each in host_names}, public)
     console = Console()
-    console.print(f"page for {device.name}, robot at {host}:{port}; Ctrl-C ends", markup=False, highlight=False)
-    console.print(link, markup=False, highlight=False, soft_wrap=True)
+    taken = f"; port {page_port} is in use, so it is at {served_port}" if page_port not in (0, served_port) else ""
+    _print(console, f"page for {device.name}, robot at {host}:{port}{taken}; Ctrl-C ends")
+    _print(console, link)
     if (everywhere or public is not None) and console.is_terminal:
-        segno.make(link).terminal(compact=True)
+        console.print(qr_code(link), soft_wrap=True)
     because = ""
 
-    async def told_to_end() -> None:
+    async def end() -> None:
         nonlocal because
         because = await end_of_teaching(device, while_stdin=while_stdin)
 
     async def serve() -> None:
         async with TeacherClient(device.folder, host, port) as client:
-            await run_page(client, access, f"{host}:{port}", listener, told_to_end)
+            await run_page(client, access, f"{host}:{port}", listener, end)
 
     with listener:
         anyio.run(serve)
     if because:
         raise PageError(because)
+
+
+def serve_pages(
+    service: ServiceSettings,
+    port: int,
+    page_port: int,
+    host_names: tuple[str, ...],
+    *,
+    further: int,
+    while_stdin: bool,
+    as_json: bool,
+) -> None:
+    """Serve this machine and, while a device is paired, the network, until told to end. Raises PageError.
+
+    `port` is the robot's, on this machine; `further` as `kurt2rt.page.server.listen` has it. `as_json`: tell what is
+    served in lines of JSON, for `kurt2rt run`.
+    """
+    pairings = Pairings(Path(service.teachers), Path(service.devices))
+    local_pairing(pairings.teachers, pairings.devices, port=service.port)
+    names = own_names() | {each.lower() for each in host_names}
+
+    async def serve() -> None:
+        await run_device_pages(
+            pairings,
+            lambda device: TeacherClient(device.folder, ROBOT_HERE, port),
+            f"{ROBOT_HERE}:{port}",
+            names,
+            page_port,
+            _tell_json if as_json else _telling(Console()),
+            lambda: told_to_end(while_stdin=while_stdin),
+            further=further,
+        )
+
+    anyio.run(serve)
+
+
+def _tell_json(served: ServedPages) -> None:
+    print(json.dumps(asdict(served)), flush=True)
+
+
+def served_pages_of(line: str) -> ServedPages:
+    """Read what `serve_pages` told as JSON. Raises ValueError, KeyError, TypeError for another text."""
+    told = json.loads(line)
+    addresses = tuple(PageAddress(**each) for each in told["addresses"])
+    return ServedPages(addresses, bool(told["network"]), str(told["trouble"]))
+
+
+def _telling(console: Console) -> Callable[[ServedPages], None]:
+    def tell(served: ServedPages) -> None:
+        for each in served.addresses:
+            _print(console, f"page for {each.device}:", each.link)
+        phones = [each for each in served.addresses if each.device not in OF_THIS_MACHINE]
+        if phones and console.is_terminal:
+            console.print(qr_code(phones[0].link), soft_wrap=True)
+        _print(console, *([] if phones else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
+
+    return tell
+
+
+def _print(console: Console, *lines: str) -> None:
+    if lines:
+        console.print(*lines, sep="\n", markup=False, highlight=False, soft_wrap=True)

@@ -2,8 +2,11 @@
 
 import hashlib
 import hmac
+import secrets
 from collections.abc import Collection, Mapping
+from typing import Self
 
+from kurt2rt.channel.credentials import LOCAL
 from kurt2rt.page.hosts import is_ours
 from kurt2rt.page.public_address import PublicAddress
 
@@ -11,15 +14,33 @@ from kurt2rt.page.public_address import PublicAddress
 class Access:
     """The rules of the door. The cookie is derived from the token, so a renewed or revoked pairing ends it."""
 
-    def __init__(self, device: str, token: str, names: Collection[str], public: PublicAddress | None = None) -> None:
-        """`names`: what this machine may be called in an address; `public`: where a TLS proxy serves the page."""
+    def __init__(
+        self,
+        device: str,
+        token: str,
+        names: Collection[str],
+        public: PublicAddress | None = None,
+        *,
+        shown_by: str | None = None,
+    ) -> None:
+        """`names`: what this machine may be called in an address; `public`: where a TLS proxy serves the page.
+
+        `shown_by`: the command that shows the address; None: kurt2rt teach for this device.
+        """
         self.device = device
+        teach = "kurt2rt teach" if device == LOCAL else f"kurt2rt teach --as {device}"
+        self.shown_by = teach if shown_by is None else shown_by
         self.public = public
         self._token = token.encode()
         self._names = frozenset(name.lower() for name in names)
         # Cookies know no ports: two devices' pages on one machine need two names.
         self.cookie_name = f"kurt2rt-{device}"
         self.cookie = hmac.new(self._token, b"kurt2rt page", hashlib.sha256).hexdigest()
+
+    @classmethod
+    def without_device(cls, names: Collection[str]) -> Self:
+        """Return rules that let nobody in; `names` as for a device."""
+        return cls("", secrets.token_urlsafe(), names, shown_by="kurt2rt run --phone")
 
     def opens(self, token: str) -> bool:
         """Whether this is the token; takes the same time whatever is wrong with it."""

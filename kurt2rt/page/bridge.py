@@ -85,6 +85,17 @@ class Bridge:
 
     # Pages
 
+    @property
+    def visitors(self) -> int:
+        """How many pages are open."""
+        return len(self._visitors)
+
+    def dismiss(self) -> None:
+        """Close every page's connection; it may come again, and shows its cookie then."""
+        for visitor in self._visitors.values():
+            visitor.lost = True
+            visitor.look()
+
     def arrive(self) -> Visitor:
         """A page was opened."""
         self._opened += 1

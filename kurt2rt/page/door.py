@@ -84,9 +84,7 @@ class Door:
         return response
 
     def _scan_again(self, status: int) -> Response:
-        device = self._access.device
-        command = "kurt2rt teach" if device == "local" else f"kurt2rt teach --as {device}"
-        return HTMLResponse(_SCAN_AGAIN.format(command=command), status)
+        return HTMLResponse(_SCAN_AGAIN.format(command=self._access.shown_by), status)
 
 
 def _with_security_headers(send: Send, host: str, public: PublicAddress | None) -> Send:

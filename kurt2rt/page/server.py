@@ -1,6 +1,7 @@
 """Serves the page until it is told to end."""
 
 import contextlib
+import errno
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 
@@ -23,14 +24,21 @@ _MOST_CONNECTIONS = 96
 """Strangers take only a third of them."""
 
 
-def listen(port: int, *, everywhere: bool) -> socket.socket:
-    """A listening TCP socket: on this machine alone, or on all its addresses. Raises PageError."""
-    try:
-        if everywhere and socket.has_dualstack_ipv6():
-            return socket.create_server(("::", port), family=socket.AF_INET6, dualstack_ipv6=True)
-        return socket.create_server(("" if everywhere else "127.0.0.1", port))
-    except OSError as error:
-        raise PageError(f"port {port}: cannot listen ({error.strerror}); give another one with --page-port") from error
+def listen(port: int, *, everywhere: bool, further: int = 0) -> socket.socket:
+    """Return a listening TCP socket: on this machine alone, or on all its addresses. Raises PageError.
+
+    `further`: how many ports above are tried in turn where another program has `port`.
+    """
+    for tried in range(port, min(port + further, 65535) + 1):
+        try:
+            if everywhere and socket.has_dualstack_ipv6():
+                return socket.create_server(("::", tried), family=socket.AF_INET6, dualstack_ipv6=True)
+            return socket.create_server(("" if everywhere else "127.0.0.1", tried))
+        except OSError as error:
+            why = error
+            if error.errno != errno.EADDRINUSE:
+                break
+    raise PageError(f"port {port}: cannot listen ({why.strerror}); give another one with --page-port") from why
 
 
 async def run_page(
@@ -61,7 +69,63 @@ async def run_page(
         tasks.cancel_scope.cancel()
 
 
+class Doorway:
+    """The one port of an application: on this machine alone, or on the network, which may change while it is served.
+
+    Connections that are open outlast a change; between the old listening socket and the new one none is refused for
+    longer than the kernel takes to open it.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        tasks: anyio.abc.TaskGroup,
+        port: int,
+        *,
+        further: int = 0,
+        request_within_s: float = REQUEST_WITHIN_S,
+    ) -> None:
+        """`port`, 0: any; `further` as `listen` has it, for the first socket."""
+        self._app = app
+        self._tasks = tasks
+        self._further = further
+        self._request_within_s = request_within_s
+        self._servers: list[_Server] = []
+        self.port = port
+        self.everywhere: bool | None = None
+        """Whether the network is listened to; None before the first socket."""
+
+    async def open(self, *, everywhere: bool) -> None:
+        """Listen there, and no longer elsewhere. Raises PageError; then nothing is listened to until the next try."""
+        if everywhere == self.everywhere:
+            return
+        for server in self._servers:
+            for each in server.servers:
+                each.close()
+        self.everywhere = None
+        listener = listen(self.port, everywhere=everywhere, further=self._further)
+        self.port, self._further = listener.getsockname()[1], 0
+        # Of a server before, which only waits for its last connections, nothing is left to be ended but these.
+        begun: _Server = await self._tasks.start(_serve, self._app, listener, self._request_within_s)
+        self._servers.append(begun)
+        await begun.listening.wait()
+        self.everywhere = everywhere
+
+    def end(self) -> None:
+        """Close the port and every connection."""
+        for server in self._servers:
+            server.should_exit = True
+
+
 class _Server(uvicorn.Server):
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.listening = anyio.Event()
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        await super().startup(sockets)
+        self.listening.set()
+
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
         """Signals are the command's: it lets go of the robot before the server ends."""
