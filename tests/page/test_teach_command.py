@@ -9,7 +9,9 @@ from urllib.parse import urlsplit
 
 from websockets.sync.client import connect
 
-from kurt2rt.channel.credentials import pair, revoke
+from config import CONFIG_DIR
+from kurt2rt.channel.credentials import pair, read_device, revoke
+from kurt2rt.page.server import listen
 from tests.cli.helpers import running
 
 
@@ -63,3 +65,37 @@ def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
         assert page.process.stderr is not None
         (line,) = page.process.stderr.read().splitlines()
     assert line == "kurt2rt: phone: its pairing was revoked; pair it again: kurt2rt pair phone"
+
+
+def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
+    pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+    settings = tmp_path / "own.yaml"
+    default = (CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8")
+    with listen(0, everywhere=False) as before:
+        port = before.getsockname()[1]
+        settings.write_text(default.replace("page_port: 8642", f"page_port: {port}"), encoding="utf-8")
+        with running("teach", "--as", "phone", "--settings", "own.yaml", folder=tmp_path) as page:
+            told = page.wait_for("page for phone, ")
+            served = urlsplit(page.wait_for("http://").strip()).port
+            assert served is not None
+            assert port < served <= port + 9
+            assert f"; port {port} is in use, so it is at {served}; " in told
+            cookie_of(f"http://127.0.0.1:{served}/pair?token={read_device(tmp_path / 'var/devices/phone').token}")
+            assert page.end(signal.SIGTERM).err == ""
+        with running("teach", "--as", "phone", "--page-port", str(port), folder=tmp_path) as page:
+            page.process.wait(timeout=20)
+            assert page.process.stderr is not None
+            assert f"port {port}: cannot listen (Address already in use)" in page.process.stderr.read()
+
+
+def test_all_devices_are_served_by_one_command(tmp_path: Path) -> None:
+    with running("teach", "--phone", "--page-port", "0", "--port", "9", folder=tmp_path) as page:
+        local = page.wait_for("http://127.0.0.1:").strip()
+        page.wait_for("for a phone: kurt2rt pair phone")
+        pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+        page.wait_for("page for phone:")
+        phone = urlsplit(page.wait_for("/pair?token=").strip())
+        assert phone.port == urlsplit(local).port
+        cookie_of(local)
+        cookie_of(phone._replace(netloc=f"127.0.0.2:{phone.port}").geturl())  # beyond what is 127.0.0.1 alone
+        assert page.end(signal.SIGTERM).err == ""
