@@ -2,6 +2,7 @@
 
 import contextlib
 import errno
+import os
 import socket
 from collections.abc import Awaitable, Callable, Iterator
 
@@ -35,10 +36,10 @@ def listen(port: int, *, everywhere: bool, further: int = 0) -> socket.socket:
                 return socket.create_server(("::", tried), family=socket.AF_INET6, dualstack_ipv6=True)
             return socket.create_server(("" if everywhere else "127.0.0.1", tried))
         except OSError as error:
-            why = error
+            why = os.strerror(error.errno or 0)  # without what create_server adds to it
             if error.errno != errno.EADDRINUSE:
                 break
-    raise PageError(f"port {port}: cannot listen ({why.strerror}); give another one with --page-port") from why
+    raise PageError(f"port {port}: cannot listen ({why}); give another one with --page-port")
 
 
 async def run_page(
