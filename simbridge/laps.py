@@ -1,97 +1,98 @@
-"""Laps along the outer wall, for judging a wall follower."""
+"""Progress of a wall follower, measured along the wall that it follows."""
 
 import math
 
-import shapely
-import shapely.ops
-
-from simbridge.geometry import Point
+from simbridge.pose import Pose
+from simbridge.wall_rings import RingPlace, WallRings
 from simbridge.world import World
-from simbridge.world_settings import WorldSettings
 
-_ROBOT_M = 0.15
-"""From the robot's centre to its side, and somewhat less: nowhere does it come nearer to a wall."""
-_WALL_M = 0.35
-"""From a wall follower's centre to its wall. Along this way corners are short, and places in them distinct."""
-_NEAR_M = 0.3
-"""Along the wall is where the robot is so near to that way; its sensors hardly see a wall from farther off."""
-_REACH_M = 0.3
-"""From one call to the next its place moves on by less, as long as it stays along one stretch of wall."""
+_GATE_M = 0.02
+"""Largest distance from one gate of a ring to the next."""
 _CORNER_M = 1.0
-"""A jump in place that a corner or a bulge in its way explains; longer jumps cross the room."""
+"""A corner or a bulge of the ring explains a jump in arc length up to this; a longer jump crosses the room."""
+_LAP_SHARE = 0.6
+"""A gate counts again after this share of its ring's length."""
 
 
-class Laps:
-    """Progress along the outer wall: the place of the way round the room that is nearest to the robot, followed.
+class WallProgress:
+    """Signed way along the walls of a room: forward if the wall is on the left.
 
-    Positive with the wall on the left, which is clockwise. Only ways along the wall make progress. A way through the
-    middle leads to a place of the lap driven last, never ahead of the foremost place reached along the wall: whoever
-    cuts across makes up no lap by it, however often.
+    Each ring (`WallRings`) has gates. To pass a gate is worth the distance to the next gate. A gate counts once: again
+    only after progress of 60 % of the ring's length, or in the other direction, which takes back what it was worth. So
+    a robot that goes to and fro between two walls makes no progress beyond the first time. Jumps across the room and
+    from one ring to another count nothing.
     """
 
     def __init__(self, world: World) -> None:
-        self.count = 0.0
-        """Laps so far, with fractions."""
+        self.laps = 0.0
+        """Progress in lengths of the outer wall's ring, also for progress along an island: one unit for one room."""
         self._world = world
         start = world.settings.start_poses[0]
-        self.put((start.x_m, start.y_m))
+        self._survey(start.pose)
+        self.reset(start.pose)
 
-    def put(self, position: Point) -> None:
-        """The robot was put here: no progress."""
-        self._surveyed = self._world.settings
-        self._way = way_round(self._surveyed, position)
-        self._length_m: float = self._way.length
-        self._foremost = self.count
-        self._two_rounds = shapely.LineString([*self._way.coords, *self._way.coords[1:]])
-        self._along_m: float | None = None
-        self._along_m = self._place(position)
+    @property
+    def lap_m(self) -> float:
+        """Length of the outer wall's ring."""
+        return self._rings.lengths_m[0]
 
-    def follow(self, position: Point) -> None:
-        """The robot came here on its own wheels, not more than some decimetres since the last call."""
+    def reset(self, pose: Pose) -> None:
+        """Note that the robot was put at `pose`: no progress, and all gates count again."""
+        if self._world.settings is not self._surveyed or not self._rings.contains((pose.x_m, pose.y_m)):
+            self._survey(pose)
+        self._gates = [_Gates(length_m) for length_m in self._rings.lengths_m]
+        self._way_m = 0.0
+        self._place: RingPlace | None = None
+        self._place = self._rings.place(pose.x_m, pose.y_m, pose.heading_rad, None)
+
+    def update(self, x_m: float, y_m: float, heading_rad: float) -> float:
+        """Apply the pose that the robot drove to, a few decimetres from the last one, and return `laps`."""
         if self._world.settings is not self._surveyed:
-            # A wall was moved, and what was measured along the old way means nothing on the new one.
-            self.put(position)
-            return
-        along_m = self._place(position)
-        if along_m is None:
-            return
-        if self._along_m is not None:
-            self._advance(math.remainder(along_m - self._along_m, self._length_m))
-        self._along_m = along_m
+            # Arc lengths of the old rings mean nothing after a wall was moved.
+            self.reset(Pose(x_m, y_m, heading_rad))
+            return self.laps
+        place, last = self._rings.place(x_m, y_m, heading_rad, self._place), self._place
+        if place is None:
+            return self.laps
+        if last is not None and last.ring == place.ring:
+            step_m = self._gates[place.ring].pass_through(last.along_m, place.along_m, self._way_m)
+            self._way_m += step_m
+            self.laps += step_m / self.lap_m
+        self._place = place
+        return self.laps
 
-    def _advance(self, step_m: float) -> None:
-        count = self.count + step_m / self._length_m
-        if abs(step_m) <= _CORNER_M:
-            self._foremost = min(max(self._foremost, count), count + 1.0)
-        else:
-            count = self._foremost - (self._foremost - count) % 1.0
-        self.count = count
-
-    def _place(self, position: Point) -> float | None:
-        """Length of the way up to the robot's place; None away from the wall."""
-        centre = shapely.Point(position)
-        away_m: float = self._way.distance(centre)
-        if away_m > _NEAR_M:
-            return None
-        along_m: float = self._way.project(centre)
-        if self._along_m is None or abs(math.remainder(along_m - self._along_m, self._length_m)) <= _REACH_M:
-            return along_m
-        # In a narrow place another wall may be nearer for a while than the one it follows.
-        begin_m = (self._along_m - _REACH_M) % self._length_m
-        stretch = shapely.ops.substring(self._two_rounds, begin_m, begin_m + 2 * _REACH_M)
-        return begin_m + float(stretch.project(centre)) if stretch.distance(centre) <= _NEAR_M else along_m
+    def _survey(self, pose: Pose) -> None:
+        self._surveyed = self._world.settings
+        self._rings = WallRings(self._surveyed, (pose.x_m, pose.y_m))
 
 
-def way_round(world: WorldSettings, position: Point) -> shapely.LinearRing:
-    """Clockwise way of a wall follower's centre round the room that a position is in.
+class _Gates:
+    """Gates of one ring, at equal distances."""
 
-    It leads along the outline and round all that stands against it or leaves no gap to pass. Islands are left out.
-    """
-    walls = shapely.union_all([shapely.Polygon(corners) for corners in world.solids])
-    rooms = shapely.get_parts(shapely.Polygon(world.outline).difference(walls).buffer(-_ROBOT_M, quad_segs=2))
-    centre = shapely.Point(position)
-    room = min(rooms, key=lambda part: float(part.distance(centre)))
-    apart = room.buffer(_ROBOT_M - _WALL_M, quad_segs=2)
-    # Where it would not get through a narrow place so far from both walls, it goes as near to them as it can.
-    way = (apart if isinstance(apart, shapely.Polygon) and not apart.is_empty else room).exterior
-    return way.reverse() if way.is_ccw else way
+    def __init__(self, length_m: float) -> None:
+        count = math.ceil(length_m / _GATE_M)
+        self._length_m = length_m
+        self._apart_m = length_m / count
+        self._passed: list[tuple[int, float]] = [(0, 0.0)] * count
+        """Of each gate: direction in which it was passed last, 0 if never, and the progress made by then."""
+
+    def pass_through(self, from_m: float, to_m: float, way_m: float) -> float:
+        """Return the progress, in m, of a step from one arc length to another.
+
+        `way_m`: progress on all rings before this step.
+        """
+        step_m = math.remainder(to_m - from_m, self._length_m)
+        if abs(step_m) > _CORNER_M:
+            return 0.0
+        here, there = math.floor(from_m / self._apart_m), math.floor((from_m + step_m) / self._apart_m)
+        direction = 1 if there > here else -1
+        # Going backward, the robot passes first the gate at the begin of its own stretch.
+        crossed = range(here + 1, there + 1) if direction > 0 else range(here, there, -1)
+        gained_m = 0.0
+        for index in crossed:
+            gate = index % len(self._passed)
+            passed, then_m = self._passed[gate]
+            if passed != direction or abs(way_m - then_m) >= _LAP_SHARE * self._length_m:
+                self._passed[gate] = direction, way_m
+                gained_m += direction * self._apart_m
+        return gained_m

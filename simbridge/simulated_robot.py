@@ -10,7 +10,7 @@ from simbridge.bumpers import Bumpers, Collisions
 from simbridge.controller_bus import ControllerBus
 from simbridge.infrared import InfraredSensors
 from simbridge.instruments import Instruments
-from simbridge.laps import Laps
+from simbridge.laps import WallProgress
 from simbridge.microcontroller import MicroController
 from simbridge.noise import Noise
 from simbridge.pose import Pose
@@ -52,7 +52,7 @@ class SimulatedRobot:
         self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise, build)
         self._bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = Collisions(cycle_s)
-        self._laps = Laps(self.world)
+        self._progress = WallProgress(self.world)
         self._pressed = 0
         self.lifted = False
         """True while it stands on a block: its wheels turn in the air and the body stays."""
@@ -74,7 +74,7 @@ class SimulatedRobot:
         self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
         controller.note_readings(self._infrared.measure(pose), self._infrared.counts)
         if self._cycles % _LAPS_EVERY_CYCLES == 0:
-            self._laps.follow((pose.x_m, pose.y_m))
+            self._progress.update(*pose)
         controller.send(*wheels.take_ticks(), self._pressed)
 
     def place(self, pose: Pose) -> None:
@@ -83,7 +83,7 @@ class SimulatedRobot:
         self._body.place(pose)
         self._collisions.forget()
         self._pressed = 0
-        self._laps.put((pose.x_m, pose.y_m))
+        self._progress.reset(pose)
         self._infrared.measure_all(pose)
         self.controller.note_readings(range(len(self._infrared.counts)), self._infrared.counts)
 
@@ -119,8 +119,13 @@ class SimulatedRobot:
 
     @property
     def laps(self) -> float:
-        """Laps along the outer wall so far, positive with the wall on the left."""
-        return self._laps.count
+        """Progress along walls so far in laps, positive if the wall is on the left (`WallProgress`)."""
+        return self._progress.laps
+
+    @property
+    def lap_m(self) -> float:
+        """Length of a lap: the way along the outer wall of the room."""
+        return self._progress.lap_m
 
     @property
     def infrared_counts(self) -> tuple[int, ...]:

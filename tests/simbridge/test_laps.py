@@ -5,13 +5,16 @@ from collections.abc import Iterator
 
 import pytest
 import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
-from simbridge.geometry import Point
-from simbridge.laps import Laps, way_round
-from simbridge.obstacle_settings import PolygonObstacleSettings, WallSettings
+from simbridge.geometry import Point, polygons_of
+from simbridge.laps import WallProgress
+from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.pose import Pose
+from simbridge.wall_rings import WallRings
 from simbridge.world import World
-from simbridge.world_settings import load_world
+from simbridge.world_settings import WorldSettings, load_world
 from tests.simbridge.rig import ROBOT, Rig, room
 
 NAMES = ("a", "b", "c")
@@ -29,48 +32,61 @@ def straight(*corners: Point) -> Iterator[Point]:
             yield a[0] + i / steps * (b[0] - a[0]), a[1] + i / steps * (b[1] - a[1])
 
 
-def counted(laps: Laps, *corners: Point) -> float:
-    """Laps counted on straight ways from corner to corner, after the robot was put at the first."""
-    before = laps.count
-    laps.put(corners[0])
+def driven(progress: WallProgress, *corners: Point) -> list[float]:
+    """Laps after each step on straight ways from corner to corner, from 0 where the robot is put at the first."""
+    before = progress.laps
+    (x_m, y_m), following = corners[0], corners[1]
+    progress.reset(Pose(x_m, y_m, math.atan2(following[1] - y_m, following[0] - x_m)))
+    laps, last = [0.0], corners[0]
     for place in straight(*corners):
-        laps.follow(place)
-    return laps.count - before
+        heading_rad = math.atan2(place[1] - last[1], place[0] - last[0])
+        laps.append(progress.update(*place, heading_rad) - before)
+        last = place
+    return laps
+
+
+def counted(progress: WallProgress, *corners: Point) -> float:
+    """Laps made on straight ways from corner to corner, after the robot was put at the first."""
+    return driven(progress, *corners)[-1]
+
+
+def outer_ring(world: WorldSettings, position: Point) -> shapely.LinearRing:
+    return WallRings(world, position).rings[0]
 
 
 @pytest.mark.parametrize("name", FIRST_OF_NAMES)
 @pytest.mark.parametrize("aside_m", [0.1, 0.0, -0.05])
 def test_one_way_along_the_wall_is_one_lap_from_every_start(name: str, aside_m: float) -> None:
     world = World(load_world(name))
-    laps = Laps(world)
+    progress = WallProgress(world)
     start = world.settings.start_poses[0]
-    way = shapely.Polygon(way_round(world.settings, (start.x_m, start.y_m))).buffer(aside_m).exterior
+    way = shapely.Polygon(outer_ring(world.settings, (start.x_m, start.y_m))).buffer(aside_m).exterior
     way = way.reverse() if way.is_ccw else way
     for start in world.settings.start_poses:
         begin_m = way.project(shapely.Point(start.x_m, start.y_m))
         places = [way.interpolate((begin_m + share * way.length) % way.length) for share in (i / 40 for i in range(41))]
-        assert counted(laps, *((place.x, place.y) for place in places)) == pytest.approx(1.0, abs=0.02)
+        assert counted(progress, *((place.x, place.y) for place in places)) == pytest.approx(1.0, abs=0.02)
 
 
 def test_the_other_way_round_counts_backward() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     corners = ((0.3, 2.0), (0.3, 0.3), (3.7, 0.3), (3.7, 3.7), (0.3, 3.7), (0.3, 2.0))
-    assert counted(laps, *corners) == pytest.approx(-1.0)
-    assert counted(laps, *corners, *corners[1:]) == pytest.approx(-2.0)
+    assert counted(progress, *corners) == pytest.approx(-1.0)
+    assert counted(progress, *corners, *corners[1:]) == pytest.approx(-2.0)
 
 
 def test_circles_in_the_middle_count_nothing() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     for radius_m in (0.1, 0.5, 1.3):
         circle = [(2.0 - radius_m * math.cos(i / 8), 2.0 + radius_m * math.sin(i / 8)) for i in range(200)]
-        assert counted(laps, (0.4, 2.0), *circle, (0.4, 2.0)) == pytest.approx(0.0, abs=1e-9)
+        assert counted(progress, (0.4, 2.0), *circle, (0.4, 2.0)) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_going_to_and_fro_between_two_walls_is_no_lap() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     # A bit farther round each time, so that now the one and now the other way round is the shorter.
     bounces = [(0.3 if i % 2 else 3.7, 2.0 + 0.3 * math.sin(i)) for i in range(60)]
-    assert -1.0 <= counted(laps, *bounces) <= 0.1
+    assert -1.0 <= counted(progress, *bounces) <= 0.1
 
 
 @pytest.mark.parametrize("name", FIRST_OF_NAMES)
@@ -78,45 +94,45 @@ def test_aimless_ways_through_the_middle_add_up_to_no_laps(name: str) -> None:
     world = World(load_world(name))
     start = world.settings.start_poses[0]
     at = (start.x_m, start.y_m)
-    room = shapely.Polygon(way_round(world.settings, at)).buffer(0.15)
+    room = shapely.Polygon(outer_ring(world.settings, at)).buffer(0.15)
     west_m, south_m, east_m, north_m = room.bounds
-    laps, dice, legs = Laps(world), random.Random(1), 0
-    laps.put(at)
+    progress, dice, legs = WallProgress(world), random.Random(1), 0
     while legs < 150:
         to = (dice.uniform(west_m, east_m), dice.uniform(south_m, north_m))
         if room.contains(shapely.LineString([at, to])):
+            heading_rad = math.atan2(to[1] - at[1], to[0] - at[0])
             for place in straight(at, to):
-                laps.follow(place)
+                progress.update(*place, heading_rad)
             at, legs = to, legs + 1
-            assert -2.0 < laps.count < 1.0
+            assert -2.0 < progress.laps < 1.0
 
 
 def test_a_lap_with_a_part_left_out_is_none() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     shortcut = ((0.3, 0.3), (0.3, 3.7), (3.7, 3.7), (0.3, 0.3))
-    assert counted(laps, *shortcut, *shortcut[1:], *shortcut[1:]) < 0.6
+    assert counted(progress, *shortcut, *shortcut[1:], *shortcut[1:]) < 0.6
 
 
 def test_laps_go_on_after_a_trip_through_the_middle() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     once = ((0.3, 2.0), (0.3, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 2.0))
-    assert counted(laps, *once, (3.7, 2.1), (0.3, 2.0), *once[1:]) == pytest.approx(2.0, abs=0.02)
+    assert counted(progress, *once, (3.7, 2.1), (0.3, 2.0), *once[1:]) == pytest.approx(2.0, abs=0.02)
 
 
 def test_put_in_the_middle_it_begins_where_it_comes_to_the_wall() -> None:
-    laps = Laps(World(room()))
+    progress = WallProgress(World(room()))
     once = ((2.0, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 3.7), (2.0, 3.7))
-    assert counted(laps, (2.1, 1.9), *once) == pytest.approx(1.0, abs=0.02)
+    assert counted(progress, (2.1, 1.9), *once) == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_wall_against_the_outline_is_gone_round_and_an_island_is_not() -> None:
     board = WallSettings(name="board", from_m=(0.0, 2.5), to_m=(1.5, 2.5), thickness_m=0.1)
     box = PolygonObstacleSettings(name="box", corners=((3.0, 0.0), (4.0, 0.0), (4.0, 1.0), (3.0, 1.0)))
     island = PolygonObstacleSettings(name="island", corners=((1.9, 1.4), (2.2, 1.4), (2.0, 1.6)))
-    empty = way_round(room(), MIDDLE)
+    empty = outer_ring(room(), MIDDLE)
     assert empty.length == pytest.approx(4 * (4.0 - 2 * 0.35))
-    assert way_round(room(boxes=[island]), MIDDLE).equals(empty)
-    way = way_round(room(walls=[board], boxes=[box, island]), MIDDLE)
+    assert outer_ring(room(boxes=[island]), MIDDLE).equals(empty)
+    way = outer_ring(room(walls=[board], boxes=[box, island]), MIDDLE)
     assert not way.is_ccw
     assert way.distance(shapely.Point(1.5, 2.5)) == pytest.approx(0.35, abs=0.03)
     assert way.distance(shapely.Point(3.0, 1.0)) == pytest.approx(0.35, abs=0.03)
@@ -126,45 +142,136 @@ def test_a_wall_against_the_outline_is_gone_round_and_an_island_is_not() -> None
 def test_a_gap_too_narrow_for_the_robot_is_wall() -> None:
     board = WallSettings(name="board", from_m=(0.2, 2.5), to_m=(1.5, 2.5), thickness_m=0.1)
     beside = shapely.Point(1.0, 2.5)
-    assert way_round(room(walls=[board]), MIDDLE).distance(beside) < 0.5
-    assert way_round(room(walls=[board.moved(0.6, 0.0)]), MIDDLE).distance(beside) > 0.6
+    assert outer_ring(room(walls=[board]), MIDDLE).distance(beside) < 0.5
+    assert outer_ring(room(walls=[board.moved(0.6, 0.0)]), MIDDLE).distance(beside) > 0.6
 
 
 def test_of_a_divided_room_it_counts_the_part_that_the_robot_is_in() -> None:
-    laps = Laps(World(room(walls=[DIVIDER])))
+    progress = WallProgress(World(room(walls=[DIVIDER])))
     corners = ((3.3, 0.3), (3.3, 3.7), (3.7, 3.7), (3.7, 0.3), (3.3, 0.3))
-    assert counted(laps, *corners) == pytest.approx(1.0)
+    assert counted(progress, *corners) == pytest.approx(1.0)
     corners = ((0.3, 0.3), (0.3, 3.7), (2.6, 3.7), (2.6, 0.3), (0.3, 0.3))
-    assert counted(laps, *corners) == pytest.approx(1.0)
+    assert counted(progress, *corners) == pytest.approx(1.0)
 
 
 def test_a_narrow_door_leads_to_the_room_behind_it() -> None:
     north = WallSettings(name="north", from_m=(2.0, 4.0), to_m=(2.0, 2.3), thickness_m=0.02)
     south = WallSettings(name="south", from_m=(2.0, 0.0), to_m=(2.0, 1.8), thickness_m=0.02)
-    laps = Laps(World(room(walls=[north, south])))
+    progress = WallProgress(World(room(walls=[north, south])))
     corners = ((0.3, 0.3), (0.3, 3.7), (1.7, 3.7), (1.7, 2.05), (2.3, 2.05), (2.3, 3.7), (3.7, 3.7), (3.7, 0.3))
     back = ((2.3, 0.3), (2.3, 2.05), (1.7, 2.05), (1.7, 0.3), (0.3, 0.3))
-    assert counted(laps, *corners, *back) == pytest.approx(1.0)
+    assert counted(progress, *corners, *back) == pytest.approx(1.0)
 
 
 def test_swaying_in_a_narrow_corridor_costs_no_lap() -> None:
     wall = WallSettings(name="wall", from_m=(0.8, 0.0), to_m=(0.8, 3.2), thickness_m=0.02)
-    laps = Laps(World(room(walls=[wall])))
+    progress = WallProgress(World(room(walls=[wall])))
     there = [(0.3 + (0.25 if i % 3 == 2 else 0.0), 0.3 + 0.3 * i) for i in range(12)]
     back = ((0.8, 3.6), (3.6, 3.6), (3.6, 0.4), (1.2, 0.4), (1.2, 3.4), (0.5, 3.4), (0.5, 0.3), (0.3, 0.3))
-    assert counted(laps, *there, *back) == pytest.approx(1.0, abs=0.02)
+    assert counted(progress, *there, *back) == pytest.approx(1.0, abs=0.02)
 
 
 def test_a_wall_moved_away_takes_its_detour_along() -> None:
     world = World(load_world("a"))
-    laps = Laps(world)
+    progress = WallProgress(world)
     beside_tongue = shapely.Point(1.0, 1.9)
-    laps.put((0.3, 1.0))
-    assert way_round(world.settings, (0.3, 1.0)).distance(beside_tongue) < 0.4
+    progress.reset(Pose(0.3, 1.0, 0.0))
+    assert outer_ring(world.settings, (0.3, 1.0)).distance(beside_tongue) < 0.4
     world.move_wall("tongue", 0.8, 0.0)
-    laps.follow((0.3, 1.0))
-    assert laps.count == 0.0
-    assert way_round(world.settings, (0.3, 1.0)).distance(beside_tongue) > 0.6
+    progress.update(0.3, 1.0, 0.0)
+    assert progress.laps == 0.0
+    assert outer_ring(world.settings, (0.3, 1.0)).distance(beside_tongue) > 0.6
+
+
+def two_rooms(door_m: float, width_m: float = 0.5) -> WorldSettings:
+    """Two rooms joined by a passage so wide and so long, its middle line at y = 2 m."""
+    half_m, begin_m, end_m = width_m / 2, 2.0 - door_m / 2, 2.0 + door_m / 2
+    blocks = [
+        ((begin_m, 0.0), (end_m, 0.0), (end_m, 2.0 - half_m), (begin_m, 2.0 - half_m)),
+        ((begin_m, 2.0 + half_m), (end_m, 2.0 + half_m), (end_m, 4.0), (begin_m, 4.0)),
+    ]
+    return room(boxes=[PolygonObstacleSettings(name=f"block-{i}", corners=each) for i, each in enumerate(blocks)])
+
+
+@pytest.mark.parametrize("width_m", [0.36, 0.5, 0.65, 0.69])
+@pytest.mark.parametrize("long_m", [0.06, 1.0])
+def test_wall_progress_through_a_narrow_passage_is_one_forward_lap(width_m: float, long_m: float) -> None:
+    progress = WallProgress(World(two_rooms(long_m, width_m)))
+    begin_m, end_m, aside_m = 2.0 - long_m / 2 - 0.3, 2.0 + long_m / 2 + 0.3, width_m / 2 - 0.18
+    there = ((0.3, 0.3), (0.3, 3.7), (begin_m, 3.7), (begin_m, 2.0 + aside_m), (end_m, 2.0 + aside_m))
+    back = ((end_m, 3.7), (3.7, 3.7), (3.7, 0.3), (end_m, 0.3), (end_m, 2.0 - aside_m), (begin_m, 2.0 - aside_m))
+    once = (*there, *back, (begin_m, 0.3), (0.3, 0.3))
+    laps = driven(progress, *once, *once[1:])
+    assert min(after - before for before, after in itertools.pairwise(laps)) >= 0.0
+    assert laps[-1] == pytest.approx(2.0, abs=0.04)
+    # With both walls in reach, a robot in the passage has one on its left either way.
+    assert -1.02 <= counted(progress, *reversed(once)) < -0.5
+
+
+ISLAND = PolygonObstacleSettings(name="island", corners=((1.6, 1.6), (2.4, 1.6), (2.4, 2.4), (1.6, 2.4)))
+
+
+def test_wall_progress_round_an_island_counts_its_length() -> None:
+    progress = WallProgress(World(room(boxes=[ISLAND])))
+    once = ((1.3, 1.3), (2.7, 1.3), (2.7, 2.7), (1.3, 2.7), (1.3, 1.3))
+    way_m = 4 * (2.4 - 1.6) + 2 * math.pi * 0.35
+    lap_m = 4 * (4.0 - 2 * 0.35)
+    assert progress.lap_m == pytest.approx(lap_m)
+    assert counted(progress, *once, *once[1:]) == pytest.approx(2 * way_m / lap_m, rel=0.03)
+    assert counted(progress, *reversed(once)) == pytest.approx(-way_m / lap_m, rel=0.03)
+
+
+def test_wall_progress_counts_no_jump_between_wall_and_island() -> None:
+    progress = WallProgress(World(room(boxes=[ISLAND])))
+    # Up the outer wall, then across to the island, which is on the left of a robot that drives down again.
+    laps = driven(progress, (0.3, 1.4), (0.3, 2.6), (1.2, 2.6), (1.2, 1.4), (0.3, 1.4))
+    assert min(after - before for before, after in itertools.pairwise(laps)) >= -0.01
+    assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.2, abs=0.5)
+
+
+@pytest.mark.parametrize("width_m", [0.8, 1.0, 1.2, 1.6])
+def test_wall_progress_of_turning_back_in_a_corridor_ends(width_m: float) -> None:
+    wall = WallSettings(name="wall", from_m=(width_m + 0.01, 0.0), to_m=(width_m + 0.01, 3.2), thickness_m=0.02)
+    progress = WallProgress(World(room(walls=[wall])))
+    right_m = width_m - 0.3
+    once = ((0.3, 1.0), (0.3, 2.8), (right_m, 2.8), (right_m, 1.0), (0.3, 1.0))
+    laps = driven(progress, *once, *(once[1:] * 9))
+    assert min(after - before for before, after in itertools.pairwise(laps)) >= -0.003
+    assert laps[-1] * progress.lap_m <= 2 * 1.8 + 0.8
+    assert laps[-1] == pytest.approx(laps[len(laps) // 5], abs=0.01)
+
+
+def test_wall_progress_of_driving_to_and_fro_along_a_wall_is_none() -> None:
+    progress = WallProgress(World(room()))
+    assert counted(progress, *[(0.3, 1.0), (0.3, 3.0)] * 12, (0.3, 1.0)) == pytest.approx(0.0, abs=1e-9)
+
+
+@given(
+    st.floats(0.34, 1.2),
+    st.floats(0.1, 1.4),
+    st.lists(st.tuples(st.floats(0.2, 3.8), st.floats(0.2, 3.8), st.floats(0.03, 0.5)), max_size=3),
+    st.floats(0.17, 0.5),
+)
+def test_wall_progress_with_the_wall_on_the_left_is_forward(
+    width_m: float, long_m: float, islands: list[tuple[float, float, float]], aside_m: float
+) -> None:
+    world = two_rooms(long_m, width_m)
+    posts = tuple(
+        RoundObstacleSettings(name=f"post-{i}", x_m=x_m, y_m=y_m, radius_m=radius_m)
+        for i, (x_m, y_m, radius_m) in enumerate(islands)
+    )
+    world = world.model_copy(update={"round_obstacles": posts})
+    for part in polygons_of(world.free_space.buffer(-aside_m)):
+        progress = WallProgress(World(world))
+        # An island is on the left of a robot that goes round it counter-clockwise.
+        ways = [(part.exterior, False), *((hole, True) for hole in part.interiors)]
+        for way, forward_is_ccw in ways:
+            forward = way if way.is_ccw == forward_is_ccw else way.reverse()
+            laps = driven(progress, *forward.coords)
+            best = itertools.accumulate(laps, max)
+            if forward.length > 3.0:  # shorter ways lead round a nook, in which no ring need be
+                assert max(most - now for most, now in zip(best, laps, strict=True)) * progress.lap_m <= 0.6
+                assert laps[-1] * progress.lap_m >= 0.6 * forward.length
 
 
 def test_putting_the_robot_down_adds_no_lap() -> None:
