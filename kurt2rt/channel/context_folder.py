@@ -7,12 +7,12 @@ from pathlib import Path
 
 from kurt2rt.channel.error import CredentialsError
 
-Received = dict[str, int] | str
-"""Replay window as it is stored: index and bit field, or `UNKNOWN`."""
-
 UNKNOWN = "unknown"
-"""Stored while the context is in use: after a crash the other side has to prove that it is fresh (RFC 8613, B.1.2)."""
+"""Replay window as it is stored: the other side has to prove that it is fresh (RFC 8613, B.1.2)."""
 
+SETTINGS = "settings.json"
+PAIRED_AT = "paired-at"
+"""Key in the settings of both sides: time of the pairing in seconds since 1970."""
 SEQUENCE = "sequence.json"
 SECRET = "secret.json"
 _LOCK = "lock"
@@ -61,9 +61,9 @@ class ContextFolder:
         except OSError:
             return False
 
-    def write_sequence(self, next_to_send: int, received: Received) -> None:
-        """Store the next sequence number and the replay window; durable when this returns. Raises OSError."""
-        image = json.dumps({"next-to-send": next_to_send, "received": received}).encode()
+    def write_sequence(self, next_to_send: int) -> None:
+        """Store the next sequence number; durable when this returns. Raises OSError."""
+        image = json.dumps({"next-to-send": next_to_send, "received": UNKNOWN}).encode()
         flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC
         with open(os.open(_UNBORN, flags, 0o600, dir_fd=self._folder), "wb") as file:  # noqa: PTH123 - a descriptor
             file.write(image)

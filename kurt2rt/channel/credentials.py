@@ -10,6 +10,7 @@ import os
 import re
 import secrets
 import shutil
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
@@ -17,7 +18,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from kurt2rt.channel.context_folder import SECRET, SEQUENCE
+from kurt2rt.channel.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.durable import sync_folder
 from kurt2rt.rla.rla import CRITIC
@@ -41,7 +42,6 @@ USED = "used"
 PORT = 5683
 
 _NAME = re.compile(r"[a-z0-9-]{1,24}")
-_SETTINGS = "settings.json"
 _DEVICE = "device.json"
 _LOCK = ".lock"
 _UNBORN = ".unborn-"
@@ -223,17 +223,18 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
         "secret_hex": secrets.token_hex(_SECRET_BYTES),
         "salt_hex": secrets.token_hex(_SALT_BYTES),
     }
+    paired_s = int(time.time())
     # There from the beginning: a context without it is taken for damaged, not for a new one.
-    sequence: dict[str, Any] = {"next-to-send": 0, "received": {"index": 0, "bitfield": 0}}
+    sequence: dict[str, Any] = {"next-to-send": 0, "received": UNKNOWN}
     device = Device(devices / name, name, host, port, secrets.token_urlsafe(_TOKEN_BYTES))
     of_device = {
-        _SETTINGS: {"sender-id_hex": device_id, "recipient-id_hex": robot_id},
+        SETTINGS: {"sender-id_hex": device_id, "recipient-id_hex": robot_id, PAIRED_AT: paired_s},
         SECRET: secret,
         SEQUENCE: sequence,
         _DEVICE: {"name": name, "host": host, "port": port, "token": device.token},
     }
     of_robot = {
-        _SETTINGS: {"sender-id_hex": robot_id, "recipient-id_hex": device_id},
+        SETTINGS: {"sender-id_hex": robot_id, "recipient-id_hex": device_id, PAIRED_AT: paired_s},
         SECRET: secret,
         SEQUENCE: sequence,
     }
@@ -274,7 +275,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
 def _fit(teacher: Path, device: Path) -> bool:
     """Whether two folders are the sides of one pairing."""
     try:
-        settings, other_settings = _read(teacher / _SETTINGS), _read(device / _SETTINGS)
+        settings, other_settings = _read(teacher / SETTINGS), _read(device / SETTINGS)
         return (
             _read(teacher / SECRET) == _read(device / SECRET)
             and settings["sender-id_hex"] == other_settings["recipient-id_hex"]
@@ -289,7 +290,7 @@ def _ids_taken(teachers: Path) -> set[str]:
     taken: set[str] = set()
     for name in pairing_names(teachers):
         try:
-            settings = _read(teachers / name / _SETTINGS)
+            settings = _read(teachers / name / SETTINGS)
         except (OSError, ValueError):
             continue  # its damage is told when it is opened; it takes no id
         taken.update(settings[key] for key in ("sender-id_hex", "recipient-id_hex") if key in settings)

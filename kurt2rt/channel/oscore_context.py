@@ -1,35 +1,57 @@
-"""One side of a pairing in use: keys, sequence numbers, replay window. The event loop does not wait for a disk."""
+"""One side of a pairing in use: keys, sequence numbers, replay window. The event loop does not wait for a disk.
 
+A folder may be an old copy: restored from a backup it knows neither which numbers were used since, nor which requests
+came. So a start takes no number below one per millisecond since the pairing, five times what a device uses at most; and
+each start begins with an unknown replay window, so that the other side has to prove that it is fresh (RFC 8613, B.1.2).
+"""
+
+import json
 import secrets
 import threading
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from aiocoap import oscore
 
-from kurt2rt.channel.context_folder import SEQUENCE, UNKNOWN, ContextFolder, Received
+from kurt2rt.channel.context_folder import PAIRED_AT, SEQUENCE, SETTINGS, ContextFolder
 from kurt2rt.channel.error import CredentialsError
 
 CHUNK = 10_000
 """Sequence numbers reserved at once: three minutes of pictures and drive commands. A crash wastes at most two chunks of
 the 2^40 that a pairing has."""
+FIRST_CHUNK = 1000
+"""Those of the start, doubled each time up to CHUNK: a program that crashes once a second stays behind its clock."""
+NUMBERS_PER_S = 1000
+LAST_FLOOR = 2**39
+"""Numbers that time alone may take, 17 years of them: a clock that is decades ahead leaves half of all numbers."""
+_FIRST_PAIRING_S = 1_767_225_600
+"""2026-01-01: pairings without a time of their own are not older."""
 
 
 class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # Any
-    """A security context in a folder, as aiocoap's own, with three differences.
+    """A security context in a folder, as aiocoap's own, with four differences.
 
-    Numbers are reserved ahead in a thread, so `protect` stores in place only when the disk took longer than half a
-    chunk lasts. What is stored is written through a descriptor of the folder, so a renewed pairing in its place stays
-    untouched. It ends with `close`, not when the last reference goes.
+    Each start jumps ahead by the time since the pairing, and trusts no replay window. Numbers are reserved ahead in a
+    thread, so `protect` stores in place only when the disk took longer than half a chunk lasts. What is stored is
+    written through a descriptor of the folder, so a renewed pairing in its place stays untouched. It ends with `close`,
+    not when the last reference goes.
 
     The thread is a plain one, started once per chunk: `protect` is called from code that cannot await and that has no
     task group at hand. Everything else is called from one thread at a time.
     """
 
-    def __init__(self, folder: Path, name: str | None = None, *, chunk: int = CHUNK) -> None:
+    sender_sequence_number: int
+    recipient_replay_window: Any
+
+    def __init__(
+        self, folder: Path, name: str | None = None, *, chunk: int = CHUNK, now: Callable[[], float] = time.time
+    ) -> None:
         """Take the lock, load, and reserve the first chunk: this waits for the disk.
 
-        `name` is the teacher who is authenticated by this context; without it the folder's name. Raises
+        `name` is the teacher who is authenticated by this context; without it the folder's name. `now` is the wall
+        clock in seconds since 1970; set back it costs nothing, for the stored number counts as well. Raises
         CredentialsError when the folder is missing, damaged, or in use by another program.
         """
         # Not the library's: its lock is bound to the thread that took it, and it stores in the event loop.
@@ -40,8 +62,10 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         self.authenticated_claims = [self.name]
         self.trouble = ""
         self.echo_recovery = secrets.token_bytes(8)
-        self._chunk = chunk
-        self._reserve_below = chunk // 2
+        self._now = now
+        self._longest_chunk = chunk
+        self._chunk = min(chunk, FIRST_CHUNK)
+        self._reserve_below = self._chunk // 2
         self._storing = threading.Lock()
         self._reserver: threading.Thread | None = None
         self._closed = False
@@ -94,7 +118,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             self._reserver.start()
 
     def close(self) -> None:
-        """Store the exact state and release the lock; waits for the disk. Raises CredentialsError if that fails.
+        """Store the exact number and release the lock; waits for the disk. Raises CredentialsError if that fails.
 
         Then the reservation stands, as after a crash: numbers are wasted, none is used twice.
         """
@@ -105,7 +129,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             self._reserver.join()
         try:
             if self.folder.still_there():
-                self.folder.write_sequence(self.sender_sequence_number, self._received())
+                self.folder.write_sequence(self.sender_sequence_number)
         except OSError as error:
             raise CredentialsError(
                 f"{self.folder.path}: its state cannot be stored ({error}); "
@@ -133,6 +157,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             raise CredentialsError(f"{self.folder.path}: {SEQUENCE} is missing; {what_to_do}")
         try:
             self._load()
+            paired_s = self._paired_s()
             sound = all(number is None or number >= 0 for number in (self.sender_sequence_number, *self.seen))
         except (KeyError, ValueError, TypeError, AttributeError) as error:
             raise CredentialsError(f"{self.folder.path}: the pairing is damaged ({error!r}); {what_to_do}") from error
@@ -140,6 +165,15 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             raise CredentialsError(f"{self.folder.path}: {SEQUENCE} holds a negative number; {what_to_do}")
         if not self.folder.still_there():
             raise CredentialsError(f"{self.folder.path}: was replaced while it was opened; open it again")
+        window = self.recipient_replay_window
+        self.recipient_replay_window = oscore.ReplayWindow(window._size, self._replay_window_changed)
+        by_time = int(min(max(0.0, self._now() - paired_s) * NUMBERS_PER_S, LAST_FLOOR))
+        self.sender_sequence_number = max(self.sender_sequence_number, by_time)
+
+    def _paired_s(self) -> float:
+        """Return the time of the pairing in seconds since 1970. Raises ValueError, OSError."""
+        settings = json.loads((self.folder.path / SETTINGS).read_text(encoding="utf-8"))
+        return float(settings.get(PAIRED_AT, _FIRST_PAIRING_S))
 
     def _reserve(self) -> None:
         # Whoever comes second finds that it is done: the thread, or the event loop that could not wait for it.
@@ -147,7 +181,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             if self.sender_sequence_number + self._chunk // 2 <= self.sequence_number_persisted:
                 return
             up_to = max(self.sender_sequence_number, self.sequence_number_persisted) + self._chunk
-            self.folder.write_sequence(up_to, UNKNOWN)
+            self.folder.write_sequence(up_to)
             self.sequence_number_persisted = up_to
 
     def _reserve_aside(self) -> None:
@@ -158,11 +192,6 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             self._reserve_below //= 2
             self.trouble = f"{self.folder.path}: no sequence numbers can be reserved ({error}); look at its disk"
         else:
+            self._chunk = min(2 * self._chunk, self._longest_chunk)
             self._reserve_below = self._chunk // 2
             self.trouble = ""
-
-    def _received(self) -> Received:
-        if not self.recipient_replay_window.is_initialized():
-            return UNKNOWN
-        received: dict[str, int] = self.recipient_replay_window.persist()
-        return received

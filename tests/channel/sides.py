@@ -40,6 +40,11 @@ def ask_until_fresh(device: OscoreContext, robot: OscoreContext, text: str) -> s
     return payload.decode()
 
 
+def answer_challenge(device: OscoreContext, robot: OscoreContext) -> None:
+    """First contact after a start of the robot: from now on it knows that the device's messages are new."""
+    ask_until_fresh(device, robot, "hello")
+
+
 def header_of(context: OscoreContext) -> dict[int, bytes]:
     """aiocoap's OSCORE header of a request that this context sends."""
     protected, _ = context.protect(aiocoap.Message(code=aiocoap.POST, uri_path=("hello",)))

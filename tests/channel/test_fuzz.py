@@ -29,6 +29,7 @@ from kurt2rt.teaching import TeacherClient
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.mischief import Mischief
 from tests.channel.robot_at_work import PERIOD_S, RobotAtWork, journal_of, robot_at_work
+from tests.channel.sides import answer_challenge, header_of
 
 # aiocoap's own: a request that is asked anew under the same token before it was looked at.
 pytestmark = pytest.mark.filterwarnings("ignore:coroutine 'Context._render_to_pipe' was never awaited:RuntimeWarning")
@@ -92,6 +93,8 @@ class Target:
         self.mischief = Mischief(seed, lambda: (reception._boot, reception.tick))
         self.errors: list[dict[str, Any]] = []
         self._endpoint: Any = at_work.channel.endpoint
+        keys: Any = at_work.channel._site._keys
+        answer_challenge(device, keys.find(header_of(device)))
         (tokens,) = self._endpoint._context.request_interfaces
         self._socket = tokens.token_interface.message_interface
         self._outside = _outside()

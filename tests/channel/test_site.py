@@ -33,7 +33,7 @@ from kurt2rt.channel.wire import CONTENT_FORMAT, PATHS, decode_answer, decode_st
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, Desk, turns
-from tests.channel.sides import carried
+from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
 
 CODES = (aiocoap.GET, aiocoap.POST, aiocoap.PUT, aiocoap.DELETE, aiocoap.FETCH)
@@ -81,6 +81,7 @@ class School:
     def keys(self, name: str = "ann") -> OscoreContext:
         keys = OscoreContext(self.pairings[name].device.folder)
         self._phones.append(keys)
+        answer_challenge(keys, self.teachers.find(header_of(keys)))
         return keys
 
     def phone(self, name: str = "ann") -> Phone:
@@ -523,6 +524,7 @@ async def on_line(folder: Path) -> AsyncIterator[OnLine]:
     pairing = pair(folder / "teachers", folder / "devices", "ann")
     teachers = Teachers(folder / "teachers")
     keys = OscoreContext(pairing.device.folder)
+    answer_challenge(keys, teachers.find(header_of(keys)))
     desk = Desk()
     safekeeping = Safekeeping(lambda: desk.unwritten, lambda: None, lambda _: "")
     coap = await aiocoap.Context.create_client_context(transports=["udp6"])

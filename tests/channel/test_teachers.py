@@ -11,7 +11,7 @@ from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 from kurt2rt.channel.teachers import Change, Teachers
 from tests.channel.clock import Clock
-from tests.channel.sides import ask, header_of
+from tests.channel.sides import answer_challenge, ask, ask_until_fresh, header_of
 
 
 class House:
@@ -87,7 +87,7 @@ async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: H
     house.pair("phone")
     assert await teachers.refresh() == Change(came=("phone",), gone=())
     device = house.device("phone")
-    assert ask(device, teachers.find(header_of(device)), "forward") == "forward"
+    assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
     assert await teachers.refresh() == Change(came=(), gone=())
 
 
@@ -115,7 +115,7 @@ async def test_a_renewed_device_is_known_by_its_new_keys_alone(house: House) -> 
     with pytest.raises(KeyError):
         teachers.find(old)
     device = house.device("phone")
-    assert ask(device, teachers.find(header_of(device)), "forward") == "forward"
+    assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
 
 
 async def test_renewed_and_revoked_between_two_looks_it_is_gone(house: House) -> None:
@@ -178,7 +178,7 @@ async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: 
     device = house.device("phone")
     await teachers.refresh()
     assert paired(house.teachers)[0].used_at is None
-    ask(device, teachers.find(header_of(device)), "forward")
+    ask_until_fresh(device, teachers.find(header_of(device)), "forward")
     await teachers.refresh()
     used_at = paired(house.teachers)[0].used_at
     assert used_at is not None
@@ -186,7 +186,7 @@ async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: 
     used = house.teachers / "phone" / "used"
     for passed_s, noted in ((59.0, False), (2.0, True)):
         os.utime(used, (1e9, 1e9))
-        ask(device, teachers.find(header_of(device)), "forward")
+        ask_until_fresh(device, teachers.find(header_of(device)), "forward")
         house.clock.now_s += passed_s
         await teachers.refresh()
         noted_at = paired(house.teachers)[0].used_at
@@ -207,11 +207,14 @@ def test_with_this_machines_own_teachers_alone_nobody_is_paired(house: House) ->
     assert not house.start().only_local
 
 
-def test_closed_the_next_start_needs_no_challenge(house: House) -> None:
+def test_each_start_challenges_a_device_once(house: House) -> None:
     house.pair("phone")
     device = house.device("phone")
     for text in ("first start", "second start"):
         teachers = house.start()
+        with pytest.raises(oscore.ReplayErrorWithEcho):
+            ask(device, teachers.find(header_of(device)), text)
+        answer_challenge(device, teachers.find(header_of(device)))
         assert ask(device, teachers.find(header_of(device)), text) == text
         teachers.close()
 
