@@ -1,5 +1,6 @@
 """The page's web application: static files, and a WebSocket between the page and the bridge."""
 
+import mimetypes
 import time
 from pathlib import Path
 
@@ -18,6 +19,9 @@ from kurt2rt.page.downloads import Downloads
 from kurt2rt.page.messages import parse
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.visitor import Visitor
+
+# Python's table of types does not know it, and a browser ignores a manifest of another type.
+mimetypes.add_type("application/manifest+json", ".webmanifest")
 
 STATIC = Path(__file__).parent / "static"
 

@@ -324,7 +324,7 @@ class Bridge:
             self._newest = state
             self._look()
             self._rarely.see(state, watched=bool(self._visitors))
-            view = state_view(state, self._robot.link, self._robot.state_age_s, self._robot.refused)
+            view = state_view(state, self._robot.link, self._robot.state_age_s, self._robot.refused, self._rarely.words)
             for visitor in self._visitors.values():
                 visitor.show(state.boot, view)
 

@@ -9,16 +9,21 @@ from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, rows_of, trouble_in
+from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.standing_text import GO_ON_PAGE, headline_of
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello
 from kurt2rt.teaching.lesson_line import LessonLine
 from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.question import FeatureDifference
 from kurt2rt.teaching.world import World
 
 
-def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str, Any]:
-    """One picture of the robot; `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing."""
+def state_view(state: State, link: Link, age_s: float, refused: str, words: SensorWords = NO_WORDS) -> dict[str, Any]:
+    """Return one picture of the robot.
+
+    `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing; `words` are for its sensors.
+    """
     place, stands = state.place, state.stands
     return {
         "kind": "state",
@@ -44,7 +49,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         "radius": _finite(state.radius),
         "taught_by": state.taught_by,
         "taught_at": state.taught_at,
-        "question": [[each.name, each.here, each.in_condition] for each in state.question],
+        "question": [_difference(each, words) for each in state.question],
         "teacher": state.teacher,
         "by_hand": state.by_hand,
         "stopped_because": state.stopped_because,
@@ -81,6 +86,12 @@ def state_view(state: State, link: Link, age_s: float, refused: str) -> dict[str
         },
         "refused": refused,
     }
+
+
+def _difference(each: FeatureDifference, words: SensorWords) -> list[Any]:
+    """Return name, value here and as taught, and the same three in words."""
+    name, here, there = each.name, each.here, each.in_condition
+    return [name, here, there, words.place(name), words.reading(name, here), words.reading(name, there)]
 
 
 def answer_view(number: int, answer: Answer) -> dict[str, Any]:

@@ -56,13 +56,37 @@ document.activeElement?.blur();
 """
 
 
+_HAS_BEEN_HERE = "try { localStorage.setItem('kurt2rt.bubbles', 'seen'); } catch { /* about:blank has no storage */ }"
+
+
 class Phone:
-    """The page in its browser."""
+    """The page in its browser, whose teacher has been there before unless told otherwise."""
 
     def __init__(self, driver: webdriver.Chrome, screenshots: Path | None) -> None:
         self.driver = driver
         self._screenshots = screenshots
         self._at: str | None = None
+        self._before = self._add_before_scripts(_HAS_BEEN_HERE)
+
+    @contextmanager
+    def first_visit(self) -> Iterator[None]:
+        """A teacher who has never seen the page opens it meanwhile."""
+        self._remove_before_scripts(self._before)
+        try:
+            yield
+        finally:
+            self._before = self._add_before_scripts(_HAS_BEEN_HERE)
+            self.leave()
+
+    @contextmanager
+    def in_the_dark(self) -> Iterator[None]:
+        """The browser wants dark pages meanwhile."""
+        scheme = "prefers-color-scheme"
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": scheme, "value": "dark"}]})
+        try:
+            yield
+        finally:
+            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
     def turn(self, size: tuple[int, int], *, touch: bool = True) -> None:
         """Give the screen another size."""
@@ -154,11 +178,11 @@ class Phone:
     @contextmanager
     def before_scripts(self, script: str) -> Iterator[None]:
         """Run a script in each page that is opened meanwhile, before its own."""
-        added = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+        added = self._add_before_scripts(script)
         try:
             yield
         finally:
-            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
+            self._remove_before_scripts(added)
 
     def forget(self) -> None:
         """Leave the page, and be as one that was never there: no cookies, nothing stored, nothing said."""
@@ -177,6 +201,13 @@ class Phone:
     def complaints(self) -> list[str]:
         """What the browser's console said since the last call."""
         return [entry["message"] for entry in self.driver.get_log("browser")]  # type: ignore[no-untyped-call]
+
+    def _add_before_scripts(self, script: str) -> dict[str, Any]:
+        added: dict[str, Any] = self.driver.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": script})
+        return added
+
+    def _remove_before_scripts(self, added: dict[str, Any]) -> None:
+        self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
 
     def _finger(self, kind: str, points: list[dict[str, float]]) -> None:
         self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})

@@ -153,6 +153,22 @@ async def test_no_other_site_opens_the_websocket() -> None:
                 pass
 
 
+async def test_manifest_is_served_as_one_and_its_icons_are_there() -> None:
+    async with served() as page:
+        got = await page.get("/manifest.webmanifest", page.cookie)
+        assert (got.status, got.headers["content-type"]) == (200, "application/manifest+json")
+        manifest = json.loads(got.body)
+        assert (manifest["start_url"], manifest["display"]) == ("/", "standalone")
+        for icon in manifest["icons"]:
+            got = await page.get(f"/{icon['src']}", page.cookie)
+            assert (got.status, got.headers["content-type"]) == (200, icon["type"])
+        # A browser brings the cookie for a manifest only if it is told to.
+        assert (
+            'rel="manifest" href="manifest.webmanifest" crossorigin="use-credentials"'
+            in (STATIC / "index.html").read_text()
+        )
+
+
 async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
     async with served() as page:
         got = await page.get("/", page.cookie)
@@ -164,6 +180,8 @@ async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
         assert got.headers["Referrer-Policy"] == "no-referrer"
         assert "server" not in got.headers
         for file in STATIC.iterdir():
+            if file.suffix == ".png":
+                continue
             text = file.read_text(encoding="utf-8")
             assert "<script>" not in text
             assert "style=" not in text

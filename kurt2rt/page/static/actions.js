@@ -10,7 +10,8 @@ const PLACES = {
   spin_left: [2, 1, 1], quarter_turn_left: [2, 2, 1], stand: [2, 3, 1], quarter_turn_right: [2, 4, 1], spin_right: [2, 5, 1],
   along_left_wall: [3, 1, 2], back: [3, 3, 1], along_right_wall: [3, 4, 2],
 };
-const SHORT = { quarter_turn_left: "turn 90°", quarter_turn_right: "turn 90°"  };
+const SHORT = { quarter_turn_left: "turn 90°", quarter_turn_right: "turn 90°" };
+const NAMES = { quarter_turn_left: "turn 90° to the left", quarter_turn_right: "turn 90° to the right" };
 
 export function words(action) {
   return action.replaceAll("_", " ");
@@ -38,7 +39,7 @@ export class ActionPad {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.action = name;
-    button.setAttribute("aria-label", words(name));
+    button.setAttribute("aria-label", NAMES[name] ?? words(name)); // begins with the text that is seen
     const picture = glyph(name);
     if (picture) button.append(picture);
     const label = document.createElement("small");

@@ -1,10 +1,13 @@
 // The teacher's page: what comes from the robot is shown, what the teacher touches is sent.
 
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
+import { Bubbles } from "./bubbles.js";
+import { onTheme } from "./canvas.js";
 import { Critic, CRITIC } from "./critic.js";
 import { Exam } from "./exam.js";
 import { Explanation } from "./explanation.js";
 import { Files } from "./files.js";
+import { gamepad } from "./gamepad.js";
 import { Goals } from "./goals.js";
 import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
@@ -12,6 +15,7 @@ import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
 import { BASIC, MID } from "./mid.js";
 import { Organising } from "./organising.js";
+import { showProgress } from "./progress.js";
 import { drawRobot } from "./robot_view.js";
 import { Drive, stick } from "./stick.js";
 import { Ways } from "./ways.js";
@@ -207,6 +211,7 @@ link.addEventListener("hello", ({ detail }) => {
   critic.build(hello);
   world.greet(hello);
   exam.build(hello);
+  setText($("what"), hello.what || `Task ${words(hello.task)}`);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
   setText($("keys-actions"), (hello.mid ? "the ways, or " : "") + hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
   $("view").hidden = !hello.simulated;
@@ -261,7 +266,9 @@ function show() {
   setText($("lesson-count"), String(state.lessons));
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inCharge();
   showLink(state);
+  showProgress(state);
   why.show(state, hello);
+  announce(state);
   pad.show(state);
   ways.show(state);
   goals.show(state);
@@ -272,6 +279,16 @@ function show() {
   organising.show(state, inCharge());
   claim();
   draw();
+}
+
+let announced = "";
+
+// The question alone is said by a screen reader without being asked, once for each time that the robot begins to ask.
+function announce(state) {
+  const asks = state.cause === "unknown" ? `${state.asks_at} ${state.behaviour}` : "";
+  if (asks === announced) return;
+  announced = asks;
+  setText($("announce"), asks ? $("sentence").textContent : "");
 }
 
 function draw() {
@@ -411,6 +428,8 @@ function showView(name) {
 }
 $("view").addEventListener("click", () => showView($("robot-view").hidden ? "robot" : "world"));
 new ResizeObserver(draw).observe($("stage"));
+onTheme(draw);
+new Bubbles();
 
 // Not modal: STOP and GO stay free.
 const help = () => ($("keys").open ? $("keys").close() : $("keys").show());
@@ -432,6 +451,7 @@ keyboard({
   help,
   mayDrive: () => inCharge() && link.fresh,
 });
+gamepad({ drive, mayDrive: () => inCharge() && link.fresh, say });
 
 // ---- The screen stays on where the browser allows it.
 

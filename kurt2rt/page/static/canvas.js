@@ -1,11 +1,48 @@
-// A canvas that is as sharp as the screen, in CSS pixels.
+// A canvas that is as sharp as the screen, in CSS pixels, in the colours of the page: light or dark.
 
-export const INK = "#10151c";
-export const PAPER = "#ffffff";
-export const BLUE = "#0b4a8f";
-export const RED = "#b00020";
-export const GREY = "#5a6472";
-export const FAINT = "#c9d0d8";
+const LIGHT = {
+  ink: "#10151c", paper: "#ffffff", blue: "#0b4a8f", red: "#b00020", grey: "#5a6472", faint: "#c9d0d8",
+  pale: "#dbe8f5", shade: "#edf0f4", trail: "#3e7cb1", far: "#3e7cb1", near: "#b00020", differs: "#d9480f",
+};
+const DARK = {
+  ink: "#eef2f6", paper: "#10151c", blue: "#8fc1ff", red: "#ff8a8f", grey: "#a9b3bf", faint: "#3a444f",
+  pale: "#1d3a5c", shade: "#232b35", trail: "#6fb0e8", far: "#4f8fc6", near: "#ff6b72", differs: "#ff9a5c",
+};
+
+// Other modules see the colours of the present theme under these names.
+export let INK, PAPER, BLUE, RED, GREY, FAINT, PALE, SHADE, TRAIL, FAR, NEAR, DIFFERS;
+
+function paintIn(theme) {
+  INK = theme.ink;
+  PAPER = theme.paper;
+  BLUE = theme.blue;
+  RED = theme.red;
+  GREY = theme.grey;
+  FAINT = theme.faint;
+  PALE = theme.pale;
+  SHADE = theme.shade;
+  TRAIL = theme.trail;
+  FAR = theme.far;
+  NEAR = theme.near;
+  DIFFERS = theme.differs;
+}
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+paintIn(dark.matches ? DARK : LIGHT);
+
+// Calls `draw` after the browser has changed between light and dark.
+export function onTheme(draw) {
+  dark.addEventListener("change", () => {
+    paintIn(dark.matches ? DARK : LIGHT);
+    draw();
+  });
+}
+
+// A colour between two of the form #rrggbb, at a share of the way.
+export function between(one, other, share) {
+  const part = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
+  return `rgb(${[0, 1, 2].map((i) => Math.round(part(one, i) + (part(other, i) - part(one, i)) * share)).join(" ")})`;
+}
 
 // Clears it and returns { paint, width, height }, or null while it is not shown.
 export function sheet(canvas) {

@@ -68,7 +68,7 @@ export class Critic {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.appraisal = name;
-    button.setAttribute("aria-label", `Teach the critic: this was ${words(name)}`);
+    button.title = `Teach the critic: this was ${words(name)}`;
     const sign = document.createElement("b");
     sign.textContent = SIGNS[value];
     const label = document.createElement("small");

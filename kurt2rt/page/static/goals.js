@@ -60,7 +60,7 @@ export class Goals {
     const here = document.createElement("button");
     here.type = "button";
     here.textContent = "Is here";
-    here.setAttribute("aria-label", `The robot stands at ${name}`);
+    here.setAttribute("aria-label", `Is here: the robot stands at ${name}`);
     twice(here, "Sure?", () => this.#tell("be_at", { name }, `it is at ${name}`));
     const seek = document.createElement("button");
     seek.type = "button";

@@ -6,6 +6,14 @@ import { setText } from "./why.js";
 
 const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
 const AUTONOMOUS = 5;
+// What each phase changes.
+const PHASES_SAY = [
+  "Where it knows nothing it stands and asks; your answer is a rule.",
+  "It drives by its rules, and you also correct it while it drives.",
+  "Right and wrong change what its rules are worth; one that is worth too little is asked for again.",
+  "Right and wrong teach its critic to judge by itself.",
+  "It drives without a teacher and asks nobody; a critic that is trusted repairs its rules.",
+];
 
 const $ = (id) => document.getElementById(id);
 
@@ -48,6 +56,7 @@ export class Organising {
     for (const button of $("behaviours").children) {
       button.setAttribute("aria-pressed", String(button.dataset.behaviour === state.behaviour));
     }
+    setText($("phase-says"), PHASES_SAY[state.phase - 1] ?? "");
     this.#session = state.session;
     setText($("session-button"), state.session === null ? "Begin" : "End");
     const name = $("session-name");

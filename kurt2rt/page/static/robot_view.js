@@ -1,30 +1,24 @@
 // The robot from above: its readings as beams, its bumpers, its wheel speeds.
 
-import { BLUE, body, FAINT, GREY, INK, PAPER, RED, sheet } from "./canvas.js";
+import { between, BLUE, body, DIFFERS, FAINT, FAR, GREY, INK, NEAR, PAPER, RED, SHADE, sheet } from "./canvas.js";
+import { differing, distance, farthest } from "./sensors.js";
 
-// Counts of the infra-red sensors to metres, over the range in which they tell anything.
-const NEAR_M = 0.1;
-const FAR_M = 0.6;
 const HALF_BEAM_RAD = 0.09;
-
-export function distance(counts) {
-  return Math.min(FAR_M, Math.max(NEAR_M, 86.016 / (counts + 64.4) - 0.04));
-}
+const BEHIND_PX = 12; // from what a sensor sees to its text
 
 // Far is pale blue, near is red; dark enough for the sun.
 function colour(metres) {
-  const near = Math.min(1, Math.max(0, (0.45 - metres) / 0.3));
-  const mix = (from, to) => Math.round(from + (to - from) * near);
-  return `rgb(${mix(62, 176)} ${mix(124, 0)} ${mix(177, 32)})`;
+  return between(FAR, NEAR, Math.min(1, Math.max(0, (0.45 - metres) / 0.3)));
 }
 
+// While the robot asks, the sensors that make the difference are marked, as in the picture of `kurt2rt why`.
 export function drawRobot(canvas, hello, state) {
   const drawn = sheet(canvas);
   if (!drawn || !hello || !state) return;
   const { paint, width, height } = drawn;
   const [length, breadth] = hello.outline;
   const margin = 58; // for the wheel speeds
-  const reach = FAR_M + 0.03;
+  const reach = farthest(hello) + 0.03;
   const scale = Math.min((width - 2 * margin) / (breadth + 2 * reach), (height - 8) / (length + 2 * reach));
 
   wheel(paint, 30, height, state.left_m_s, hello.max_m_s, "L");
@@ -36,10 +30,32 @@ export function drawRobot(canvas, hello, state) {
   paint.rotate(-Math.PI / 2); // forward is up
   paint.scale(1, -1); // y is to the left
   rings(paint, length, breadth, scale);
-  hello.sensors.forEach(([, , x, y, heading], i) => beam(paint, x, y, (heading * Math.PI) / 180, state.infrared[i], scale));
+  const marked = differing(state, hello);
+  hello.sensors.forEach(([name, , x, y, heading], i) => {
+    const metres = distance(hello, state.infrared[i] ?? 0);
+    beam(paint, x, y, (heading * Math.PI) / 180, metres, scale, metres >= farthest(hello), marked.has(name));
+  });
   body(paint, length, breadth, { fill: PAPER, line: INK, lineWidth: 3 / scale });
   bumpers(paint, length, breadth, state.bumpers, scale);
   paint.restore();
+  hello.sensors.forEach(([name, , x, y, heading], i) => {
+    if (!marked.has(name)) return;
+    const metres = distance(hello, state.infrared[i] ?? 0);
+    const angle = (heading * Math.PI) / 180;
+    const away = metres >= farthest(hello) ? metres * 0.7 : metres + BEHIND_PX / scale;
+    label(paint, width / 2 - (y + away * Math.sin(angle)) * scale, height / 2 - (x + away * Math.cos(angle)) * scale, marked.get(name));
+  });
+}
+
+// What a marked sensor reads, beside where it sees it.
+function label(paint, x, y, text) {
+  paint.font = "700 13px system-ui, sans-serif";
+  paint.textAlign = "center";
+  paint.lineWidth = 4;
+  paint.strokeStyle = PAPER;
+  paint.strokeText(text, x, y + 4);
+  paint.fillStyle = DIFFERS;
+  paint.fillText(text, x, y + 4);
 }
 
 function rings(paint, length, breadth, scale) {
@@ -52,21 +68,20 @@ function rings(paint, length, breadth, scale) {
   }
 }
 
-function beam(paint, x, y, heading, counts, scale) {
-  const metres = distance(counts ?? 0);
-  const nothing = metres >= FAR_M;
+function beam(paint, x, y, heading, metres, scale, nothing, marked) {
+  const paintedIn = marked ? DIFFERS : colour(metres);
   paint.beginPath();
   paint.moveTo(x, y);
   paint.arc(x, y, metres, heading - HALF_BEAM_RAD, heading + HALF_BEAM_RAD);
   paint.closePath();
-  paint.fillStyle = colour(metres);
-  paint.globalAlpha = nothing ? 0.12 : 0.3;
+  paint.fillStyle = paintedIn;
+  paint.globalAlpha = marked ? 0.55 : nothing ? 0.12 : 0.3;
   paint.fill();
   paint.globalAlpha = 1;
   if (nothing) return;
   paint.beginPath();
   paint.arc(x, y, metres, heading - HALF_BEAM_RAD * 1.5, heading + HALF_BEAM_RAD * 1.5);
-  paint.strokeStyle = colour(metres);
+  paint.strokeStyle = paintedIn;
   paint.lineWidth = 5 / scale;
   paint.lineCap = "butt";
   paint.stroke();
@@ -98,7 +113,7 @@ function wheel(paint, x, height, speed, most, name) {
   }
   const middle = (top + height - 28) / 2;
   const half = Math.max(10, Math.min(middle - top, 90));
-  paint.fillStyle = "#edf0f4";
+  paint.fillStyle = SHADE;
   paint.beginPath();
   paint.roundRect(x - 8, middle - half, 16, 2 * half, 4);
   paint.fill();

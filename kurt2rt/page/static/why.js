@@ -2,6 +2,7 @@
 
 import { WITHDRAWN, words } from "./actions.js";
 import { differs, MID, strip, surprise } from "./mid.js";
+import { differenceList } from "./sensors.js";
 import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
@@ -117,46 +118,17 @@ export class Why {
     this.#differences.replaceChildren(...strip(mid.here, mid.there, introduced));
   }
 
-  // Pairs of bars: dark is here, hollow is the nearest RLA's condition.
+  // Each sensor that makes a difference, by its place: what it reads here and what it read when that was taught.
   #show(question) {
-    const key = JSON.stringify(question.map(([name, here, there]) => [name, Math.round(here), Math.round(there)]));
+    const key = JSON.stringify(question);
     if (key === this.#shown) return;
     this.#shown = key;
-    const most = Math.max(1, ...question.flatMap(([, here, there]) => [Math.abs(here), Math.abs(there)]));
-    this.#differences.replaceChildren(
-      ...question.map(([name, here, there]) => {
-        const pair = document.createElement("div");
-        pair.className = "pair";
-        pair.title = `${name}: ${here.toFixed(0)} here, ${there.toFixed(0)} there`;
-        pair.setAttribute("role", "img");
-        pair.setAttribute("aria-label", pair.title);
-        const bars = document.createElement("div");
-        for (const [kind, value] of [["here", here], ["there", there]]) {
-          const bar = document.createElement("i");
-          bar.className = kind;
-          bar.style.height = `${Math.max(3, (Math.abs(value) / most) * 100)}%`;
-          bars.append(bar);
-        }
-        const label = document.createElement("small");
-        label.textContent = short(name);
-        pair.append(bars, label);
-        return pair;
-      }),
-    );
+    this.#differences.replaceChildren(differenceList(question));
   }
 }
 
 function signed(value) {
   return (Math.round(value * 100) / 100 || 0).toFixed(2).replace("-", "−"); // never −0.00
-}
-
-function short(name) {
-  return name
-    .replace(" (10 s average)", " ø")
-    .replace("maximum", "max")
-    .replace("minimum", "min")
-    .replace(/^orientation \w+ /, "")
-    .replace("wheel speed", "wheel");
 }
 
 export function setText(element, text) {

@@ -1,9 +1,9 @@
 // The simulated world from above, and a hand that puts the robot or a wall elsewhere; it acts when it lets go.
 
-import { BLUE, body, INK, PAPER, RED, sheet } from "./canvas.js";
+import { BLUE, body, DIFFERS, FAR, INK, PALE, PAPER, RED, sheet, TRAIL } from "./canvas.js";
+import { differing, distance, farthest } from "./sensors.js";
+import { Trail } from "./trail.js";
 
-const TRAIL_S = 60;
-const TRAIL_EACH_MS = 100;
 const GRAB_PX = 26;
 const CLICK_PX = 8;
 const HANDLE_M = 0.46;
@@ -14,9 +14,7 @@ export class WorldView {
   #world = null;
   #hello = null;
   #state = null;
-  #trail = []; // [ms, x, y]
-  #asked = []; // [x, y]
-  #asking = false;
+  #trail = new Trail();
   #grab = null;
 
   // `order` sends a command to the robot.
@@ -36,8 +34,7 @@ export class WorldView {
 
   greet(hello) {
     this.#hello = hello;
-    this.#trail = [];
-    this.#asked = [];
+    this.#trail.of(hello);
   }
 
   set world(world) {
@@ -46,18 +43,7 @@ export class WorldView {
 
   see(state) {
     this.#state = state;
-    const place = state.place;
-    if (!place) return;
-    const now = performance.now();
-    const last = this.#trail.at(-1);
-    if (!last || now - last[0] >= TRAIL_EACH_MS) this.#trail.push([now, place.x_m, place.y_m]);
-    while (this.#trail.length && now - this.#trail[0][0] > TRAIL_S * 1000) this.#trail.shift();
-    const asking = state.cause === "unknown";
-    if (asking && !this.#asking) {
-      this.#asked.push([place.x_m, place.y_m]);
-      if (this.#asked.length > 200) this.#asked.shift();
-    }
-    this.#asking = asking;
+    this.#trail.see(state);
   }
 
   draw() {
@@ -71,6 +57,7 @@ export class WorldView {
     this.#room(paint, view.scale);
     this.#traces(paint, view.scale);
     const place = this.#state.place;
+    this.#rays(paint, view.scale, place);
     const dragged = this.#grab?.what === "robot" || this.#grab?.what === "heading";
     this.#robot(paint, view.scale, place.x_m, place.y_m, place.heading_rad, dragged ? 0.25 : 1);
     if (dragged) this.#robot(paint, view.scale, this.#grab.x, this.#grab.y, this.#grab.heading, 1);
@@ -109,12 +96,38 @@ export class WorldView {
     return this.#grab?.what === "wall" && this.#grab.name === name ? [this.#grab.dx, this.#grab.dy] : [0, 0];
   }
 
+  // What each sensor sees, from where it sits; the bold end is what it has found.
+  #rays(paint, scale, { x_m: x, y_m: y, heading_rad: turned }) {
+    const marked = differing(this.#state, this.#hello);
+    paint.save();
+    paint.translate(x, y);
+    paint.rotate(turned);
+    this.#hello.sensors.forEach(([name, , sx, sy, heading], i) => {
+      const metres = distance(this.#hello, this.#state.infrared[i] ?? 0);
+      const angle = (heading * Math.PI) / 180;
+      const end = [sx + metres * Math.cos(angle), sy + metres * Math.sin(angle)];
+      const nothing = metres >= farthest(this.#hello);
+      paint.strokeStyle = paint.fillStyle = marked.has(name) ? DIFFERS : FAR;
+      paint.lineWidth = (marked.has(name) ? 2.5 : 1) / scale;
+      paint.globalAlpha = marked.has(name) ? 0.9 : nothing ? 0.25 : 0.6;
+      paint.beginPath();
+      paint.moveTo(sx, sy);
+      paint.lineTo(...end);
+      paint.stroke();
+      if (nothing) return;
+      paint.beginPath();
+      paint.arc(...end, 3 / scale, 0, 7);
+      paint.fill();
+    });
+    paint.restore();
+  }
+
   #traces(paint, scale) {
-    paint.strokeStyle = "#3e7cb1";
+    paint.strokeStyle = TRAIL;
     paint.lineWidth = 2.5 / scale;
     paint.beginPath();
     let previous = null;
-    for (const [, x, y] of this.#trail) {
+    for (const [, x, y] of this.#trail.points) {
       // A robot that was put down elsewhere did not drive there.
       if (previous && Math.hypot(x - previous[0], y - previous[1]) < 0.3) paint.lineTo(x, y);
       else paint.moveTo(x, y);
@@ -122,7 +135,7 @@ export class WorldView {
     }
     paint.stroke();
     paint.fillStyle = RED;
-    for (const [x, y] of this.#asked) {
+    for (const [x, y] of this.#trail.asked) {
       paint.beginPath();
       paint.arc(x, y, 4 / scale, 0, 7);
       paint.fill();
@@ -146,7 +159,7 @@ export class WorldView {
     paint.fillStyle = PAPER;
     paint.fill();
     paint.stroke();
-    body(paint, length, width, { fill: "#dbe8f5", line: BLUE, lineWidth: 2.5 / scale });
+    body(paint, length, width, { fill: PALE, line: BLUE, lineWidth: 2.5 / scale });
     paint.restore();
   }
 

@@ -1,0 +1,65 @@
+// Where the simulated robot has been in the last minute and where it has asked; outlives a reload of the page.
+
+const TRAIL_S = 60;
+const EACH_MS = 100;
+const MOST_ASKED = 200;
+const KEEP_EACH_MS = 2000;
+const KEY = "kurt2rt.trail";
+
+export class Trail {
+  #boot = null; // of the robot program that it is about
+  #asking = false;
+  #keptMs = 0;
+  points = []; // [ms since 1970, x, y]
+  asked = []; // [x, y]
+
+  constructor() {
+    addEventListener("pagehide", () => this.#keep());
+  }
+
+  // The trail of this start of the robot program: the one that was kept, or an empty one.
+  of({ boot }) {
+    if (boot === this.#boot) return;
+    this.#boot = boot;
+    this.#asking = false;
+    [this.points, this.asked] = kept(boot);
+  }
+
+  see({ place, cause }) {
+    if (!place) return;
+    const now = Date.now();
+    const last = this.points.at(-1);
+    if (!last || now - last[0] >= EACH_MS || now < last[0]) this.points.push([now, round(place.x_m), round(place.y_m)]);
+    while (this.points.length && now - this.points[0][0] > TRAIL_S * 1000) this.points.shift();
+    const asking = cause === "unknown";
+    if (asking && !this.#asking) {
+      this.asked.push([round(place.x_m), round(place.y_m)]);
+      if (this.asked.length > MOST_ASKED) this.asked.shift();
+    }
+    this.#asking = asking;
+    if (now - this.#keptMs > KEEP_EACH_MS) this.#keep(now);
+  }
+
+  #keep(now = Date.now()) {
+    if (this.#boot === null) return;
+    this.#keptMs = now;
+    try {
+      sessionStorage.setItem(KEY, JSON.stringify({ boot: this.#boot, points: this.points, asked: this.asked }));
+    } catch {
+      // Storage is full or forbidden: the trail then ends with the page.
+    }
+  }
+}
+
+function kept(boot) {
+  try {
+    const trail = JSON.parse(sessionStorage.getItem(KEY));
+    return trail?.boot === boot ? [trail.points, trail.asked] : [[], []];
+  } catch {
+    return [[], []]; // forbidden, or not ours
+  }
+}
+
+function round(metres) {
+  return Math.round(metres * 1000) / 1000;
+}
