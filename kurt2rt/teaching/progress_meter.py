@@ -1,5 +1,6 @@
 """Meter of teaching progress, fed with the record of each tick."""
 
+from kurt2rt.standing import StandReason
 from kurt2rt.teaching.progress import WINDOW_S, Progress
 from kurt2rt.tick import TickRecord
 
@@ -23,15 +24,16 @@ class ProgressMeter:
         """Count one tick. Ticks that were missed pass as time and count for nothing."""
         self._turn_to(record.tick // self._ticks_per_s)
         place = self._second % WINDOW_S
-        decision = record.decision
+        standing = record.standing
         self._ticks[place] += 1
-        if decision.rla_id is not None and not record.grant.latched:
+        if record.decision.rla_id is not None and standing.reason is StandReason.DRIVES:
             self._driven[place] += 1
         # As the terminal tells questions: at the border of R the robot asks for moments at a time.
-        if decision.asking and not self._asking and record.tick - self._asked_at >= self._ticks_per_s:
+        asking = standing.asks and not standing.needs_go
+        if asking and not self._asking and record.tick - self._asked_at >= self._ticks_per_s:
             self._asks[place] += 1
             self._asked_at = record.tick
-        self._asking = decision.asking
+        self._asking = asking
 
     def progress(self) -> Progress:
         """Return the sums over the last minute."""

@@ -2,7 +2,7 @@
 
 import sys
 
-from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.standing import Standing, StandReason
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.teaching.progress_meter import ProgressMeter
 from kurt2rt.tick import TickRecord
@@ -10,9 +10,11 @@ from tests.channel.desk import Desk
 
 DESK = Desk()
 RECORD: TickRecord = DESK.run()
-DRIVES = RECORD.decision._replace(cause=Cause.RLA, action="forward", rla_id=1)
-ASKS = RECORD.decision._replace(cause=Cause.UNKNOWN, action=None, rla_id=None)
-STANDS = RECORD.decision._replace(cause=Cause.STOPPED, action=None, rla_id=None)
+DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
+ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
+STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_go=True))
+HELD = DRIVES._replace(standing=Standing(StandReason.COMPUTER_TOO_SLOW, needs_go=True))
+TOUCHES = DRIVES._replace(standing=Standing(StandReason.FRONT_BUMPER, asks=True))
 
 
 class Run:
@@ -22,10 +24,9 @@ class Run:
         self.meter = ProgressMeter(0.01)
         self.tick = 0
 
-    def lasts(self, seconds: float, decision: Decision, *, latched: bool = False) -> Progress:
+    def lasts(self, seconds: float, record: TickRecord) -> Progress:
         for _ in range(round(seconds * 100)):
-            grant = RECORD.grant._replace(latched=latched)
-            self.meter.follow(RECORD._replace(tick=self.tick, decision=decision, grant=grant))
+            self.meter.follow(record._replace(tick=self.tick))
             self.tick += 1
         return self.meter.progress()
 
@@ -41,7 +42,13 @@ def test_progress_share_is_that_of_ticks_driven_by_an_rla() -> None:
 
 
 def test_progress_of_a_latched_guard_counts_as_not_driven() -> None:
-    assert Run().lasts(3, DRIVES, latched=True) == Progress(3, 0, 0)
+    assert Run().lasts(3, HELD) == Progress(3, 0, 0)
+
+
+def test_progress_of_a_robot_that_touches_something_is_a_question() -> None:
+    run = Run()
+    run.lasts(2, DRIVES)
+    assert run.lasts(2, TOUCHES) == Progress(4, 50, 1)
 
 
 def test_progress_forgets_what_is_older_than_a_minute() -> None:
