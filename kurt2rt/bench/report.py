@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.bench.result import Result
+from kurt2rt.text_table import TextTable, print_whole
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,11 +45,10 @@ def as_json(results: Sequence[Result], machine: Machine) -> str:
 
 def print_report(results: Sequence[Result], machine: Machine, console: Console) -> None:
     """One table, what one has to know to read it, and how busy the machine was."""
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    for heading in ("what", "median us", "p99 us", "reference", "us", "ratio", "goal", "met"):
+    table = TextTable()
+    for heading in ("what", "median us", "p99 us", "reference", "us", "ratio", "goal: met"):
         number = heading in ("median us", "p99 us", "us", "ratio")
-        # A goal's verdict stands beside it only while neither wraps.
-        table.add_column(heading, justify="right" if number else "left", overflow="fold", no_wrap=heading == "goal")
+        table.add_column(heading, number=number, whole=heading == "goal: met")
     for result in results:
         reference = result.reference
         table.add_row(
@@ -60,19 +58,20 @@ def print_report(results: Sequence[Result], machine: Machine, console: Console) 
             reference.what if reference else "",
             _shown(reference.took_us) if reference else "",
             f"{reference.ratio:.2f}" if reference else "",
-            "\n".join(map(str, result.goals)),
-            Text("\n").join(Text("yes", "green") if goal.met else Text("no", "bold red") for goal in result.goals),
+            Text("\n").join(
+                Text(f"{goal}: ") + (Text("yes", "green") if goal.met else Text("no", "bold red"))
+                for goal in result.goals
+            ),
         )
-    console.print(table)
+    print_whole(console, table, "")
     for result in results:
         if result.note:
-            console.print(Text(f"{result.what.strip()}: worst {_shown(result.took.worst_us)} us; {result.note}"))
+            print_whole(console, f"{result.what.strip()}: worst {_shown(result.took.worst_us)} us; {result.note}")
     busy = ", ".join(f"{load:.2f}" for load in machine.load_before)
-    console.print(
-        Text(
-            f"The goals are meant for an idle machine. This one has {machine.cores} usable cores and had "
-            f"a load average of {busy} before the run; Python {machine.python}, numpy {machine.numpy}."
-        )
+    print_whole(
+        console,
+        f"The goals are meant for an idle machine. This one has {machine.cores} usable cores and had "
+        f"a load average of {busy} before the run; Python {machine.python}, numpy {machine.numpy}.",
     )
 
 

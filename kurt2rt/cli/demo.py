@@ -3,16 +3,17 @@
 from pathlib import Path
 
 import anyio
-from rich.console import Console
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
+from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_curriculum
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.text_table import print_whole
 
 
 def demo(
@@ -57,8 +58,5 @@ def demo(
     with job_bars() as report:
         result = anyio.run(run, report)
     draw_curriculum(result, taught, stage, picture)
-    console = Console()
-    console.print(render_curriculum(result, taught))
-    console.print(
-        f"picture    {picture}", f"knowledge  {knowledge}", sep="\n", markup=False, highlight=False, soft_wrap=True
-    )
+    files = (f"picture    {picture}", f"knowledge  {knowledge}")
+    print_whole(console_of(), render_curriculum(result, taught), *files)

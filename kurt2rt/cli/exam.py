@@ -5,10 +5,10 @@ from typing import Annotated
 
 import anyio
 import typer
-from rich.console import Console
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskName, WireName, changes_of
+from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
@@ -17,6 +17,7 @@ from kurt2rt.experiments.report import render_exams
 from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.text_table import print_whole
 
 
 def exam(
@@ -59,4 +60,4 @@ def exam(
 
     with job_bars() as report:
         results = anyio.run(run, report)
-    Console().print(render_exams(results, taught))
+    print_whole(console_of(), render_exams(results, taught))

@@ -28,6 +28,7 @@ from kurt2rt.cli.options import (
     WireName,
     changes_of,
 )
+from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.fitting import require_course
@@ -35,6 +36,7 @@ from kurt2rt.experiments.report import render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.text_table import print_whole
 
 if TYPE_CHECKING:
     from kurt2rt.simulated import SimulatedStage
@@ -165,7 +167,6 @@ def _lesson(
     stage.require_worlds(*worlds)
     require_course(stage, task, worlds)
     out.mkdir(parents=True, exist_ok=True)
-    console = Console()
     if seeds is None:
         file = knowledge or out / f"{task.name}-{seed}.knowledge"
         if knowledge is None:
@@ -177,8 +178,7 @@ def _lesson(
 
         with job_bars() as report:
             result = anyio.run(run, report)
-        console.print(render_curriculum(result, task))
-        console.print(f"knowledge  {file}", markup=False, highlight=False, soft_wrap=True)
+        print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
         return
     work = []
     for each in parse_seeds(seeds):
@@ -189,7 +189,7 @@ def _lesson(
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))
         results = run_seeds(work, jobs, lambda _seed: progress.advance(bar))
-    console.print(render_seeds(results, task))
+    print_whole(console_of(), render_seeds(results, task))
 
 
 def _one_of(task: str | None, task_option: str | None) -> str:

@@ -15,10 +15,10 @@ from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.route.programme import basic_task_of
 from kurt2rt.experiments.shown.sheet import as_rich
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.text_table import print_whole
 
 ERRANDS = Path("results/errands")
 """Where what is made goes, unless said otherwise."""
-_WIDTH = 150
 
 
 def runs_errands(task: TaskSettings) -> bool:
@@ -51,9 +51,5 @@ def errands(
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
             draw_errands(stage, task.exam.worlds[0], outcome, pictures[-1])
-    console = console_of(_WIDTH)
-    for sheet in sheets(outcomes, errands_of(task)):
-        console.print(as_rich(sheet))
-    console.print(
-        f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}", markup=False, highlight=False, soft_wrap=True
-    )
+    pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"
+    print_whole(console_of(), *map(as_rich, sheets(outcomes, errands_of(task))), pictures_told)

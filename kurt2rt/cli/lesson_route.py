@@ -24,10 +24,10 @@ from kurt2rt.experiments.shown.judging import reasons_of_robots
 from kurt2rt.experiments.shown.sheet import as_rich
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.text_table import print_whole
 
 ROUTES = Path("results/route")
 """Where what is made goes, unless said otherwise."""
-_WIDTH = 150
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,10 +96,8 @@ def one_route(
         outcome = anyio.run(run, report).outcome()
     picture = out / f"{stem}.png"
     draw_route(stage, task.exam.worlds[0], outcome, picture)
-    console = console_of(_WIDTH)
-    console.print(as_rich(robot_sheet(outcome, task)))
-    for what, path in (("knowledge", file), ("picture", picture)):
-        console.print(f"{what}  {path}", markup=False, highlight=False, soft_wrap=True)
+    files = (f"{what}  {path}" for what, path in (("knowledge", file), ("picture", picture)))
+    print_whole(console_of(), as_rich(robot_sheet(outcome, task)), *files)
 
 
 def many_routes(
@@ -135,4 +133,4 @@ def many_routes(
         pictures = list(draw_pictures(study, stage, results.folder))
         report = results.folder / "report.html"
         write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_of_robots(programme.seeds), report, width=_WIDTH)
+    print_study(sheets(study), reasons_of_robots(programme.seeds), report)

@@ -6,15 +6,14 @@ from typing import Annotated
 
 import segno
 import typer
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.channel import credentials
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, Pairing, paired
 from kurt2rt.page.hosts import own_address
 from kurt2rt.service_settings import load_service
+from kurt2rt.text_table import TextTable, print_whole
 
 _TIME = "%Y-%m-%d %H:%M"
 
@@ -65,7 +64,7 @@ def pair(
     if list_ + renew + revoke > 1:
         raise typer.BadParameter("one of these at a time", param_hint="--list, --renew, --revoke")
     if list_:
-        console.print(_table(teachers, devices))
+        print_whole(console, _table(teachers, devices))
         return
     if name is None:
         raise typer.BadParameter("whose device? Give it a name, such as anna-phone", param_hint="NAME")
@@ -100,11 +99,11 @@ def _code(address: str) -> str:
     return drawn.getvalue().rstrip("\n")
 
 
-def _table(teachers: Path, devices: Path) -> Table | Text:
+def _table(teachers: Path, devices: Path) -> TextTable | Text:
     rows = paired(teachers)
     if not rows:
         return Text("Nobody is paired. Pair a device: kurt2rt pair NAME")
-    table = Table("name", "made (UTC)", "last used (UTC)", "device's side", box=SIMPLE_HEAD)
+    table = TextTable("name", "made (UTC)", "last used (UTC)", "device's side")
     for row in rows:
         used = "never" if row.used_at is None else row.used_at.strftime(_TIME)
         table.add_row(row.name, row.made_at.strftime(_TIME), used, _where(row.name, devices))

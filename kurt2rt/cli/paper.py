@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
 
 _SEEDS, _QUICK_SEEDS = "100-119", "100-101"
-_WIDTH = 120
 _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 
@@ -92,7 +91,7 @@ def paper(
             pictures = list(draw_pictures(study, stage, results.folder))
             report = results.folder / "report.html"
             write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_not_to_judge(programme), report, width=_WIDTH)
+    print_study(sheets(study), reasons_not_to_judge(programme), report)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

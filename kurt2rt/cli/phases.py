@@ -12,7 +12,6 @@ from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
-_WIDTH = 160
 _FOLDER = Path("results/phases")
 
 
@@ -70,7 +69,7 @@ def phases(
             command = _command(quick=quick, seeds=typed_seeds, task=task, changes=changes or [])
             write_report(study, pictures, command, report)
     reasons = list(reasons_not_to_judge(programme))
-    print_study(sheets(study, reasons), reasons, report, width=_WIDTH)
+    print_study(sheets(study, reasons), reasons, report)
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
@@ -21,8 +20,8 @@ from kurt2rt.replay.shadow import Answer, shadow_of
 from kurt2rt.replay.verdict import Verdict, verify
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.service_settings import load_service
+from kurt2rt.text_table import TextTable, print_whole
 
-_WIDE = 120
 _TELL_EVERY_TICKS = 100
 _DIFFERENCES = 10
 
@@ -135,7 +134,7 @@ def _compare(run: Run, knowledge: Path, limit: int, *, as_json: bool) -> None:
     for line in _shares(found, knowledge):
         typer.echo(line)
     if found.stretches:
-        _print_stretches(console_of(_WIDE), found, limit)
+        _print_stretches(console_of(), found, limit)
     if found.trouble:
         typer.echo(found.trouble)
 
@@ -160,14 +159,14 @@ def _print_stretches(console: Console, found: Counterfactual, limit: int) -> Non
     title = "where it would have decided otherwise"
     if len(found.stretches) > limit:
         title += f": the longest {limit} of {len(found.stretches)} stretches"
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table = TextTable(title=title)
     for name in ("from s", "to s", "ticks"):
-        table.add_column(name, justify="right")
+        table.add_column(name, number=True)
     for name in ("was", "would be", "nearest of R"):
         table.add_column(name)
     for each in sorted(longest, key=lambda each: each.from_s):
         table.add_row(*_row(each))
-    console.print(table)
+    print_whole(console, table)
 
 
 def _row(stretch: Stretch) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ import anyio.from_thread
 import typer
 from rich.console import Console, Group
 from rich.live import Live
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.channel.credentials import Device, read_device
@@ -24,6 +23,7 @@ from kurt2rt.service_settings import load_service
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.text_table import TextTable, print_whole
 
 _PATIENCE_S = 5.0
 _STYLES = {WARNS: "yellow", URGENT: "bold red"}
@@ -104,15 +104,15 @@ def _screen(first: HealthReport, *, watch: bool, json: bool) -> Iterator[Callabl
         with Live(as_rich(first), console=console, auto_refresh=False) as live:
             yield lambda report: live.update(as_rich(report), refresh=True)
     else:
-        console.print(as_rich(first))
+        print_whole(console, as_rich(first))
         yield _nothing
 
 
 def as_rich(report: HealthReport) -> Group:
     """The report as a table, its troubles below."""
-    table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")
+    table = TextTable()
+    table.add_column("", whole=True)
+    table.add_column("")
     for row in rows_of(report):
         style = _STYLES.get(row.level, "")
         table.add_row(Text(row.name, style=style or "bold"), Text(row.text, style=style))

@@ -15,6 +15,7 @@ from kurt2rt.experiments.pool import run_jobs
 from kurt2rt.experiments.shown.sheet import as_rich
 from kurt2rt.experiments.surprise.study import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.text_table import print_whole
 
 
 def surprise(
@@ -47,4 +48,4 @@ def surprise(
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("robots", total=len(work))
         results = run_jobs(work, jobs, on_done=lambda _place: progress.advance(bar))
-    console_of(120).print(as_rich(sheet_of(results)))
+    print_whole(console_of(), as_rich(sheet_of(results)))

@@ -25,8 +25,8 @@ from kurt2rt.recording.run_folder import find_run
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.run import Run
 from kurt2rt.service_settings import ServiceSettings, load_service
+from kurt2rt.text_table import print_whole
 
-_WIDE = 130
 _FORMATS = (".png", ".svg", ".pdf")
 """As kurt2rt.explain.saving has them, which draws in matplotlib, an extra."""
 _STRETCHES = 40
@@ -97,7 +97,7 @@ def why(
         raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
     found = find_run(run, runs or Path(service.recordings))
     recorded = read_run(found, in_part=at is None)
-    console = console_of(_WIDE)
+    console = console_of()
     if at is None:
         _show_timeline(console, recorded, from_s, math.inf if to_s is None else to_s, limit, picture)
     else:
@@ -119,7 +119,7 @@ def _show_timeline(console: Console, run: Run, from_s: float, to_s: float, limit
         bar = progress.add_task("", total=None)
         entries = _counted(run.entries_in_part(), lambda read_s: progress.update(bar, completed=read_s))
         timeline = timeline_of(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
-    console.print(render_timeline(timeline, _of(run), limit))
+    print_whole(console, render_timeline(timeline, _of(run), limit))
     if picture is not None:
         # Not at the top: matplotlib is an extra, and a robot does without it.
         from kurt2rt.explain.timeline_picture import draw_timeline
@@ -145,7 +145,7 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
             f"the run ends at {explained.at_s:.2f} s; give a moment before that", param_hint="--at"
         )
     where = f"{_of(run)}, {explained.at_s:.2f} s (tick {explained.facts.tick})"
-    console.print(render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
+    print_whole(console, render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
     if explained.difference is not None:
         console.print(
             f"This program decides otherwise than the one that was recorded: {explained.difference}. "
@@ -166,7 +166,7 @@ def _show_live(
     robot = load_robot(service.robot)
     facts, found = ask_why(device, host or device.host, port or device.port, robot)
     where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
-    console_of(_WIDE).print(render_why(facts, found, where, words_for(robot.infrared)))
+    print_whole(console_of(), render_why(facts, found, where, words_for(robot.infrared)))
     if picture is not None:
         if not set(robot.infrared.names) <= set(facts.basic.names):
             raise SettingsError(

@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.commission.progress import Progress
 from kurt2rt.commission.step import Outcome, Step
+from kurt2rt.text_table import TextTable, print_whole
 
 _STYLES = {Outcome.PASSED: "green", Outcome.FAILED: "bold red", Outcome.SKIPPED: "yellow"}
 
@@ -36,7 +35,7 @@ def as_text(progress: Progress, steps: Sequence[Step]) -> str:
 
 def print_report(progress: Progress, steps: Sequence[Step], console: Console) -> None:
     """Table, what is to be done, verdict."""
-    table = Table("step", "outcome", "when (UTC)", "who", box=SIMPLE_HEAD)
+    table = TextTable("step", "outcome", "when (UTC)", "who")
     to_do: list[str] = []
     for step in steps:
         record = progress.steps.get(step.name)
@@ -46,7 +45,7 @@ def print_report(progress: Progress, steps: Sequence[Step], console: Console) ->
         outcome = Text(record.outcome, style=_STYLES[record.outcome])
         table.add_row(Text(step.name), outcome, Text(record.at), Text(record.who))
         to_do += [f"{step.name}: {each}" for each in record.to_do]
-    console.print(table)
+    print_whole(console, table, "")
     for each in to_do:
         console.print(Text(each), soft_wrap=not console.is_terminal)
     verdict = "PASSED" if passed(progress, steps) else "not passed"

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.text_table import TextTable, print_whole
 
 _STYLES = {Status.OK: "green", Status.WARNING: "yellow", Status.MISSING: "bold red"}
 
@@ -21,10 +21,10 @@ def as_json(findings: Sequence[Finding]) -> str:
 
 def print_report(findings: Sequence[Finding], console: Console) -> None:
     """Table of what was found, then what to do, then the summary."""
-    table = Table("subject", "status", "found")
+    table = TextTable("subject", "status", "found")
     for finding in findings:
         table.add_row(Text(finding.subject), Text(finding.status, style=_STYLES[finding.status]), Text(finding.found))
-    console.print(table)
+    print_whole(console, table, "")
     # Beneath the table and unwrapped, since most of it is there to be copied into a shell.
     for finding in findings:
         if finding.what_to_do:

@@ -4,21 +4,22 @@ import math
 from collections.abc import Sequence
 
 from rich.console import Group, RenderableType
-from rich.table import Table
+from rich.text import Text
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.text_table import TextTable
 
 
 def render_curriculum(result: CurriculumResult, task: TaskSettings) -> RenderableType:
     """Tables of one lesson and its exams, beside what the paper reports."""
     lesson = result.lesson
-    taught = Table(title=f"Lesson: {task.name} in world {lesson.world}, seed {lesson.seed}", title_justify="left")
+    taught = TextTable(title=f"Lesson: {task.name} in world {lesson.world}, seed {lesson.seed}")
     taught.add_column("")
-    taught.add_column("here", justify="right")
-    taught.add_column("paper", justify="right")
+    taught.add_column("here", number=True)
+    taught.add_column("paper", number=True)
     taught.add_row("RLAs", str(len(lesson.rlas)), str(task.paper.rlas))
     taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", task.paper.teaching_told)
     taught.add_row("asks", str(lesson.asks), "")
@@ -35,11 +36,11 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
 
 def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:
     """Table of one exam per world, beside the teacher's own drive there."""
-    driven = Table(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each", title_justify="left")
+    driven = TextTable(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each")
     unit = exams[0].learned.unit
     headings = ("world", unit, f"teacher's own {unit}", "collisions", "stuck", "unknown situations", "success")
     for heading in headings:
-        driven.add_column(heading, justify="left" if heading == "world" else "right")
+        driven.add_column(heading, number=heading != "world")
     for each in exams:
         exam = each.learned
         driven.add_row(
@@ -49,7 +50,7 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
-            "[green]yes[/]" if each.succeeded else "[red]no[/]",
+            Text("yes", "green") if each.succeeded else Text("no", "red"),
         )
     measured = _render_measures("Measures", [each.learned.world for each in exams], [[each.learned] for each in exams])
     return Group(driven, *measured)
@@ -64,15 +65,15 @@ def verdict_of(result: WorldResult) -> str:
     return ", ".join(part for part in parts if part)
 
 
-def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[Table]:
+def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[TextTable]:
     """What courses found besides, a column for the exams of each world; no table where they found nothing."""
     names = dict.fromkeys(name for each in exams for exam in each for name in exam.findings)
     # How many junctions there were is told beside how many were right.
     shown = [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
-    table = Table(title=title, title_justify="left")
+    table = TextTable(title=title)
     table.add_column("")
     for world in worlds:
-        table.add_column(label_of(world), justify="right")
+        table.add_column(label_of(world), number=True)
     for name in shown:
         table.add_row(
             name, *(_measure([exam.findings for exam in each if name in exam.findings], name) for each in exams)
@@ -134,11 +135,11 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     """Tables of many seeds: one row each, then medians, quartiles and intervals."""
     worlds = [each.learned.world for each in results[0].exams]
     unit = results[0].exams[0].learned.unit
-    seeds = Table(title=f"{task.name}: one row per seed", title_justify="left")
+    seeds = TextTable(title=f"{task.name}: one row per seed")
     for heading in ("seed", "RLAs", "asks", "corrections", "rescues"):
-        seeds.add_column(heading, justify="right")
+        seeds.add_column(heading, number=True)
     for world in worlds:
-        seeds.add_column(f"world {label_of(world)}: {unit} of teacher's, collisions", justify="right")
+        seeds.add_column(f"world {label_of(world)}: {unit} of teacher's, collisions", number=True)
     for result in results:
         lesson = result.lesson
         cells = []
@@ -148,13 +149,13 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             end = f", {early}" if early else ""
             colour = "green" if each.succeeded else "red"
             of_teacher = f"{each.teacher.progress:.1f}{_not_well(each.teacher)}"
-            cells.append(f"[{colour}]{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}[/]")
+            cells.append(Text(f"{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}", colour))
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 
-    summary = Table(title=f"{len(results)} seeds", title_justify="left")
+    summary = TextTable(title=f"{len(results)} seeds")
     for heading in ("", "median", "quartiles", "paper"):
-        summary.add_column(heading, justify="left" if not heading else "right")
+        summary.add_column(heading, number=bool(heading))
     counted = (
         ("RLAs", [len(result.lesson.rlas) for result in results], str(task.paper.rlas)),
         ("asks", [result.lesson.asks for result in results], ""),
@@ -165,9 +166,9 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         low, median, high = quartiles(values)
         summary.add_row(name, f"{median:.0f}", f"{low:.0f} to {high:.0f}", paper)
 
-    success = Table(title="Exams without teacher", title_justify="left")
+    success = TextTable(title="Exams without teacher")
     for heading in ("world", "success", "95 % interval", "collided", "stuck", f"{unit}, median", "unknown, median"):
-        success.add_column(heading, justify="left" if heading == "world" else "right")
+        success.add_column(heading, number=heading != "world")
     for place, world in enumerate(worlds):
         exams = [result.exams[place] for result in results]
         passed = sum(each.succeeded for each in exams)

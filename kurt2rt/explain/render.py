@@ -2,9 +2,7 @@
 
 import math
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.explain.because import because, headline
@@ -16,6 +14,7 @@ from kurt2rt.explain.tipping import Tip
 from kurt2rt.knowledge.shown import plain
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import MID
+from kurt2rt.text_table import TextTable
 
 _FEATURES = 6
 _STYLES = {Kind.DRIVES: "green", Kind.LED: "magenta", Kind.ASKS: "red", Kind.STANDS: "yellow"}
@@ -68,14 +67,14 @@ def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> Rend
     other = level.rival_of(story)
     pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
-    table = Table(box=SIMPLE_HEAD, title_justify="left")
+    table = TextTable()
     table.add_column("feature")
-    table.add_column("here", justify="right")
-    table.add_column(f"RLA {story.rla_id}", justify="right")
+    table.add_column("here", number=True)
+    table.add_column(f"RLA {story.rla_id}", number=True)
     table.add_column("of the distance")
     if other is not None:
-        table.add_column(f"RLA {other.rla_id}", justify="right")
-        table.add_column("speaks for", justify="left")
+        table.add_column(f"RLA {other.rla_id}", number=True)
+        table.add_column("speaks for")
     for share in found[:_FEATURES]:
         cells: list[str | Text] = [
             plain(words.place(share.name)),
@@ -97,10 +96,10 @@ def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> Rend
     return Group(table, Text(f"and {hidden} more features that differ", style="dim")) if hidden > 0 else table
 
 
-def _history(story: RlaStory) -> Table:
-    table = Table(box=SIMPLE_HEAD)
+def _history(story: RlaStory) -> TextTable:
+    table = TextTable()
     for heading in ("when", "by", "phase", "what"):
-        table.add_column(heading, overflow="fold")
+        table.add_column(heading)
     for act in story.acts:
         text = f"{act.text} (taken back)" if act.undone else act.text
         table.add_row(plain(when(act)), plain(act.teacher), str(act.phase), plain(text))
@@ -124,13 +123,13 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
                 "Give --from and --to for all of a shorter time."
             )
         )
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading in ("from s", "to s", "lasts s"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, number=True)
     table.add_column("what")
-    table.add_column("RLAs (share of the time)", overflow="fold")
-    table.add_column("farthest", justify="right")
-    table.add_column("guard", overflow="fold")
+    table.add_column("RLAs (share of the time)")
+    table.add_column("farthest", number=True)
+    table.add_column("guard")
     for stretch in rows[:most]:
         table.add_row(*_row(stretch))
     parts.append(table)
@@ -138,9 +137,9 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
         parts.append(Text(f"and {len(rows) - most} more"))
     notes = timeline.notes[:most]
     if notes:
-        told = Table(box=SIMPLE_HEAD)
-        told.add_column("at s", justify="right")
-        told.add_column("what happened", overflow="fold")
+        told = TextTable()
+        told.add_column("at s", number=True)
+        told.add_column("what happened")
         for note in notes:
             told.add_row(f"{note.at_s:.2f}", plain(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text))
         parts.append(told)
@@ -149,7 +148,7 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
     return Group(*parts)
 
 
-def _shares(timeline: Timeline, whole_s: float) -> Table:
+def _shares(timeline: Timeline, whole_s: float) -> TextTable:
     """Each thing that it did, the most first."""
     lasts: dict[tuple[Kind, str], float] = {}
     times: dict[tuple[Kind, str], int] = {}
@@ -157,9 +156,9 @@ def _shares(timeline: Timeline, whole_s: float) -> Table:
         key = stretch.kind, stretch.what
         lasts[key] = lasts.get(key, 0.0) + stretch.lasts_s
         times[key] = times.get(key, 0) + 1
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading, side in (("what", "left"), ("s", "right"), ("times", "right"), ("share of the time", "left")):
-        table.add_column(heading, justify="right" if side == "right" else "left")
+        table.add_column(heading, number=side == "right")
     for kind, what in sorted(lasts, key=lambda key: -lasts[key]):
         share = lasts[kind, what] / whole_s
         bar = f"{100 * share:3.0f} % {'█' * round(_BAR * share)}"

@@ -4,15 +4,14 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.faults.outcome import Standstill
 from kurt2rt.faults.stop_times import StopTime
 from kurt2rt.faults.suite import Trial
 from kurt2rt.faults.table import KINDS, TARGETS, Kind, Target
+from kurt2rt.text_table import TextTable, print_whole
 
 
 def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Console) -> None:
@@ -21,24 +20,22 @@ def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Co
     for trial in trials:
         cells.setdefault((trial.case.target, trial.case.kind), []).append(trial)
     kinds = [kind for kind in KINDS if any(kind == each for _, each in cells)]
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 1, 0))
-    table.add_column("")
-    for kind in kinds:
-        table.add_column("inter-\nmittent" if kind == "intermittent" else kind, no_wrap=True)
+    table = TextTable("", *kinds)
     for target in TARGETS:
         row = [_cell(cells.get((target, kind), ())) for kind in kinds]
         if any(row):
             table.add_row("\n".join(target.split("_", 1)).replace("_", " "), *row)
-    console.print(table)
-    console.print(
-        "stands: until the fault is over at least. asks: stands because it does not know the situation. stutters: "
+    print_whole(
+        console,
+        table,
+        "\nstands: until the fault is over at least. asks: stands because it does not know the situation. stutters: "
         "stands for moments. drives: never stands.\n"
         "ms: from the fault's beginning to the standstill at the robot's end of the bus, the worst of all seeds. "
         "Below it, what it needs besides the end of the fault to drive on: a teacher's resume, a new press of his "
-        "hand, a new start of the program.\n"
+        "hand, a new start of the program.\n",
     )
     if times:
-        console.print(_times(times))
+        print_whole(console, _times(times), "")
     _print_complaints(trials, console)
 
 
@@ -85,11 +82,10 @@ def _cell(trials: Sequence[Trial]) -> Text:
     return Text("\n".join(lines))
 
 
-def _times(times: Sequence[StopTime]) -> Table:
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
-    table.add_column("stop time")
+def _times(times: Sequence[StopTime]) -> TextTable:
+    table = TextTable("stop time")
     for heading in ("goal ms", "median ms", "worst ms", "of"):
-        table.add_column(heading, justify="right")
+        table.add_column(heading, number=True)
     table.add_column("met")
     for each in times:
         table.add_row(
@@ -107,9 +103,10 @@ def _print_complaints(trials: Sequence[Trial], console: Console) -> None:
     failed = [trial for trial in trials if not trial.verdict.passed]
     gaps = {trial.case: trial for trial in trials if trial.case.must.known_gap is not None and trial.verdict.passed}
     for case in gaps:
-        console.print(Text(f"{case}: known gap: {case.must.known_gap}", "yellow"))
+        print_whole(console, Text(f"{case}: known gap: {case.must.known_gap}", "yellow"))
     for case, outcome, verdict in failed:
         for complaint in verdict.complaints:
-            console.print(Text(f"{case}, seed {outcome.seed}: {complaint}", "red"))
+            print_whole(console, Text(f"{case}, seed {outcome.seed}: {complaint}", "red"))
     tried = len({trial.case for trial in trials})
-    console.print(f"{tried} cases, {len(trials)} trials, {len(failed)} not as they must be, {len(gaps)} known gaps")
+    told = f"{tried} cases, {len(trials)} trials, {len(failed)} not as they must be, {len(gaps)} known gaps"
+    print_whole(console, told)

@@ -3,9 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.knowledge.entry import StoredEntry
@@ -30,6 +28,7 @@ from kurt2rt.rla.rla import (
     SessionBegun,
 )
 from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.text_table import TextTable
 
 TICK_S = 0.01
 """The KURT2's cycle: a knowledge file counts in ticks and does not say how long they last."""
@@ -102,9 +101,9 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
     undone_by = {
         entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
     }
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading in ("lesson", "id", "taught (UTC), by", "undone by"):
-        table.add_column(heading, overflow="fold")
+        table.add_column(heading)
     for record in records[::-1][:limit]:
         origin = record.event.origin
         table.add_row(
@@ -117,15 +116,14 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
 
 
-def _empty_table(*, named: bool, any_value: bool, wide: bool) -> Table:
-    table = Table(box=SIMPLE_HEAD)
+def _empty_table(*, named: bool, any_value: bool, wide: bool) -> TextTable:
+    table = TextTable()
     behaviour = ("behaviour",) if named else ()
     value = ("value",) if any_value else ()
     tick = ("tick",) if wide or not any_value else ()  # where there is no room for both
     numbers = ("phase", *tick, "uses", "rewards", *value)
     for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", *numbers):
-        right = heading in ("RLA", *numbers)
-        table.add_column(heading, justify="right" if right else "left", overflow="fold", no_wrap=right)
+        table.add_column(heading, number=heading in ("RLA", *numbers))
     if wide:
         table.add_column("largest features")
         table.add_column("followed by")

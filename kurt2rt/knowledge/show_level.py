@@ -2,24 +2,22 @@
 
 from collections.abc import Iterable, Mapping
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
 from kurt2rt.rla.rla import CRITIC, Rla
+from kurt2rt.text_table import TextTable
 
 
 def level_table(
     level: str, rlas: Iterable[Rla], feature_names: tuple[str, ...], taught: Mapping[str, StoredEntry]
-) -> Table:
+) -> TextTable:
     """A row per RLA. `taught`: the entry of each command id."""
     of_critic = level == CRITIC
-    table = Table(box=SIMPLE_HEAD)
-    table.add_column("appraisal RLA" if of_critic else f"{level} RLA", justify="right")
-    table.add_column("says" if of_critic else "action", overflow="fold")
+    table = TextTable()
+    table.add_column("appraisal RLA" if of_critic else f"{level} RLA", number=True)
+    table.add_column("says" if of_critic else "action")
     for heading in ("instead of", "taught (UTC), by", "circumstances" if of_critic else "features"):
-        table.add_column(heading, overflow="fold")
+        table.add_column(heading)
     for rla in rlas:
         entry = taught[rla.origin.command_id]
         table.add_row(

@@ -2,9 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
-
 from kurt2rt.knowledge.binding import LevelFeatures
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
@@ -12,6 +9,7 @@ from kurt2rt.mid.settings import MidSettings
 from kurt2rt.mid.shipped import shipped_mid
 from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.rla import Rla
+from kurt2rt.text_table import TextTable
 
 _FOLLOW_UPS = 3
 
@@ -22,19 +20,19 @@ def mid_table(
     taught: Mapping[str, StoredEntry],
     uses: Mapping[int, int],
     follow_ups: Mapping[int, Mapping[int, float]],
-) -> Table:
+) -> TextTable:
     """A row per RLA. `taught`: the entry of each command id; `follow_ups`: shares in percent, most frequent first.
 
     A history is told in words, the newest symbol first, where its settings are shipped; else in numbers.
     """
     settings = shipped_mid(features.feature_hash)
-    table = Table(box=SIMPLE_HEAD)
-    table.add_column("mid-level RLA", justify="right")
+    table = TextTable()
+    table.add_column("mid-level RLA", number=True)
     for heading in ("behaviour", "instead of", "taught (UTC), by"):
-        table.add_column(heading, overflow="fold")
-    table.add_column("uses", justify="right")
-    table.add_column("where: the newest first", overflow="fold")
-    table.add_column("followed by", overflow="fold")
+        table.add_column(heading)
+    table.add_column("uses", number=True)
+    table.add_column("where: the newest first")
+    table.add_column("followed by")
     for rla in rlas:
         entry = taught[rla.origin.command_id]
         following = list(follow_ups.get(rla.rla_id, {}).items())[:_FOLLOW_UPS]
@@ -50,12 +48,12 @@ def mid_table(
     return table
 
 
-def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> Table:
+def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> TextTable:
     """The situations that have a name, in the order of the alphabet; in words or numbers as above."""
     settings = shipped_mid(features.feature_hash)
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading in ("named", "where: the newest first"):
-        table.add_column(heading, overflow="fold")
+        table.add_column(heading)
     for name in sorted(named):
         table.add_row(plain(name), plain(_where(named[name], settings, features.feature_names)))
     return table

@@ -2,9 +2,7 @@
 
 import math
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.expectations.expectation import Expectation
@@ -17,6 +15,7 @@ from kurt2rt.knowledge.shown import plain
 from kurt2rt.knowledge.statistics import follow_ups
 from kurt2rt.perception.definition import AVERAGED
 from kurt2rt.rla.rla import BASIC, Rla
+from kurt2rt.text_table import TextTable
 
 
 def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> RenderableType:
@@ -57,9 +56,9 @@ def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None,
     # Averages over seconds say little of what one RLA changed.
     farthest = rla.condition if mean is None else [then - now for then, now in zip(mean, rla.condition, strict=True)]
     order = sorted(range(len(names)), key=lambda place: (names[place].endswith(AVERAGED), -abs(farthest[place])))
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading in ("feature", "condition", *(("expected", "spread") if mean is not None else ())):
-        table.add_column(heading, justify="left" if heading == "feature" else "right")
+        table.add_column(heading, number=heading != "feature")
     for place in order[:limit]:
         cells = [_number(rla.condition[place])]
         if mean is not None and spread is not None:

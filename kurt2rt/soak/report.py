@@ -6,15 +6,14 @@ from dataclasses import asdict
 from statistics import median
 from typing import Any
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from kurt2rt.faults.table import TARGETS
 from kurt2rt.soak.checks import memory_told
 from kurt2rt.soak.faults import FaultSeen
 from kurt2rt.soak.result import SoakResult
+from kurt2rt.text_table import TextTable, print_whole
 
 _TOLD = 10
 """Complaints that are shown; all that were kept are in the JSON."""
@@ -24,21 +23,21 @@ def print_report(result: SoakResult, console: Console) -> None:
     """What had to hold and whether it did, what failed and what came of it, and the numbers of the day."""
     hours = result.simulated_s / 3600.0
     pace = result.simulated_s / max(result.took_s, 1e-9)
-    console.print(
+    print_whole(
+        console,
         f"{hours:.2f} h in simulated time (seed {result.seed}), in {result.took_s / 60:.1f} min: {pace:.0f} times "
         f"real time. {result.ticks} ticks and {result.missed_ticks} missed ones, {len(result.starts)} starts, "
         f"{len(result.faults)} faults.\n",
-        highlight=False,
     )
-    console.print(_checks(result))
+    print_whole(console, _checks(result))
     if result.faults:
-        console.print(_faults(result.faults))
+        print_whole(console, "", _faults(result.faults), "")
     if result.minutes:
         _print_day(result, console)
     for module, grown_kb in list(result.grown_kb.items())[:_TOLD]:
-        console.print(f"{grown_kb:+10.1f} kB  {module}", highlight=False)
+        print_whole(console, f"{grown_kb:+10.1f} kB  {module}")
     for complaint in _complaints(result)[:_TOLD]:
-        console.print(complaint, style="red", highlight=False)
+        print_whole(console, Text(complaint, "red"))
 
 
 def as_json(result: SoakResult) -> str:
@@ -49,22 +48,18 @@ def as_json(result: SoakResult) -> str:
     return json.dumps({"passed": result.passed, **plain}, indent=1)
 
 
-def _checks(result: SoakResult) -> Table:
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1))
-    table.add_column("what must hold")
-    table.add_column("")
-    table.add_column("found")
+def _checks(result: SoakResult) -> TextTable:
+    table = TextTable("what must hold", "", "found")
     for check in result.checks:
         verdict = Text("yes") if check.passed else Text("NO", style="bold red")
         table.add_row(check.what, verdict, check.found)
     return table
 
 
-def _faults(faults: Sequence[FaultSeen]) -> Table:
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1))
-    table.add_column("what failed")
+def _faults(faults: Sequence[FaultSeen]) -> TextTable:
+    table = TextTable("what failed")
     for column in ("times", "while it drove", "stood then", "after, median", "worst", "stopped for good"):
-        table.add_column(column, justify="right")
+        table.add_column(column, number=True)
     for target in TARGETS:
         seen = [each for each in faults if each.target == target]
         if not seen:
@@ -86,16 +81,16 @@ def _faults(faults: Sequence[FaultSeen]) -> Table:
 def _print_day(result: SoakResult, console: Console) -> None:
     minutes, last = result.minutes, result.minutes[-1]
     shares = [sum(getattr(each, name) for each in minutes) / len(minutes) for name in ("drives", "asks", "stopped")]
-    console.print(
+    print_whole(
+        console,
         "Of its time the robot drove {:.0%}, asked {:.1%} and was stopped {:.0%}. ".format(*shares)
         + f"{last.lessons} lessons, {last.rlas} RLAs at the end. Memory {minutes[0].resident_mb:.1f} MB first, "
         f"{last.resident_mb:.1f} MB at the end.",
-        highlight=False,
     )
     told = memory_told(minutes, result.starts)
     if told:
-        console.print(told, highlight=False)
-    console.print(", ".join(f"{count} {what}" for what, count in result.counted.items()) + ".\n", highlight=False)
+        print_whole(console, told)
+    print_whole(console, ", ".join(f"{count} {what}" for what, count in result.counted.items()) + ".\n")
 
 
 def _complaints(result: SoakResult) -> list[str]:

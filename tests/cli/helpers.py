@@ -32,6 +32,7 @@ class CommandLine:
     """Runs `kurt2rt ...` in this process through its entry point, which takes a tenth of the time of a new one."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+        monkeypatch.delenv("COLUMNS", raising=False)  # as in a pipe: as wide as it takes
         self._monkeypatch = monkeypatch
         self._capfd = capfd
 

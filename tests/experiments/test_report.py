@@ -1,3 +1,4 @@
+import re
 import statistics
 from dataclasses import replace
 from typing import Any
@@ -17,9 +18,7 @@ def printed(what: RenderableType) -> list[list[str]]:
     console = Console(width=200, no_color=True)
     with console.capture() as capture:
         console.print(what)
-    return [
-        [cell.strip() for cell in line.strip("│┃").replace("┃", "│").split("│")] for line in capture.get().split("\n")
-    ]
+    return [re.split(r"\s{2,}", line.strip()) for line in capture.get().split("\n")]
 
 
 @pytest.mark.parametrize(
@@ -67,9 +66,9 @@ def test_a_lesson_stands_beside_the_paper() -> None:
     assert ["Lesson: wall_following in world a, seed 7"] in rows
     assert ["RLAs", "88", "91"] in rows
     assert ["teaching, s of robot time", "345", "345"] in rows
-    assert ["asks", "41", ""] in rows
-    assert ["corrections", "52", ""] in rows
-    assert ["rescues by hand", "3", ""] in rows
+    assert ["asks", "41"] in rows
+    assert ["corrections", "52"] in rows
+    assert ["rescues by hand", "3"] in rows
     assert ["A", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
     assert ["distance error, m", "0.0321"] in rows
 
@@ -80,8 +79,8 @@ def test_deletions_and_repositions_are_told_where_there_were_any() -> None:
     assert not any(row[0] in ("deletions", "set down elsewhere") for row in rows)
     lesson = replace(result.lesson, deletions=4, repositions=11)
     rows = printed(render_curriculum(replace(result, lesson=lesson), short_task()))
-    assert ["deletions", "4", ""] in rows
-    assert ["set down elsewhere", "11", ""] in rows
+    assert ["deletions", "4"] in rows
+    assert ["set down elsewhere", "11"] in rows
 
 
 def test_tables_speak_of_what_the_task_counts() -> None:

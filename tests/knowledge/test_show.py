@@ -141,7 +141,8 @@ def narrow(journal: Journal) -> tuple[str, list[str]]:
     lines = capture.get().splitlines()
     assert max(len(line) for line in lines) <= 80
     (row,) = rows(lines)
-    return " ".join(lines[lines.index(" " * 80) + 2].split()), row
+    headings = next(number for number, line in enumerate(lines) if line.startswith("RLA"))
+    return " ".join(" ".join(lines[headings : headings + 2]).split()), row
 
 
 def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
@@ -151,8 +152,8 @@ def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
         journal.checkpoint(Statistics(values={1: 0.5}))
         with_value, valued_row = narrow(journal)
 
-    assert headings == "RLA action instead of (UTC), by phase tick uses rewards"
-    assert with_value == "RLA action instead of (UTC), by phase uses rewards value"
+    assert headings == "RLA action instead taught (UTC), by phase tick uses rewards of"
+    assert with_value == "RLA action instead taught (UTC), by phase uses rewards value of"
     assert (row[1], row[-1]) == ("spin_right", "+1")
     assert (valued_row[1], valued_row[-2:]) == ("spin_right", ["+1", "0.50"])
 

@@ -4,10 +4,11 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
+from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.cli.printed import console_of
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_lessons
+from kurt2rt.text_table import print_whole
 
 
 def lessons(
@@ -17,4 +18,4 @@ def lessons(
 ) -> None:
     """List the lessons, newest first, with their ids and who undid them."""
     with Journal.read_only(file) as journal:
-        console_of(WIDE).print(render_lessons(journal, limit, of))
+        print_whole(console_of(), render_lessons(journal, limit, of))

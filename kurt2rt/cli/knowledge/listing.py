@@ -4,10 +4,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.box import SIMPLE_HEAD
-from rich.table import Table
 
-from kurt2rt.cli.knowledge.shared import WIDE, say
+from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.printed import console_of
 from kurt2rt.exchange.given import COME_FROM
 from kurt2rt.knowledge.branching import whence_of
@@ -15,6 +13,7 @@ from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import read_taught
 from kurt2rt.knowledge.shown import plain
+from kurt2rt.text_table import TextTable, print_whole
 
 
 def list_files(
@@ -23,21 +22,23 @@ def list_files(
     """List the knowledge files of a folder: task, how much they know, and where it came from."""
     if not place.exists():
         raise KnowledgeError(f"{place}: is not there; give the folder that your knowledge files are in, or one of them")
-    table = Table(box=SIMPLE_HEAD)
+    table = TextTable()
     for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
-        table.add_column(heading, justify="right" if heading in ("RLAs", "lessons") else "left", overflow="fold")
+        table.add_column(heading, number=heading in ("RLAs", "lessons"), whole=heading in ("file", "newest (UTC)"))
+    unreadable: list[str] = []
     if place.is_dir():
         for path in sorted(place.rglob("*.knowledge")):
             try:
                 table.add_row(plain(str(path)), *map(plain, _row(path)))
             except KnowledgeError as error:
-                table.add_row(plain(str(path)), plain(f"cannot be read: {error}"))
+                unreadable.append(f"cannot be read: {error}")
     else:
         table.add_row(plain(str(place)), *map(plain, _row(place)))
-    if not table.row_count:
+    if table.row_count:
+        print_whole(console_of(), table)
+    elif not unreadable:
         say(f"{place}: holds no knowledge file (*.knowledge)")
-        return
-    console_of(WIDE).print(table)
+    print_whole(console_of(), *map(plain, unreadable))
 
 
 def _row(path: Path) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from kurt2rt.cli.printed import console_of
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show import render_knowledge
 from kurt2rt.knowledge.show_rla import render_rla
+from kurt2rt.text_table import print_whole
 
 
 def show(
@@ -20,8 +21,8 @@ def show(
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
-        console = console_of(WIDE)
+        console = console_of()
         if rla is not None:
-            console.print(render_rla(journal, rla, limit))
+            print_whole(console, render_rla(journal, rla, limit))
             return
-        console.print(render_knowledge(journal, limit, wide=console.width >= WIDE))
+        print_whole(console, render_knowledge(journal, limit, wide=console.width >= WIDE))

@@ -1,12 +1,11 @@
 """A table as it is read, on the terminal and in the report."""
 
 from dataclasses import dataclass
-from typing import Literal
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
-from rich.table import Table
 from rich.text import Text
+
+from kurt2rt.text_table import TextTable
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +23,9 @@ class Sheet:
 
 def as_rich(sheet: Sheet) -> RenderableType:
     """For the terminal. Plain text: what is missed is said in a word, not in a colour."""
-    table = Table(box=SIMPLE_HEAD, padding=(0, 1, 0, 0), show_edge=False)
+    table = TextTable(title=sheet.title)
     for place, heading in enumerate(sheet.columns):
-        is_name = place < sheet.words <= 2
-        justify: Literal["left", "right"] = "left" if place < sheet.words else "right"
-        table.add_column(heading, justify=justify, overflow="fold", no_wrap=is_name)
+        table.add_column(heading, number=place >= sheet.words, whole=place < sheet.words <= 2)
     for row in sheet.rows:
-        table.add_row(*map(Text, row))
-    # Not the table's own title and caption, which a narrow table would wrap.
-    return Group(Text(f"\n{sheet.title}", "bold"), table, *([Text(sheet.note)] if sheet.note else ()))
+        table.add_row(*row)
+    return Group(table, *([Text(sheet.note)] if sheet.note else ()))

@@ -1,0 +1,196 @@
+"""Tables for a terminal that break no word: if a table is too wide, each row becomes a block of name: value lines."""
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from rich.cells import cell_len
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.measure import Measurement
+from rich.segment import Segment
+from rich.text import Text
+
+_GAP = 2
+_PROSE_CELLS = 20
+"""A column of words is not made narrower than this, unless all of its cells are."""
+_NAME_CELLS = 24
+"""Names of a block stand in a column at most so wide; the value of a longer one follows it."""
+_WORD = re.compile(r"\s*\S+\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of a table."""
+
+    heading: str
+    number: bool = False
+    """Right-aligned, never wrapped."""
+    whole: bool = False
+    """Left-aligned, never wrapped: names, ids, paths."""
+
+
+class TextTable:
+    """Rows of texts under headings.
+
+    A cell may hold line breaks. If a row takes several lines, empty lines part the rows. Without any heading there
+    is neither a line of headings nor an empty line.
+    """
+
+    def __init__(self, *words: str, title: str = "") -> None:
+        """`words`: headings of columns of words, in their order; `add_column` adds others."""
+        self.title = title
+        self._columns = [Column(heading) for heading in words]
+        self._rows: list[tuple[Text, ...]] = []
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows."""
+        return len(self._rows)
+
+    def add_column(self, heading: str, *, number: bool = False, whole: bool = False) -> None:
+        """Add a column on the right; `number` and `whole` as in `Column`."""
+        self._columns.append(Column(heading, number, whole))
+
+    def add_row(self, *cells: str | Text) -> None:
+        """Add a row at the bottom; strings are taken as they are. Raises ValueError unless each column has a cell."""
+        if len(cells) != len(self._columns):
+            raise ValueError(f"row has {len(cells)} cells, the table {len(self._columns)} columns")
+        self._rows.append(tuple(cell if isinstance(cell, Text) else Text(cell) for cell in cells))
+
+    def lines(self, width: int) -> Iterator[Text]:
+        """Yield lines of at most `width` cells, title first; a word that is longer than the line stands whole."""
+        if self.title:
+            yield from wrapped(Text(self.title, "bold"), width)
+        widths = self._widths(width)
+        yield from self._blocks(width) if widths is None else self._table(widths)
+
+    def _widths(self, width: int) -> list[int] | None:
+        """Return the width of each column; None where the table does not fit into `width`."""
+        cells = [[row[place] for row in self._rows] for place in range(len(self._columns))]
+        wanted = [
+            _longest_line([Text(column.heading), *each]) for column, each in zip(self._columns, cells, strict=True)
+        ]
+        widths = [_narrowest(column, each) for column, each in zip(self._columns, cells, strict=True)]
+        free = width - sum(widths) - _GAP * (len(widths) - 1)
+        if free < 0:
+            return None
+        while free > 0 and (narrow := [place for place, each in enumerate(widths) if each < wanted[place]]):
+            widths[max(narrow, key=lambda place: wanted[place] / widths[place])] += 1
+            free -= 1
+        return widths
+
+    def _table(self, widths: Sequence[int]) -> Iterator[Text]:
+        headed = any(column.heading for column in self._columns)
+        if headed:
+            yield from self._row([Text(column.heading, "bold") for column in self._columns], widths)
+            yield Text("─" * (sum(widths) + _GAP * (len(widths) - 1)))
+        rows = [list(self._row(row, widths)) for row in self._rows]
+        apart = headed and any(len(lines) > 1 for lines in rows)
+        for number, lines in enumerate(rows):
+            if number and apart:
+                yield Text()
+            yield from lines
+
+    def _row(self, cells: Sequence[Text], widths: Sequence[int]) -> Iterator[Text]:
+        columns = [wrapped(cell, width) for cell, width in zip(cells, widths, strict=True)]
+        for pieces in itertools.zip_longest(*columns, fillvalue=Text()):
+            line = Text()
+            for column, piece, width in zip(self._columns, pieces, widths, strict=True):
+                padding = " " * (width - cell_len(piece.plain))
+                line = line.append_text(Text(padding) + piece if column.number else piece + Text(padding))
+                line.append(" " * _GAP)
+            line.rstrip()
+            yield line
+
+    def _blocks(self, width: int) -> Iterator[Text]:
+        names = [f"{column.heading}: " if column.heading else "" for column in self._columns]
+        indent = max((cell_len(name) for name in names if cell_len(name) <= _NAME_CELLS), default=0)
+        for number, row in enumerate(self._rows):
+            if number:
+                yield Text()
+            for name, cell in zip(names, row, strict=True):
+                if cell.plain.strip():
+                    yield from _named(name, cell, indent, width)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        for line in self.lines(options.max_width):
+            yield from line.render(console)
+            yield Segment.line()
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        widest = max((cell_len(line.plain) for line in self.lines(options.max_width)), default=0)
+        return Measurement(widest, widest)
+
+
+def wrapped(text: Text, width: int) -> list[Text]:
+    """Break a text at spaces into lines of at most `width` cells; a longer word has a line of its own."""
+    lines: list[Text] = []
+    for line in text.split("\n", allow_blank=True):
+        breaks, used = [], 0
+        for word in _WORD.finditer(line.plain):
+            if used and used + cell_len(word[0].rstrip()) > width:
+                breaks.append(word.start())
+                used = 0
+            used += cell_len(word[0])
+        pieces = line.divide(breaks)
+        for piece in pieces:
+            piece.rstrip()
+        lines += pieces
+    return lines
+
+
+def print_whole(console: Console, *parts: RenderableType) -> None:
+    """Print tables and paragraphs and break no word; an empty line parts a table from what is above and below it.
+
+    Raises TypeError for a part that is neither a table nor a text.
+    """
+    below_table, at_top = False, True
+    for part in _flattened(parts):
+        is_table = isinstance(part, TextTable)
+        lines = list(part.lines(console.width)) if isinstance(part, TextTable) else wrapped(part, console.width)
+        if not at_top and (is_table or below_table) and lines and lines[0].plain:
+            console.print()
+        for line in lines:
+            console.print(line, soft_wrap=True, highlight=False)
+        below_table, at_top = is_table, bool(lines) and not lines[-1].plain
+
+
+def _flattened(parts: Iterable[RenderableType]) -> Iterator[TextTable | Text]:
+    for part in parts:
+        if isinstance(part, Group):
+            yield from _flattened(part.renderables)
+        elif isinstance(part, TextTable | Text):
+            yield part
+        elif isinstance(part, str):
+            yield Text(part)
+        else:
+            raise TypeError(f"neither a table nor a text: {part!r}")
+
+
+def _named(name: str, cell: Text, indent: int, width: int) -> Iterator[Text]:
+    """Yield the lines of one cell of a block, below each other where the value has no room beside its name."""
+    room = width - indent
+    beside = cell_len(name) <= indent and _longest_word(cell) <= room
+    if not beside:
+        indent = min(indent, _GAP)
+        if name:
+            yield from wrapped(Text(name.rstrip(), "bold"), width)
+    for number, piece in enumerate(wrapped(cell, width - indent)):
+        begin = Text(name, "bold") if beside and not number else Text()
+        yield begin + Text(" " * (indent - cell_len(begin.plain))) + piece
+
+
+def _narrowest(column: Column, cells: Sequence[Text]) -> int:
+    heading = _longest_word(Text(column.heading))
+    if column.number or column.whole:
+        return max(heading, _longest_line(cells))
+    return max(heading, min(_longest_line(cells), _PROSE_CELLS), *map(_longest_word, cells), 0)
+
+
+def _longest_line(texts: Iterable[Text]) -> int:
+    return max((cell_len(line) for text in texts for line in text.plain.split("\n")), default=0)
+
+
+def _longest_word(text: Text) -> int:
+    return max((cell_len(word) for word in text.plain.split()), default=0)

@@ -1,0 +1,128 @@
+"""At 80 columns no report breaks a word: all words of the wide report stand whole in the narrow one."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rich.cells import cell_len
+from rich.console import Console, RenderableType
+
+from kurt2rt.bench.report import print_report as print_bench
+from kurt2rt.cli.status import as_rich as health_as_rich
+from kurt2rt.commission.checklist import STEPS
+from kurt2rt.commission.progress import Progress
+from kurt2rt.commission.report import print_report as print_commissioning
+from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.report import print_report as print_doctor
+from kurt2rt.experiments.errands.tables import sheets as errand_sheets
+from kurt2rt.experiments.paper.tables import asked_sheet, drive_sheet, exam_sheet, knowledge_sheet
+from kurt2rt.experiments.phases.tables import sheets as phases_sheets
+from kurt2rt.experiments.report import render_curriculum, render_seeds
+from kurt2rt.experiments.route.tables import sheets as route_sheets
+from kurt2rt.experiments.shown.sheet import as_rich
+from kurt2rt.experiments.surprise.study import sheet_of
+from kurt2rt.soak.report import print_report as print_soak
+from kurt2rt.text_table import print_whole
+from tests.bench.test_report import MACHINE, RESULTS
+from tests.cli.helpers import CommandLine
+from tests.experiments.errands.test_goals import settings
+from tests.experiments.errands.test_tables import GOOD
+from tests.experiments.errands.test_tables import robot as errands_robot
+from tests.experiments.helpers import short_task
+from tests.experiments.paper import outcomes as paper
+from tests.experiments.phases.outcomes import study as phases_study
+from tests.experiments.results import curriculum_result, exam_result
+from tests.experiments.route.outcomes import drive as route_drive
+from tests.experiments.route.outcomes import outcome as route_outcome
+from tests.experiments.route.test_tables import study as route_study
+from tests.experiments.surprise.test_surprise import QUIET
+from tests.health.reports import ILL
+from tests.replay.stored_runs import STORED
+from tests.soak.test_checks import RESULT as SOAKED
+
+WALLS = str(STORED / "walls.mcap")
+DRIVES = [paper.robot(seed, 92, paper.drive("rooms-9007"), paper.drive("manhattan")) for seed in (100, 101)]
+FOUND = [
+    Finding("real-time priority", Status.WARNING, "SCHED_FIFO is not permitted to this user; " * 3, "do", needed=False),
+    Finding("disk", Status.OK, "/var/lib/kurt2rt/knowledge/of/this/robot: 4.1 ms median", needed=True),
+]
+
+Print = Callable[[Console], None]
+
+
+def printing(*parts: RenderableType) -> Print:
+    return lambda console: print_whole(console, *parts)
+
+
+REPORTS: dict[str, Print] = {
+    "bench": lambda console: print_bench(RESULTS, MACHINE, console),
+    "doctor": lambda console: print_doctor(FOUND, console),
+    "soak": lambda console: print_soak(SOAKED, console),
+    "commission": lambda console: print_commissioning(Progress(name="x", base="kurt2", bus="can0"), STEPS, console),
+    "status": printing(health_as_rich(ILL)),
+    "exam": printing(render_curriculum(curriculum_result(7, 88, exam_result("rooms-9007", stuck=True)), short_task())),
+    "lesson --seeds": printing(
+        render_seeds([curriculum_result(100, 80, exam_result("a"), exam_result("manhattan"))], short_task())
+    ),
+    "lesson errands": printing(*map(as_rich, errand_sheets([errands_robot(100, GOOD)], settings()))),
+    "lesson route": printing(
+        *map(as_rich, route_sheets(route_study([route_outcome(100, route_drive()), route_outcome(101, route_drive())])))
+    ),
+    "phases": printing(*map(as_rich, phases_sheets(phases_study(), ["Too few."]))),
+    "surprise": printing(as_rich(sheet_of([[QUIET]]))),
+    "paper": printing(
+        *(
+            as_rich(of([paper.summary_of("streets", DRIVES)], "streets"))
+            for of in (asked_sheet, knowledge_sheet, exam_sheet, drive_sheet)
+        )
+    ),
+}
+
+
+def require_whole(narrow: str, wide: str) -> None:
+    """Every word of `wide` stands in `narrow`, and no line is longer than 80 cells unless it is one word."""
+    shown = set(narrow.replace(": ", " ").split()) | set(narrow.split())
+    lines = {word for word in wide.split() if set(word) == {"─"}}
+    assert set(wide.split()) - lines - shown == set()
+    for line in narrow.splitlines():
+        assert cell_len(line) <= 80 or len(line.split()) == 1, line
+
+
+@pytest.mark.parametrize("report", REPORTS.values(), ids=REPORTS)
+def test_reports_break_no_word_at_80_columns(report: Print) -> None:
+    texts = []
+    for width in (80, 100_000):
+        out = io.StringIO()
+        report(Console(file=out, width=width))
+        texts.append(out.getvalue())
+    require_whole(*texts)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("knowledge", "list", "."),
+        ("knowledge", "lessons", "taught.knowledge"),
+        ("knowledge", "show", "taught.knowledge", "--rla", "1"),
+        ("knowledge", "diff", "taught.knowledge", "taught.knowledge"),
+        ("pair", "--list"),
+        ("why", WALLS, "--to", "30"),
+        ("why", WALLS, "--at", "1"),
+        ("faults", "--target", "tick", "--kind", "stuck", "--kind", "intermittent"),
+    ],
+    ids=" ".join,
+)
+def test_commands_break_no_word_at_80_columns(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, lessons: Path, words: tuple[str, ...]
+) -> None:
+    (tmp_path / "taught.knowledge").write_bytes(lessons.read_bytes())
+    folder = tmp_path / "a_folder_with_a_rather_long_name" / "and_another_one_that_is_as_long"
+    folder.mkdir(parents=True)
+    assert kurt2rt("knowledge", "branch", "taught.knowledge", folder / "branch.knowledge").exit_code == 0
+    kurt2rt("pair", "a-device-with-a-long-nam")
+    wide = kurt2rt(*words)
+    monkeypatch.setenv("COLUMNS", "80")
+    narrow = kurt2rt(*words)
+    assert (narrow.exit_code, wide.exit_code) == (0, 0), wide.err
+    require_whole(narrow.out, wide.out)
