@@ -20,7 +20,7 @@ def test_the_job_stands_before_what_is_wrong(
     def command_line(_words: object) -> object:
         raise group
 
-    monkeypatch.setattr(main, "command_line", command_line)
+    monkeypatch.setattr("kurt2rt.cli.command_line.command_line", command_line)
     with pytest.raises(SystemExit, match="2"):
         main.main()
     assert capsys.readouterr().err == "kurt2rt: circle, seed 3: the disk is full\n"
@@ -35,7 +35,7 @@ def test_what_ended_several_tasks_is_said_once_each(
     def command_line(_words: object) -> object:
         raise group
 
-    monkeypatch.setattr(main, "command_line", command_line)
+    monkeypatch.setattr("kurt2rt.cli.command_line.command_line", command_line)
     with pytest.raises(SystemExit, match="2"):
         main.main()
     told = capsys.readouterr().err
