@@ -14,6 +14,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.requests import BOOT_BYTES
+from kurt2rt.channel.simulation import Simulation
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.ending import Ending
@@ -35,6 +36,7 @@ from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.systemd.heartbeat import Heartbeat
 from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.commands import Command
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.timing.quiet_gc import quiet_gc
@@ -44,6 +46,7 @@ from kurt2rt.upkeep import Upkeep
 
 _ENDS = "the service ends"
 _STARTED = "the robot program was started"
+_NEXT_RUN = "a new run was begun"
 _RECORDING_S = 2.0
 """For the disk to keep the end of the recording."""
 _JOURNAL_S = 10.0
@@ -64,6 +67,10 @@ class Openness:
     """Called when the channel is open."""
     exam: LiveExam | None = None
     """Of a robot that is simulated in this program."""
+    simulation: Simulation | None = None
+    """The same."""
+    begin_with: tuple[Command, ...] = ()
+    """What the first tick takes: who teaches on after the run before."""
 
 
 async def serve(
@@ -105,11 +112,13 @@ async def serve(
         opened = knowledge or go_on_teaching(path, settings, task)
         stamps = opened.stamps
         boot = secrets.token_bytes(BOOT_BYTES)
+        begin_with = () if openness is None else openness.begin_with
+        stopped_because = "" if not stopped else _NEXT_RUN if begin_with else _STARTED
         circumstances = Circumstances(
             boot.hex(),
             str(path),
             openness is not None,
-            _STARTED if stopped else "",
+            stopped_because,
             behaviour or "",
             tolerates_stalls=tolerates_stalls,
         )
@@ -131,7 +140,9 @@ async def serve(
                 tolerates_stalls=tolerates_stalls,
             )
             if stopped:
-                runtime.school.stop(_STARTED)
+                runtime.school.stop(stopped_because)
+            for command in begin_with:
+                runtime.inbox.put(command)
             watch = HealthWatch(runtime, writer, instruments or Instruments(), boot=boot.hex(), knowledge=path)
             status = StatusSocket(watch, socket_of(path))
             watch.include(says={"status": lambda: status.trouble})
@@ -206,6 +217,7 @@ async def _channel(
         boot=boot,
         health=lambda: watch.newest,
         exam=None if exam is None else lambda: exam.standing,
+        simulation=openness.simulation,
     )
     teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
     try:

@@ -23,6 +23,7 @@ class SimulatedGround:
         self._geometry = geometry
         self._simulation = simulation
         self._version = 0
+        self._start = robot.pose
 
     @property
     def lives(self) -> bool:
@@ -62,6 +63,12 @@ class SimulatedGround:
         if self._world.clearance_m(pose, self._geometry) == 0.0:
             raise ValueError("there is no room for the robot there")
         self._simulation.ask(lambda: self._robot.place(pose))
+
+    def put_robot_back(self) -> None:
+        """Put the robot down where the run began, wheels still. Raises ValueError."""
+        if self._world.clearance_m(self._start, self._geometry) == 0.0:
+            raise ValueError("a wall stands where the run began; move it")
+        self._simulation.ask(lambda: self._robot.place(self._start))
 
     def _stands_on_robot(self, world: WorldSettings, name: str) -> bool:
         # Only this one: a robot that leans against another wall must not nail down all of them.

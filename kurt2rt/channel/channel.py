@@ -14,6 +14,7 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.reception import Copies, Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
 from kurt2rt.channel.requests import BOOT_BYTES, VERSION
+from kurt2rt.channel.simulation import Simulation
 from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
@@ -48,6 +49,8 @@ class Surroundings:
     """The newest report; None before the first."""
     exam: Callable[[], ExamStanding] | None = None
     """How the exam stands; None where the robot is not examined."""
+    simulation: Simulation | None = None
+    """None where the simulator is not in this program."""
 
 
 class Channel:
@@ -143,6 +146,7 @@ async def open_channel(
         health=surroundings.health,
         why=explaining.tell,
         exam=surroundings.exam,
+        simulation=surroundings.simulation,
     )
     telling = Telling(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health

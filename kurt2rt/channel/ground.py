@@ -51,3 +51,7 @@ class Ground(Protocol):
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Put the robot down elsewhere. Raises ValueError in a sentence for the teacher."""
         ...
+
+    def put_robot_back(self) -> None:
+        """Put the robot down where the run began. Raises ValueError in a sentence for the teacher."""
+        ...

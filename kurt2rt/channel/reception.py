@@ -14,6 +14,7 @@ from kurt2rt.channel.requests import (
     MOST_SITUATIONS,
     PACKAGE,
     PART_BYTES,
+    BackToStartRequest,
     BehaviourRequest,
     CommandRequest,
     DriveRequest,
@@ -25,6 +26,7 @@ from kurt2rt.channel.requests import (
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
+    NextRunRequest,
     PlaceRequest,
     PursueRequest,
     Request,
@@ -33,6 +35,7 @@ from kurt2rt.channel.requests import (
     SeekLikeRequest,
     SeekRequest,
     SeekRlaRequest,
+    SimulationRequest,
     SituationsRequest,
     StopRequest,
     StreamRequest,
@@ -40,6 +43,7 @@ from kurt2rt.channel.requests import (
     WhyRequest,
     WorldRequest,
 )
+from kurt2rt.channel.simulation import SIMULATION, Simulation, TeacherNow
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
@@ -63,6 +67,8 @@ _SEEKING = (SeekRequest, SeekRlaRequest, SeekLikeRequest)
 _MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest, *_SEEKING)
 MOST_WHYS, WHY_EVERY_TICKS = 5, 10
 """An answer takes about a millisecond of the loop; a device says it again every 0.1 s until it is answered."""
+LAST_ANSWER_S = 0.3
+"""From the answer to the end of the run: for three copies of the request, which a device sends each 0.1 s."""
 LONGEST_WAIT_S = 3.0
 """Then a lesson that is not durable yet is answered as unsaved."""
 
@@ -117,11 +123,13 @@ class Reception:
         health: Callable[[], HealthReport | None] = lambda: None,
         why: Callable[[], dict[str, Any] | None] = lambda: None,
         exam: Callable[[], ExamStanding] | None = None,
+        simulation: Simulation | None = None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
         `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
-        `exam`: how the exam stands; None where the robot is not examined.
+        `exam`: how the exam stands; None where the robot is not examined. `simulation`: None where the simulator is not
+        in this program.
         """
         self._runtime = runtime
         self._boot = boot
@@ -133,6 +141,8 @@ class Reception:
         self._health = health
         self._why = why
         self._exam = exam
+        self._simulation = simulation
+        self._changing = False
         self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
         self._outcomes = Outcomes()
         self._newest: dict[str, Sender] = {}
@@ -174,6 +184,10 @@ class Reception:
                 return Reply(Verdict.DONE, {"why": self._why()})
             case WorldRequest():
                 return self._world()
+            case SimulationRequest():
+                if self._simulation is None:
+                    return _not_simulated()
+                return Reply(Verdict.DONE, {"simulation": SIMULATION.plain_of(await self._simulation.view())})
             case ExamStandingRequest():
                 if self._exam is None:
                     return _not_simulated()
@@ -232,6 +246,8 @@ class Reception:
     def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
         match request:
+            case NextRunRequest():
+                return self._begin_next_run(device, command_id, request)
             case ExamRequest():
                 return self._begin_exam(device, command_id)
             case SaveRequest() | ExportRequest():
@@ -241,7 +257,7 @@ class Reception:
                 self._outcomes.begin(command_id)
                 self._do_outside(self._copy(command_id, self._copying(request)))
                 return None
-            case MoveWallRequest() | PlaceRequest():
+            case MoveWallRequest() | PlaceRequest() | BackToStartRequest():
                 reply = self._change_world(device, request)
                 self._outcomes.begin(command_id).set_result(reply)
                 return None
@@ -274,6 +290,36 @@ class Reception:
             self._outcomes.settle(command_id, refusal("refused", text, self.tick))
         else:
             self._outcomes.settle(command_id, done(self.tick, "the exam has begun; the robot goes on meanwhile"))
+
+    def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest) -> Reply | None:
+        if self._simulation is None:
+            return _not_simulated()
+        refused = self._not_in_charge(device)
+        if refused is not None:
+            return refused
+        if self._changing:
+            return refusal("refused", "the next run is being prepared; wait for it", self.tick)
+        self._changing = True
+        self._outcomes.begin(command_id)
+        school = self._runtime.school
+        teacher = TeacherNow(device, int(school.phase), school.session)
+        self._do_outside(self._change_run(command_id, self._simulation, request, teacher))
+        return None
+
+    async def _change_run(
+        self, command_id: str, simulation: Simulation, request: NextRunRequest, teacher: TeacherNow
+    ) -> None:
+        try:
+            text = await simulation.prepare(request.world, request.task, request.fresh, teacher)
+        except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
+            text = str(error) if isinstance(error, ValueError) else f"the next run cannot begin: {error!r}"
+            self._outcomes.settle(command_id, refusal("refused", " ".join(text.split()), self.tick))
+            self._changing = False
+            return
+        self._outcomes.settle(command_id, done(self.tick, text))
+        # The answer, and copies of it that a bad link needs, go out before the channel of this run closes.
+        await asyncio.sleep(LAST_ANSWER_S)
+        self._runtime.scheduler.end()
 
     def _not_in_charge(self, device: str) -> Reply | None:
         """A refusal for a device that is not the robot's teacher."""
@@ -312,7 +358,7 @@ class Reception:
             reply = done(self.tick, text, name=copy.name, sha256=copy.sha256, size=copy.size_bytes)
             self._outcomes.settle(command_id, reply)
 
-    def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest) -> Reply:
+    def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest | BackToStartRequest) -> Reply:
         if self._ground is None:
             return _not_simulated()
         held = self._runtime.school.authority.held_by_another(device)
@@ -326,7 +372,10 @@ class Reception:
             stopped = self._runtime.school.stopped_since(request.seen)
             if stopped is not None:
                 return refusal("refused", stopped, self.tick)
-            self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
+            if isinstance(request, BackToStartRequest):
+                self._ground.put_robot_back()
+            else:
+                self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
             self._runtime.set_down()
         except ValueError as error:
             return refusal("refused", str(error), self.tick)

@@ -2,6 +2,7 @@
 
 import asyncio
 import gc
+import math
 import os
 import re
 import signal
@@ -12,6 +13,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
+from typing import TYPE_CHECKING
 
 import anyio
 from rich.console import Console
@@ -27,6 +29,7 @@ from kurt2rt.cli.status_line import doing, status_line, troubles
 from kurt2rt.ending import Ending, leave
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
+from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.live_exam import LiveExam
@@ -44,6 +47,9 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.question import Question, WayQuestion
 from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.upkeep import Upkeep
+
+if TYPE_CHECKING:
+    from kurt2rt.cli.simulated_runs import SimulatedRuns
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Of systemd's journal, by how the line looks on a screen."""
@@ -107,6 +113,9 @@ class RobotProgram:
         self._give_up = give_up
         self._again_s = again_s
         self._around = ExitStack()
+        self._of_run = ExitStack()
+        self._runs: SimulatedRuns | None = None
+        self._ends_at_s = math.inf
         self._log: CanLog | None = None
         self._opened: OpenedRobot | None = None
         self._knowledge: OpenedKnowledge | None = None
@@ -128,6 +137,7 @@ class RobotProgram:
             self._companions = around.enter_context(Companions(orders.settings, ending.patience_s, self._say))
             self._printer = around.enter_context(Printer(ending.patience_s))
             last = anyio.run(self._serve)
+            service = self._service
             ending.waits_for = "the robot's bus and its logs"
         ending.waits_for = "a thread that waits for the disk"
         # Else the interpreter walks all that there is once more, a third of a second, before the process ends.
@@ -138,6 +148,31 @@ class RobotProgram:
         self._tell(f"the robot stands{count}")
 
     async def _serve(self) -> Status | None:
+        """One run after the other: a teacher of a simulated robot may want another world, task or knowledge file."""
+        if self._orders.seconds is not None:
+            self._ends_at_s = time.monotonic() + self._orders.seconds
+        while True:
+            with ExitStack() as self._of_run:
+                last = await self._serve_run()
+            runs = self._runs
+            if runs is None or runs.next is None or self._upkeep.ending.asked:
+                return last
+            self._advance(runs)
+
+    def _advance(self, runs: "SimulatedRuns") -> None:
+        try:
+            told = runs.advance()
+            if told:
+                self._say(told)
+        except KnowledgeError as error:
+            self._say(f"the next run goes on in the same knowledge: {error}", "red")
+        run = runs.present
+        update = {"world": run.world, "task": run.task_name, "knowledge": str(run.knowledge)}
+        self._service = self._service.model_copy(update=update)
+        self._task, self._knowledge, self._opened = run.task, None, None
+        self._say(f"world {run.world}, task {run.task.name}, knowledge {run.knowledge}")
+
+    async def _serve_run(self) -> Status | None:
         orders, ending = self._orders, self._upkeep.ending
         self._upkeep.notifier.ready()
         if orders.as_service:
@@ -155,7 +190,20 @@ class RobotProgram:
         if self._service.real_time_priority:  # not before the second guard is there
             self._say(take_real_time_priority(self._service.real_time_priority, self._guards()))
         self._upkeep.notifier.ping()  # the next one comes from the first tick
-        openness = Openness(lambda: opened.robot.health.trouble, opened.ground, self._listening, self._exam(opened))
+        run = None
+        if opened.ground is not None:
+            self._runs = self._runs or self._simulated_runs()
+            run = self._runs.present
+        openness = Openness(
+            lambda: opened.robot.health.trouble,
+            opened.ground,
+            self._listening,
+            self._exam(opened),
+            self._runs,
+            () if run is None else run.begin_with,
+        )
+        goes_on = run is not None and run.teacher is not None
+        left_s = max(self._ends_at_s - time.monotonic(), self._robot.can.cycle_s)
         return await serve(
             opened.robot,
             self._robot,
@@ -163,9 +211,9 @@ class RobotProgram:
             self._task,
             Screen(status=self._show, question=self._question, settled=self._settled),
             openness=openness if orders.attended else None,
-            duration_s=orders.seconds,
-            stopped=orders.stopped,
-            behaviour=orders.behaviour,
+            duration_s=left_s if math.isfinite(left_s) else None,
+            stopped=orders.stopped or goes_on,
+            behaviour=None if goes_on else orders.behaviour,
             instruments=self._instruments(opened),
             upkeep=self._upkeep,
             knowledge=self._knowledge,
@@ -217,7 +265,7 @@ class RobotProgram:
         if self._log is None and orders.can_log is not None:
             self._log = self._around.enter_context(open_can_log(orders.can_log, orders.bus))
         opening = self._opening(self._robot, orders.bus, self._service.world, orders.seed, self._log, orders.wire)
-        self._opened = self._around.enter_context(opening)
+        self._opened = self._of_run.enter_context(opening)
 
     def _take_knowledge(self) -> None:
         path = Path(self._service.knowledge)
@@ -242,6 +290,10 @@ class RobotProgram:
 
     def _listening(self, channel: Channel) -> None:
         orders, port = self._orders, str(channel.endpoint.port)
+        # Of the next run too: the page looks for the robot there.
+        self._service = self._service.model_copy(update={"port": channel.endpoint.port})
+        if self._runs is not None and self._runs.present.teacher is not None:
+            return
         at = () if orders.page_port is None else ("--page-port", str(orders.page_port))
         self._say(f"teachers are listened to on UDP port {port}", "cyan")
         if orders.page:
@@ -280,7 +332,15 @@ class RobotProgram:
             # Without -P the present folder would be searched for modules.
             return (sys.executable, "-P", "-m", "kurt2rt.cli.exam_process", str(knowledge), str(picture), *words)
 
-        return self._around.enter_context(LiveExam(command))
+        return self._of_run.enter_context(LiveExam(command))
+
+    def _simulated_runs(self) -> "SimulatedRuns":
+        # Here, because a robot carries no simulator: the packages it needs are an extra.
+        from kurt2rt.cli.simulated_runs import SimulatedRun, SimulatedRuns
+
+        service = self._service
+        first = SimulatedRun(service.world, self._task, service.task, Path(service.knowledge))
+        return SimulatedRuns(self._robot, first, taught_by_script=self._orders.auto)
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
         orders, service = self._orders, self._service

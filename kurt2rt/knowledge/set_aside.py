@@ -5,10 +5,13 @@ from pathlib import Path
 from kurt2rt.knowledge import journal_file
 
 
-def set_aside(path: Path) -> None:
-    """Give what stands at `path` a name with a number of its own. Raises KnowledgeError while somebody writes it."""
+def set_aside(path: Path) -> Path | None:
+    """Give what stands at `path` a name with a number of its own, and return it; None where nothing stands.
+
+    Raises KnowledgeError while another program writes the file.
+    """
     if not path.exists():
-        return
+        return None
     with journal_file.lock_for_writing(path):
         number = 1
         while (kept := path.with_name(f"{path.name}.{number}")).exists():
@@ -18,3 +21,4 @@ def set_aside(path: Path) -> None:
         # After a crash the newest lessons stand in the log alone.
         if log.exists():
             log.rename(journal_file.log_of(kept))
+    return kept

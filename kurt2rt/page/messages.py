@@ -102,6 +102,8 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "export": {},
     "examine": {},
     "move": {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
+    "put_back": {},
+    "next_run": {"world": OrNone(_NAME), "task": OrNone(_NAME), "fresh": Flag()},
     "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Real(7.0, "rad")},
 }
 """Orders by name, and the arguments of each."""

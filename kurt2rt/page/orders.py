@@ -6,7 +6,7 @@ from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer
 
-_MOVING = ("take", "place", "pursue", "seek", "stop_seeking")
+_MOVING = ("take", "place", "put_back", "pursue", "seek", "stop_seeking")
 _MOVING_S = 1.0
 _OTHERS_S = 3.0
 
@@ -65,6 +65,10 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.examine()
         case "move":
             return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
+        case "put_back":
+            return await robot.put_back()
+        case "next_run":
+            return await robot.next_run(given["world"], given["task"], fresh=given["fresh"])
         case "place":
             return await robot.place(given["x_m"], given["y_m"], given["heading_rad"])
     raise AssertionError(order.name)

@@ -9,7 +9,15 @@ import anyio.abc
 from kurt2rt.channel.state import State
 from kurt2rt.page.mirror import Mirror
 from kurt2rt.page.robot_link import RobotLink
-from kurt2rt.page.views import exam_view, health_view, hello_view, lessons_view, situations_view, world_view
+from kurt2rt.page.views import (
+    exam_view,
+    health_view,
+    hello_view,
+    lessons_view,
+    simulation_view,
+    situations_view,
+    world_view,
+)
 from kurt2rt.perception.sensor_words import NO_WORDS
 from kurt2rt.teaching.answer import NoAnswerError
 
@@ -41,6 +49,7 @@ class RarelyTold:
             "situations": self._fetch_situations,
             "health": self._fetch_health,
             "exam": self._fetch_exam,
+            "simulation": self._fetch_simulation,
         }
         self._mirrors = {about: Mirror(fetch, partial(_tell, tell, about)) for about, fetch in fetches.items()}
 
@@ -54,6 +63,7 @@ class RarelyTold:
         """A picture came; `watched`: somebody has a page open."""
         self._mirrors["hello"].want(state.boot)
         if state.place is not None:
+            self._mirrors["simulation"].want(state.boot)
             looks = state.tick // _EXAM_TICKS if self._exam_runs else 0
             self._mirrors["exam"].want((state.boot, self._carried_out(), looks))
             self._mirrors["world"].want((state.boot, state.place.world_version))
@@ -99,6 +109,12 @@ class RarelyTold:
             raise NoAnswerError("the robot says where it is in a world, and cannot be examined")
         self._exam_runs = standing.running
         return exam_view(standing)
+
+    async def _fetch_simulation(self) -> dict[str, Any]:
+        simulation = await self._robot.simulation()
+        if simulation is None:
+            raise NoAnswerError("the robot says where it is in a world, and its simulation is elsewhere")
+        return simulation_view(simulation)
 
     async def _fetch_health(self) -> dict[str, Any]:
         return health_view(await self._robot.health())

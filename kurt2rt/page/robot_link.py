@@ -5,6 +5,7 @@ from typing import Protocol
 
 from kurt2rt.channel.exam_standing import ExamStanding
 from kurt2rt.channel.requests import TABLE
+from kurt2rt.channel.simulation import SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
@@ -183,4 +184,16 @@ class RobotLink(Protocol):
 
     async def place(self, x: float, y: float, heading: float) -> Answer:
         """Put the simulated robot down elsewhere, in metres and radians."""
+        ...
+
+    async def put_back(self) -> Answer:
+        """Put the simulated robot down where its run began."""
+        ...
+
+    async def simulation(self) -> SimulationView | None:
+        """What is simulated; None where the robot is not simulated in its own program."""
+        ...
+
+    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
+        """End the present run of a simulated robot and begin the next one."""
         ...

@@ -6,6 +6,7 @@ from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
+from kurt2rt.channel.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, rows_of, trouble_in
@@ -149,6 +150,11 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
 def exam_view(standing: ExamStanding) -> dict[str, Any]:
     """How the exam stands."""
     return {"kind": "exam", **EXAM.plain_of(standing)}
+
+
+def simulation_view(simulation: SimulationView) -> dict[str, Any]:
+    """What is simulated, and what else could be."""
+    return {"kind": "simulation", **SIMULATION.plain_of(simulation)}
 
 
 def plain(value: Any) -> Any:

@@ -14,13 +14,22 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.channel.requests import MoveWallRequest, PlaceRequest
+from kurt2rt.channel.requests import (
+    BackToStartRequest,
+    MoveWallRequest,
+    NextRunRequest,
+    PlaceRequest,
+    SimulationRequest,
+)
+from kurt2rt.channel.simulation import SIMULATION, SimulationView
 from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.asking import facts_of
 from kurt2rt.teaching.charge import Charge
 from kurt2rt.teaching.connection import open_connection
 from kurt2rt.teaching.goals import Goals
 from kurt2rt.teaching.lessons import Lessons
 from kurt2rt.teaching.moving import Moving
+from kurt2rt.teaching.oscore_requests import Response
 
 ANSWER_WITHIN_S = 3.5
 
@@ -81,3 +90,23 @@ class TeacherClient(Lessons, Goals, Charge, Moving):
     async def place(self, x: float, y: float, heading: float) -> Answer:
         """Put the robot down elsewhere."""
         return await self._asking.command(PlaceRequest, x_m=x, y_m=y, heading_rad=heading)
+
+    async def put_back(self) -> Answer:
+        """Put the robot down where its run began."""
+        return await self._asking.command(BackToStartRequest)
+
+    async def simulation(self) -> SimulationView | None:
+        """Return what is simulated; None for a robot that is not simulated in its own program."""
+
+        def read(response: Response) -> SimulationView | None:
+            return None if response.code.startswith("4.04") else SIMULATION.read(facts_of(response).get("simulation"))
+
+        return await self._asking.told(SimulationRequest(), read)
+
+    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
+        """End the present run and begin the next one, where the robot stands until `resume`.
+
+        `world`, `task`: None: the present ones. `fresh`: with a knowledge file that holds nothing; the present one is
+        kept under another name.
+        """
+        return await self._asking.command(NextRunRequest, world=world, task=task, fresh=fresh)

@@ -21,6 +21,7 @@ from kurt2rt.channel.requests import (
     StreamRequest,
     WatchRequest,
 )
+from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
 from kurt2rt.channel.site import Keys, RobotSite
 from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.explain.live import Explaining
@@ -98,6 +99,22 @@ class Shelf:
         return SavedCopy(name, "ab" * 32, 4096)
 
 
+class Runs:
+    """Runs of a simulated robot that are only noted (kurt2rt.channel.simulation.Simulation)."""
+
+    def __init__(self) -> None:
+        self.prepared: list[tuple[object, ...]] = []
+
+    async def view(self) -> SimulationView:
+        return SimulationView("a", "wall_following", ("a", "b"), (TaskName("eight", "Teach it to drive an eight"),))
+
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+        if world == "nowhere":
+            raise ValueError("world: 'nowhere' is not known")
+        self.prepared.append((world, task, fresh, teacher))
+        return "the robot stands until Go"
+
+
 class Desk:
     """One robot that needs a teacher, and everything of the channel behind the keys."""
 
@@ -118,6 +135,7 @@ class Desk:
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""
         self.exam = NO_EXAM
+        self.simulation = Runs()
         self.health: HealthReport | None = None
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
@@ -138,6 +156,7 @@ class Desk:
             longest_wait_s=longest_wait_s,
             health=lambda: self.health,
             why=explaining.tell,
+            simulation=None if ground is None else self.simulation,
             exam=None if ground is None else lambda: self.exam,
         )
         safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)

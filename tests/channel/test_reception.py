@@ -12,6 +12,7 @@ from kurt2rt.channel.requests import (
     PART_BYTES,
     AnswerRequest,
     AppraiseRequest,
+    BackToStartRequest,
     BeAtRequest,
     BehaviourRequest,
     CommandRequest,
@@ -26,6 +27,7 @@ from kurt2rt.channel.requests import (
     LessonsRequest,
     MoveWallRequest,
     NameRequest,
+    NextRunRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
@@ -38,6 +40,7 @@ from kurt2rt.channel.requests import (
     SeekRequest,
     SeekRlaRequest,
     SessionRequest,
+    SimulationRequest,
     SituationsRequest,
     StopRequest,
     StreamRequest,
@@ -46,6 +49,7 @@ from kurt2rt.channel.requests import (
     WhyRequest,
     WorldRequest,
 )
+from kurt2rt.channel.simulation import SIMULATION, TeacherNow
 from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.explain.plain import facts_of_plain
@@ -85,6 +89,8 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     MoveWallRequest: ("box", 0.1, 0.0),
     PlaceRequest: (1.0, 1.0, 0.0),
     ExamRequest: (),
+    NextRunRequest: (None, None, False),
+    BackToStartRequest: (),
 }
 COMMANDS = {**MOVING, **LASTING}
 READING = {
@@ -93,6 +99,7 @@ READING = {
     HealthRequest,
     HelloRequest,
     LessonsRequest,
+    SimulationRequest,
     SituationsRequest,
     WhyRequest,
     WorldRequest,
@@ -520,6 +527,47 @@ async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
     for request in (desk.command(ExamRequest), ExamStandingRequest()):
         assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
     assert desk.shelf.examined == 0
+
+
+# The simulation.
+
+
+async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kurt2rt.channel.reception.LAST_ANSWER_S", 0.0)
+    desk = Desk(ground=Yard())
+    ended: list[bool] = []
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
+    assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(SessionRequest, "noon"))
+    assert why(await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))) == "refused"
+    assert not ended
+    request = desk.command(NextRunRequest, "b", "eight", True)
+    reply = await desk.ask(request)
+    assert (reply.verdict, await desk.ask(request)) == (Verdict.DONE, reply)
+    assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
+    assert ended == [True]
+    assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
+    told = (await desk.ask(SimulationRequest())).body["simulation"]
+    assert SIMULATION.read(decode_answer(encode_answer(told))) == await desk.simulation.view()
+
+
+async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    await desk.ask(desk.command(TakeRequest))
+    assert (await desk.ask(desk.command(BackToStartRequest))).verdict is Verdict.DONE
+    request = desk.command(BackToStartRequest)
+    await desk.ask(desk.stop())
+    assert why(await desk.ask(request)) == "refused"
+    assert yard.changes == [("start",)]
+
+
+async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest))
+    requests = (desk.command(NextRunRequest, None, None, True), desk.command(BackToStartRequest), SimulationRequest())
+    for request in requests:
+        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
 
 
 # Looking.

@@ -11,6 +11,7 @@ import anyio.lowlevel
 from hal.robot_settings import load_robot
 from kurt2rt.channel.exam_standing import NO_EXAM, ExamStanding
 from kurt2rt.channel.requests import TABLE, VERSION
+from kurt2rt.channel.simulation import SimulationView, TaskName
 from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.health.report import HealthReport
@@ -77,6 +78,12 @@ A_HELLO = Hello(
     phases=("supervised", "corrections", "reinforcement", "critic", "autonomous"),
 )
 A_WORLD = World(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
+A_SIMULATION = SimulationView(
+    "a",
+    "wall_following",
+    ("a", "b", "c", "manhattan"),
+    (TaskName("eight", "Teach it to drive an eight round the two columns"), TaskName("wall_following", "Teach it so")),
+)
 A_LESSON = LessonLine("phone-0a", "RLA 1: forward", "phone", 1, 90, "2026-11-21T12:04:00Z", False)
 
 
@@ -95,6 +102,7 @@ class FakeRobot:
     state: State | None = None
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
+    simulated: SimulationView = A_SIMULATION
     examined: ExamStanding = NO_EXAM
     files: dict[str, bytes] = field(default_factory=dict)
     answers_with: dict[str, object] = field(default_factory=dict)
@@ -250,6 +258,18 @@ class FakeRobot:
 
     async def place(self, x: float, y: float, heading: float) -> Answer:
         return await self._answer("place", x, y, heading)
+
+    async def put_back(self) -> Answer:
+        return await self._answer("put_back")
+
+    async def simulation(self) -> SimulationView | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.simulated
+
+    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
+        return await self._answer("next_run", world, task, fresh)
 
     async def _answer(self, *told: Any) -> Answer:
         self._hear(told)

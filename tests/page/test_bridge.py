@@ -109,7 +109,16 @@ async def test_a_page_is_told_what_robot_this_is_and_sees_it() -> None:
         await page.see(place=A_PLACE)
         await settled()
         page.read()
-        assert {each["kind"] for each in page.heard} == {"page", "hello", "world", "lessons", "health", "exam", "state"}
+        assert {each["kind"] for each in page.heard} == {
+            "page",
+            "hello",
+            "world",
+            "lessons",
+            "health",
+            "exam",
+            "simulation",
+            "state",
+        }
         assert page.last("page") == {"kind": "page", "device": "phone", "robot": "127.0.0.1:5683", "seat": "here"}
         assert page.last("hello")["robot"] == "kurt2-indoor"
         assert page.last("lessons")["lessons"][0]["text"] == "RLA 1: forward"
@@ -482,7 +491,11 @@ ORDERS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("save", {"label": ""}, ("save", "")),
     ("export", {}, ("export", "package")),
     ("examine", {}, ("examine",)),
+    ("put_back", {}, ("put_back",)),
+    ("next_run", {"world": "b", "task": None, "fresh": False}, ("next_run", "b", None, False)),
     ("examine", {}, ("examine",)),
+    ("put_back", {}, ("put_back",)),
+    ("next_run", {"world": "b", "task": None, "fresh": False}, ("next_run", "b", None, False)),
     ("move", {"name": "tongue", "dx_m": 0.1, "dy_m": -0.2}, ("move_wall", "tongue", 0.1, -0.2)),
     ("place", {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}, ("place", 1.0, 2.0, 0.5)),
 ]

@@ -442,6 +442,9 @@ class Elsewhere:
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
         raise AssertionError(x_m, y_m, heading_rad)
 
+    def put_robot_back(self) -> None:
+        raise AssertionError
+
 
 def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, ground=Elsewhere())

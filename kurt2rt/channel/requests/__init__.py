@@ -49,6 +49,7 @@ from kurt2rt.channel.requests.reading import (
     WhyRequest,
 )
 from kurt2rt.channel.requests.request import CommandRequest, Request, StreamRequest
+from kurt2rt.channel.requests.simulation import BackToStartRequest, NextRunRequest, SimulationRequest
 from kurt2rt.channel.requests.world import MoveWallRequest, PlaceRequest, WorldRequest
 from kurt2rt.channel.schema import Check
 
@@ -70,6 +71,7 @@ __all__ = [
     "VERSION",
     "AnswerRequest",
     "AppraiseRequest",
+    "BackToStartRequest",
     "BeAtRequest",
     "BehaviourRequest",
     "CommandRequest",
@@ -85,6 +87,7 @@ __all__ = [
     "LessonsRequest",
     "MoveWallRequest",
     "NameRequest",
+    "NextRunRequest",
     "PhaseRequest",
     "PlaceRequest",
     "PursueRequest",
@@ -98,6 +101,7 @@ __all__ = [
     "SeekRequest",
     "SeekRlaRequest",
     "SessionRequest",
+    "SimulationRequest",
     "SituationsRequest",
     "StopRequest",
     "StreamRequest",
@@ -145,6 +149,9 @@ REQUESTS: tuple[type[Request], ...] = (
     WorldRequest,
     MoveWallRequest,
     PlaceRequest,
+    BackToStartRequest,
+    SimulationRequest,
+    NextRunRequest,
 )
 
 

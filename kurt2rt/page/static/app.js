@@ -17,6 +17,7 @@ import { BASIC, MID } from "./mid.js";
 import { Organising } from "./organising.js";
 import { showProgress } from "./progress.js";
 import { drawRobot } from "./robot_view.js";
+import { Simulation } from "./simulation.js";
 import { Drive, stick } from "./stick.js";
 import { Ways } from "./ways.js";
 import { setText, Why } from "./why.js";
@@ -44,6 +45,7 @@ const explanation = new Explanation(link);
 const organising = new Organising(tell);
 new Files(tell);
 const exam = new Exam(tell);
+const simulation = new Simulation(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
 
 let hello = null;
@@ -212,6 +214,7 @@ link.addEventListener("hello", ({ detail }) => {
   world.greet(hello);
   exam.build(hello);
   setText($("what"), hello.what || `Task ${words(hello.task)}`);
+  simulation.build(hello);
   setText($("robot-name"), `${hello.robot}, task ${hello.task}, at ${page.robot}`);
   setText($("keys-actions"), (hello.mid ? "the ways, or " : "") + hello.actions.slice(0, 9).map((name, i) => `${i + 1} ${words(name)}`).join(", "));
   $("view").hidden = !hello.simulated;
@@ -223,6 +226,7 @@ link.addEventListener("hello", ({ detail }) => {
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
+link.addEventListener("simulation", ({ detail }) => simulation.see(detail));
 link.addEventListener("exam", ({ detail }) => exam.see(detail));
 link.addEventListener("health", ({ detail }) => health.see(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));

@@ -1,0 +1,66 @@
+"""The simulation in the robot's own program, as its teacher sees it and sets it up; a real robot has none."""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+from kurt2rt.channel.maps import LINE, NAME, Form, MapOf
+from kurt2rt.channel.schema import ManyOf
+
+_MOST_NAMES = 64
+
+
+@dataclass(frozen=True, slots=True)
+class TaskName:
+    """A task that the robot can be taught."""
+
+    name: str
+    what: str
+    """In one sentence, for the teacher."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationView:
+    """What is simulated, and what else could be."""
+
+    world: str
+    """As it was chosen: `a`, `rooms-7`, a path."""
+    task: str
+    worlds: tuple[str, ...]
+    """Worlds by name; `rooms-N` and `streets-N` are made for any whole number N."""
+    tasks: tuple[TaskName, ...]
+
+
+SIMULATION = Form[SimulationView](
+    "the simulation",
+    MapOf(
+        SimulationView,
+        world=NAME,
+        task=NAME,
+        worlds=ManyOf(NAME, most=_MOST_NAMES),
+        tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
+    ),
+)
+
+
+class TeacherNow(NamedTuple):
+    """Who teaches, and how; the next run begins with it."""
+
+    device: str
+    phase: int
+    session: str | None
+
+
+class Simulation(Protocol):
+    """The runs of a robot that is simulated in its own program. Each has one world, one task, one knowledge file."""
+
+    async def view(self) -> SimulationView:
+        """What is simulated."""
+        ...
+
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+        """Look whether the next run can be so, and keep it until the present one ends; return what to tell the teacher.
+
+        `world`, `task`: None: as they are. `fresh`: with a knowledge file that holds nothing, the present one set
+        aside. Raises ValueError in one line.
+        """
+        ...

@@ -1,0 +1,117 @@
+"""Runs of the simulated robot, one after the other in one program: each with a world, a task and a knowledge file."""
+
+import re
+import secrets
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import anyio.to_thread
+
+from config import CONFIG_DIR
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.opening import go_on_teaching
+from kurt2rt.knowledge.set_aside import set_aside
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching.commands import BeginSession, Command, SetPhase, Take
+from simbridge.world_settings import load_world
+
+_GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
+"""A teacher chooses among names: a path would read any file of the robot's machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedRun:
+    """What one run is made of."""
+
+    world: str
+    task: TaskSettings
+    task_name: str
+    """As it was chosen: a name, or a path that the command line gave."""
+    knowledge: Path
+    fresh: bool = False
+    """Whether what stands at `knowledge` is set aside first."""
+    teacher: TeacherNow | None = None
+    """Who taught in the run before, and teaches on; None in the first run."""
+
+    @property
+    def begin_with(self) -> tuple[Command, ...]:
+        """What the first tick takes, so that the teacher need not take the robot again."""
+        if self.teacher is None:
+            return ()
+        device, phase, session = self.teacher
+
+        def identity() -> str:
+            return f"{device}-next-{secrets.token_hex(8)}"
+
+        commands: tuple[Command, ...] = (Take(identity(), device), SetPhase(identity(), device, Phase(phase), -1))
+        return commands if session is None else (*commands, BeginSession(identity(), device, session))
+
+
+class SimulatedRuns:
+    """The present run, and the next one once a teacher wants one (kurt2rt.channel.simulation.Simulation)."""
+
+    def __init__(self, robot: RobotSettings, first: SimulatedRun, *, taught_by_script: bool) -> None:
+        """`taught_by_script`: the scripted teacher teaches the first run's task in its world, so there is no next."""
+        self._robot = robot
+        self._taught_by_script = taught_by_script
+        self._files = {first.task_name: first.knowledge}
+        self._view: SimulationView | None = None
+        self.present = first
+        self.next: SimulatedRun | None = None
+
+    async def view(self) -> SimulationView:
+        """What is simulated, and what else could be."""
+        if self._view is None:
+            self._view = await anyio.to_thread.run_sync(self._look)
+        return self._view
+
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+        """Look whether the next run can be so, and keep it. Raises ValueError in one line."""
+        if self._taught_by_script:
+            raise ValueError("the scripted teacher teaches this run; start kurt2rt run without --auto")
+        view = await self.view()
+        if world is not None and world not in (*view.worlds, view.world) and not _GENERATED.fullmatch(world):
+            raise ValueError(f"world: {world!r} is not known; give one of {', '.join(view.worlds)}, rooms-N, streets-N")
+        if task is not None and task not in (view.task, *(each.name for each in view.tasks)):
+            raise ValueError(f"task: {task!r} is not known; give one of {', '.join(each.name for each in view.tasks)}")
+        try:
+            self.next = await anyio.to_thread.run_sync(self._prepare, world, task, fresh, teacher)
+        except (SettingsError, KnowledgeError) as error:
+            raise ValueError(str(error)) from error
+        return f"world {self.next.world}, task {self.next.task_name}: the robot stands until Go"
+
+    def advance(self) -> str:
+        """Make the next run the present one, before it begins; what to tell of its knowledge file, or nothing.
+
+        Raises KnowledgeError where the present knowledge cannot be set aside; then the next run goes on with it.
+        """
+        assert self.next is not None
+        self.present, self.next, self._view = self.next, None, None
+        self._files[self.present.task_name] = self.present.knowledge
+        if not self.present.fresh:
+            return ""
+        self.present = replace(self.present, fresh=False)
+        kept = set_aside(self.present.knowledge)
+        return "" if kept is None else f"the knowledge up to now is kept as {kept}"
+
+    def _prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> SimulatedRun:
+        present = self.present
+        name = task or present.task_name
+        settings = present.task if name == present.task_name else load_task(name)
+        where = world or (present.world if name == present.task_name else settings.teaching.world)
+        load_world(where, self._robot)
+        knowledge = self._files.get(name, present.knowledge.with_name(f"{settings.name}.knowledge"))
+        if knowledge != present.knowledge and knowledge.exists() and not fresh:
+            # Opened as the next run opens it: damage, another task's lessons or another program that writes it.
+            go_on_teaching(knowledge, self._robot, settings).journal.close()
+        return SimulatedRun(where, settings, name, knowledge, fresh, teacher)
+
+    def _look(self) -> SimulationView:
+        names = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
+        tasks = tuple(TaskName(name, load_task(name).sentence) for name in names)
+        worlds = tuple(sorted(path.stem for path in (CONFIG_DIR / "worlds").glob("*.yaml")))
+        return SimulationView(self.present.world, self.present.task_name, worlds, tasks)

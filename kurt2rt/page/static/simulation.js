@@ -1,0 +1,79 @@
+// The menu of a simulated robot: world, task, start again.
+
+import { words } from "./actions.js";
+import { twice } from "./lessons.js";
+import { setText } from "./why.js";
+
+const $ = (id) => document.getElementById(id);
+const GENERATED = ["rooms", "streets"]; // worlds that are made for any whole number
+const HIGHEST_NUMBER = 999999999;
+
+export class Simulation {
+  #tell;
+  #simulation = null;
+
+  // `tell` gives an order and resolves with its answer.
+  constructor(tell) {
+    this.#tell = tell;
+    for (const id of ["sim-world", "sim-number", "sim-task"]) $(id).addEventListener("input", () => this.#look());
+    $("sim-change").addEventListener("click", () => this.#change());
+    $("sim-back").addEventListener("click", () => tell("put_back", {}, "back to the start"));
+    const fresh = () => tell("next_run", { world: null, task: null, fresh: true }, "a new knowledge file");
+    twice($("sim-fresh"), "Sure? The old file is kept", fresh);
+  }
+
+  build(hello) {
+    $("simulation").hidden = !hello.simulated;
+  }
+
+  see(simulation) {
+    this.#simulation = simulation;
+    const { world, task } = simulation;
+    const [kind, number] = world.split("-");
+    const generated = GENERATED.includes(kind) && /^\d+$/.test(number ?? "");
+    const named = simulation.worlds.includes(world) || generated ? simulation.worlds : [world, ...simulation.worlds];
+    $("sim-world").replaceChildren(
+      ...named.map((name) => option(name, `World ${name.length === 1 ? name.toUpperCase() : words(name)}`)),
+      ...GENERATED.map((name) => option(name, `${name[0].toUpperCase()}${name.slice(1)} no.`)),
+    );
+    $("sim-world").value = generated ? kind : world;
+    if (generated) $("sim-number").value = number;
+    const tasks = simulation.tasks.map((each) => each.name);
+    const all = tasks.includes(task) ? tasks : [task, ...tasks];
+    $("sim-task").replaceChildren(...all.map((name) => option(name, words(name))));
+    $("sim-task").value = task;
+    this.#look();
+  }
+
+  get #world() {
+    const chosen = $("sim-world").value;
+    return GENERATED.includes(chosen) ? `${chosen}-${Number($("sim-number").value)}` : chosen;
+  }
+
+  #look() {
+    if (!this.#simulation) return;
+    const { world, task, tasks } = this.#simulation;
+    const generated = GENERATED.includes($("sim-world").value);
+    $("sim-number").hidden = !generated;
+    const number = Number($("sim-number").value);
+    const sound = !generated || ($("sim-number").value !== "" && Number.isInteger(number) && number >= 0 && number <= HIGHEST_NUMBER);
+    const chosen = $("sim-task").value;
+    setText($("sim-what"), tasks.find((each) => each.name === chosen)?.what ?? "");
+    $("sim-change").disabled = !sound || (this.#world === world && chosen === task);
+  }
+
+  #change() {
+    const { world, task } = this.#simulation;
+    const chosen = $("sim-task").value;
+    // A task brings its own world along, unless another one was chosen with it.
+    const args = { world: this.#world === world ? null : this.#world, task: chosen === task ? null : chosen, fresh: false };
+    this.#tell("next_run", args, "the next run");
+  }
+}
+
+function option(value, text) {
+  const made = document.createElement("option");
+  made.value = value;
+  made.textContent = text;
+  return made;
+}

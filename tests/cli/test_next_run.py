@@ -1,0 +1,117 @@
+"""Runs of the simulated robot, one after the other in one program."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.channel.simulation import TeacherNow
+from kurt2rt.channel.state import State
+from kurt2rt.cli.simulated_runs import SimulatedRun, SimulatedRuns
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.rla.rla import Phase
+from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.commands import BeginSession, SetPhase, Take
+from tests.cli.helpers import Running, running
+
+ROBOT, TASK = load_robot(), load_task("wall_following")
+TEACHER = TeacherNow("phone", 2, "noon")
+
+
+def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
+    first = SimulatedRun("a", TASK, "wall_following", folder / "walls.knowledge")
+    return SimulatedRuns(ROBOT, first, taught_by_script=taught_by_script)
+
+
+async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first_keeps_its(tmp_path: Path) -> None:
+    runs = runs_in(tmp_path)
+    text = await runs.prepare(None, "eight", False, TEACHER)
+    assert text == "world two_objects, task eight: the robot stands until Go"
+    assert runs.present.task_name == "wall_following"
+    assert runs.advance() == ""
+    assert (runs.present.world, runs.present.knowledge) == ("two_objects", tmp_path / "eight.knowledge")
+    assert (await runs.view()).task == "eight"
+    await runs.prepare("rooms-3", "wall_following", False, TEACHER)
+    runs.advance()
+    assert (runs.present.world, runs.present.knowledge) == ("rooms-3", tmp_path / "walls.knowledge")
+    take, phase, session = runs.present.begin_with
+    assert isinstance(take, Take)
+    assert isinstance(phase, SetPhase)
+    assert isinstance(session, BeginSession)
+    assert (take.teacher, phase.phase, session.name) == ("phone", Phase.CORRECTIONS, "noon")
+
+
+@pytest.mark.parametrize(
+    ("world", "task", "why"),
+    [
+        ("/etc/passwd", None, "world: '/etc/passwd' is not known; give one of a, b, c"),
+        ("rooms-1e3", None, "rooms-N, streets-N"),
+        (None, "../eight", "task: '../eight' is not known; give one of circle"),
+    ],
+)
+async def test_what_is_no_name_of_a_world_or_task_is_refused(
+    tmp_path: Path, world: str | None, task: str | None, why: str
+) -> None:
+    runs = runs_in(tmp_path)
+    with pytest.raises(ValueError, match=why):
+        await runs.prepare(world, task, False, TEACHER)
+    assert runs.next is None
+
+
+async def test_knowledge_that_the_next_run_cannot_open_is_refused_before_this_one_ends(tmp_path: Path) -> None:
+    open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("fleeing")).close()
+    runs = runs_in(tmp_path)
+    with pytest.raises(ValueError, match="taught for the task 'fleeing'"):
+        await runs.prepare(None, "eight", False, TEACHER)
+    assert runs.next is None
+
+
+async def test_the_run_of_a_scripted_teacher_stays(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="start kurt2rt run without --auto"):
+        await runs_in(tmp_path, taught_by_script=True).prepare("b", None, False, TEACHER)
+
+
+@asynccontextmanager
+async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClient]:
+    port = int(robot.wait_for("UDP port").split()[-1])
+    async with TeacherClient(folder / "var" / "devices" / "local", port=port) as client:
+        assert (await client.take()).accepted
+        yield client
+
+
+async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> State:
+    """The first picture so, of another start of the robot than `boot`."""
+    with anyio.fail_after(30.0):
+        async for state in client.states():
+            if state.boot != boot and all(getattr(state, name) == value for name, value in wanted.items()):
+                return state
+    raise AssertionError("the client ended")
+
+
+async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(tmp_path: Path) -> None:
+    knowledge = tmp_path / "var" / "wall_following.knowledge"
+    with running("run", "--port", "0", folder=tmp_path) as robot:
+        async with teacher_of(robot, tmp_path) as client:
+            asks = await state_where(client, b"", cause="unknown", teacher="local")
+            assert (await client.answer("forward", of=asks.tick)).accepted
+            first = await state_where(client, b"", lessons=1, unsaved=0)
+            answer = await client.next_run("b", fresh=True)
+            assert answer.accepted, answer.text
+            second = await state_where(client, first.boot, teacher="local", lessons=0)
+            assert second.stopped_because == "a new run was begun"
+            assert (second.left_m_s, second.right_m_s) == (0.0, 0.0)
+            simulation, world = await client.simulation(), await client.world()
+            assert simulation is not None
+            assert world is not None
+            assert (simulation.world, world.name) == ("b", "B")
+        robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
+    with Journal.read_only(knowledge.with_name("wall_following.knowledge.1")) as kept:
+        assert len(list(kept.entries())) == 1
+    with Journal.read_only(knowledge) as new:
+        assert list(new.entries()) == []
+    assert len(list((tmp_path / "var" / "runs").iterdir())) == 2
