@@ -266,11 +266,11 @@ class _Taking:
 
     def __init__(self, rounds: Rounds, service: ServiceSettings, upkeep: Upkeep) -> None:
         self._rounds = rounds
-        self._priority = service.real_time_priority
+        self._priority = service.priority
         self._upkeep = upkeep
 
     def __call__(self, service: ServiceSettings) -> None:
         self._rounds.take(service)
-        if service.real_time_priority != self._priority:
-            self._priority = service.real_time_priority
+        if service.priority != self._priority:
+            self._priority = service.priority
             self._upkeep.tell(take_real_time_priority(self._priority, self._upkeep.guards()))

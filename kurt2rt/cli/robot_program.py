@@ -40,7 +40,7 @@ from kurt2rt.recording.run_files import budget_of
 from kurt2rt.reloading import Reloading
 from kurt2rt.rounds import Screen, Status
 from kurt2rt.service import Openness, serve
-from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.service_settings import ServiceSettings, for_a_unit
 from kurt2rt.start import AGAIN_S, Need, Start, require_folder
 from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
@@ -104,8 +104,8 @@ class RobotProgram:
         `give_up`: as kurt2rt.ending.Ending. `again_s`: between two looks at what is not there. Raises SettingsError.
         """
         self._orders = orders
-        self._read = read
-        self._service = read()
+        self._settings_of = read
+        self._service = self._read()
         self._robot = robot
         self._task = task
         self._opening = opening
@@ -121,6 +121,11 @@ class RobotProgram:
         self._knowledge: OpenedKnowledge | None = None
         self._told = ""
         self._to_journal = "JOURNAL_STREAM" in os.environ
+
+    def _read(self) -> ServiceSettings:
+        """Return the settings as they are now. Raises SettingsError."""
+        settings = self._settings_of()
+        return for_a_unit(settings) if self._orders.as_service else settings
 
     def run(self) -> None:
         """Run until somebody ends it. Raises what `kurt2rt.service.serve` and `kurt2rt.app.open_robot` do."""
@@ -187,8 +192,8 @@ class RobotProgram:
         opened = self._opened
         assert opened is not None
         ending.waits_for = "its runtime"
-        if self._service.real_time_priority:  # not before the second guard is there
-            self._say(take_real_time_priority(self._service.real_time_priority, self._guards()))
+        if self._service.priority:  # not before the second guard is there
+            self._say(take_real_time_priority(self._service.priority, self._guards()))
         self._upkeep.notifier.ping()  # the next one comes from the first tick
         run = None
         if opened.ground is not None:

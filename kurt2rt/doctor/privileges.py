@@ -7,10 +7,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.service_settings import UNIT_PRIORITY
 
 SELF_STATUS = Path("/proc/self/status")
 _CAP_IPC_LOCK = 14
 _CAP_SYS_NICE = 23
+_HIGHEST_PRIORITY = UNIT_PRIORITY + 1
+"""Of the threads that have to overtake a loop that hangs."""
 _MIB = 1024 * 1024
 _LIMITS_FILE = "/etc/security/limits.d/kurt2rt.conf"
 
@@ -20,23 +23,24 @@ def check_real_time_priority(
     set_scheduler: Callable[[int, int, os.sched_param], None] = os.sched_setscheduler,
     status: Path = SELF_STATUS,
 ) -> Finding:
-    """Does the kernel grant SCHED_FIFO? Limit and capability are shown, the trial decides: a control group may refuse.
+    """Does the kernel grant SCHED_FIFO at the priorities of a unit? The trial decides: a control group may refuse.
 
-    The trial is made by a thread that then ends, so nothing keeps the priority.
+    The trial is made by a thread that then ends, so nothing keeps the priority. Limit and capability are shown.
     """
     if limit is None:
         limit = resource.getrlimit(resource.RLIMIT_RTPRIO)[0]
     capability = "with" if _has_capability(_CAP_SYS_NICE, status) else "without"
     found = f"RLIMIT_RTPRIO {_shown(limit)}, {capability} CAP_SYS_NICE"
     with ThreadPoolExecutor(max_workers=1) as thread:
-        trial = thread.submit(set_scheduler, 0, os.SCHED_FIFO, os.sched_param(os.sched_get_priority_min(os.SCHED_FIFO)))
+        trial = thread.submit(set_scheduler, 0, os.SCHED_FIFO, os.sched_param(_HIGHEST_PRIORITY))
     try:
         trial.result()
     except OSError as error:
         return Finding(
             "real-time priority",
             Status.WARNING,
-            f"SCHED_FIFO refused ({error}); {found}",
+            f"not permitted ({error.strerror}), so ticks are missed while other programs are busy; {found}",
+            "the unit of kurt2rt service install is permitted it; by hand: "
             f'echo "$USER - rtprio 50" | sudo tee -a {_LIMITS_FILE}, then log in again',
         )
     return Finding("real-time priority", Status.OK, f"SCHED_FIFO granted; {found}")

@@ -18,7 +18,7 @@ def take_real_time_priority(priority: int, guards: Iterable[threading.Thread] = 
     except PermissionError:
         return (
             f"no real-time priority {priority}: not permitted; the loop runs without it. "
-            "Give the service CAP_SYS_NICE, or set real_time_priority: 0"
+            "Give the service CAP_SYS_NICE (kurt2rt doctor says how), or set real_time_priority: 0"
         )
     return f"real-time priority {priority} (SCHED_FIFO)" if priority else "no real-time priority"
 

@@ -10,8 +10,9 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
+from hal.settings import SettingsError
 from kurt2rt.reloading import Reloading
-from kurt2rt.service_settings import ServiceSettings, load_service, while_running
+from kurt2rt.service_settings import ServiceSettings, for_a_unit, load_service, while_running
 from kurt2rt.systemd.notifier import Notifier
 from tests.systemd.manager import manager
 
@@ -97,3 +98,22 @@ def test_the_periods_of_the_rounds_may_change() -> None:
     now = load_service()
     read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5, "recordings_mb": 500})
     assert while_running(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
+
+
+def test_the_delivered_priority_is_that_of_a_unit_and_none_by_hand() -> None:
+    shipped = load_service()
+    assert (shipped.priority, for_a_unit(shipped).priority) == (0, 20)
+    for given in (0, 5):
+        mine = shipped.model_copy(update={"real_time_priority": given})
+        assert (mine.priority, for_a_unit(mine).priority) == (given, given)
+
+
+@pytest.mark.parametrize("given", ["fast", 81, -1, 1.5, True, None])
+def test_a_priority_that_is_none_is_told_in_one_line(tmp_path: Path, given: object) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({**yaml.safe_load(SHIPPED.read_text()), "real_time_priority": given}))
+    with pytest.raises(
+        SettingsError, match=r"real_time_priority: .*has to be auto, or a whole number from 0 to 80"
+    ) as told:
+        load_service(str(path))
+    assert "\n" not in str(told.value)

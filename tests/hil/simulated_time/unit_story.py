@@ -15,6 +15,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
+from kurt2rt.service_settings import UNIT_PRIORITY
 from kurt2rt.teaching import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.test_run_as_service import priorities_of
@@ -25,7 +26,6 @@ from tests.hil.simulated_time.installation import install_for_everybody
 from tests.hil.simulated_time.unit import NAME, STATE, Unit
 
 PORT = 5683
-PRIORITY = 20
 SYS_NICE = 1 << 23
 LISTENS = f"teachers are listened to on UDP port {PORT}"
 START_LIMIT = 5
@@ -39,7 +39,7 @@ def kurt2rt() -> Path:
 
 @pytest.fixture(scope="module")
 def settings() -> Path:
-    """Where the service may read them: with a real-time priority, all else as delivered."""
+    """Where the service may read them, as delivered."""
     path = Path("/etc/kurt2rt/runtime.yaml")
     path.parent.mkdir()
     write_settings(path)
@@ -48,7 +48,7 @@ def settings() -> Path:
 
 def write_settings(path: Path, **changes: object) -> None:
     shipped = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
-    path.write_text(yaml.safe_dump({**shipped, "real_time_priority": PRIORITY, **changes}), encoding="utf-8")
+    path.write_text(yaml.safe_dump({**shipped, **changes}), encoding="utf-8")
 
 
 @pytest.fixture
@@ -119,7 +119,7 @@ def may_do_little(pid: int) -> None:
     assert {int(of_process[f"Cap{which}"], 16) for which in ("Inh", "Prm", "Eff", "Bnd", "Amb")} == {SYS_NICE}
     assert (of_process["NoNewPrivs"], of_process["Seccomp"]) == ("1", "2")
     # The second guard, the one that hears signals, the loop.
-    assert priorities_of(pid) == [PRIORITY + 1, PRIORITY + 1, PRIORITY]
+    assert priorities_of(pid) == [UNIT_PRIORITY + 1, UNIT_PRIORITY + 1, UNIT_PRIORITY]
     assert int(Path(f"/proc/{pid}/oom_score_adj").read_text(encoding="ascii")) == -500
     folder = STATE.stat()
     assert (folder.st_uid, folder.st_mode & 0o777) == (int(user), 0o700)
