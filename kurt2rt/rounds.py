@@ -1,7 +1,7 @@
 """What the service does after each tick, when the wheels have been told: watch, ask, acknowledge, save, tell."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
@@ -12,6 +12,7 @@ from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
 from kurt2rt.service_settings import ServiceSettings
+from kurt2rt.standing_text import what_it_asks
 from kurt2rt.teaching.commands import Command
 from kurt2rt.teaching.question import Question, WayQuestion, ask, ask_the_way
 from kurt2rt.tick import TickRecord
@@ -149,4 +150,5 @@ class Rounds:
         if runtime.mid is not None and record.decision.asks_at == MID:
             return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
         weights, names = runtime.level.system.weights, runtime.definition.names
-        return ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
+        question = ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
+        return replace(question, touches=what_it_asks(record.standing))

@@ -111,6 +111,7 @@ def build_runtime(
     saved: Statistics | None = None,
     asked: bool = True,
     tolerates_stalls: bool = False,
+    asks_when_held: bool = True,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
@@ -121,6 +122,7 @@ def build_runtime(
     `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
     `asked`: False where nobody is there who could be asked: RLAs whose action was withdrawn are passed over.
     `tolerates_stalls`: whether the robot stalls with this program, as one does that is simulated in it.
+    `asks_when_held`: whether the robot asks that touches something; False for runs of before it did.
     Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
     """
     sensors = settings.infrared.names
@@ -183,6 +185,7 @@ def build_runtime(
         circumstances=CircumstancesPerception(critic, settings),
         expecting=expecting,
         tolerates_stalls=tolerates_stalls,
+        asks_when_held=asks_when_held,
     )
     scheduler = Scheduler(clock, tick, period_s, ledger)
     return Runtime(

@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hal import guard, watchdog
-from hal.robot import STANDSTILL, Grant
+from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import MID
 
@@ -108,11 +108,13 @@ def standing_for(cause: str, asks_at: str, stopped_because: str, says: str = "")
         stopped_because: why a teacher's stop, or something like it, holds; empty while none does.
         says: in words what came of the goal, or why lessons cannot be saved.
     """
-    asks = cause == Cause.UNKNOWN
+    asks = cause in (Cause.UNKNOWN, Cause.TOUCHES)
     if stopped_because:
         return Standing(StandReason.STOPPED, True, asks, says=stopped_because)
-    if asks:
+    if cause == Cause.UNKNOWN:
         return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
+    if cause == Cause.TOUCHES:
+        return Standing(StandReason.FRONT_BUMPER, asks=True)
     if cause in (Cause.RLA, Cause.HELD, Cause.TEACHER):
         return DRIVES
     if cause not in Cause.__members__.values():
@@ -120,18 +122,59 @@ def standing_for(cause: str, asks_at: str, stopped_because: str, says: str = "")
     return Standing(_CAUSES[Cause(cause)], says=says)
 
 
+ASKS_AFTER_TICKS = 50
+"""For so long a bumper has to hold what an RLA wants before the robot asks: 0.5 s, for a brush is over sooner."""
+
 HELD_TICKS = 10
 """For so long a set point has to be held back before the robot is told to stand: a late tick is over in one."""
 
 
-def touched(grant: Grant) -> StandReason | None:
-    """Return which bumpers hold wheels that were to drive on; None where they turn, or none of the bumpers holds."""
-    if grant.wheel_speeds != STANDSTILL:
+def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: float | None = None) -> Standing:
+    """Return the standing of a robot that the guard keeps stopped for `reasons`, after a stall of `stall_s`."""
+    word = reasons[0] if reasons else ""
+    reason = LATCHED.get(word, StandReason.HALTED)
+    if reason is StandReason.HALTED:
+        return Standing(reason, True, asks, says=word)
+    return Standing(reason, True, asks, stall_s if reason is StandReason.COMPUTER_TOO_SLOW else None)
+
+
+def touched(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> StandReason | None:
+    """Return which bumpers hold wheels that were to drive on; None where they turn, or none of the bumpers holds.
+
+    Args:
+        wheel_speeds: what the guard let through.
+        reasons: why that differs from what was wanted, in the guard's words.
+    """
+    if wheel_speeds != STANDSTILL:
         return None
-    front, rear = guard.FRONT_BUMPER in grant.reasons, guard.REAR_BUMPER in grant.reasons
+    front, rear = guard.FRONT_BUMPER in reasons, guard.REAR_BUMPER in reasons
     if front and rear:
         return StandReason.BOTH_BUMPERS
     return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None
+
+
+class BumperWatch:
+    """Notices that an RLA goes on toward what a bumper touches, so that the guard lets no wheel turn.
+
+    A bumper may spring back while nothing pushes it: ticks in which the wheels turn end the wait only when there were
+    as many of them.
+    """
+
+    def __init__(self) -> None:
+        self._held_ticks = self._free_ticks = 0
+
+    def update(self, decision: Decision, grant: Grant) -> bool:
+        """Return whether the robot is held now, and has been for ASKS_AFTER_TICKS."""
+        pushes = decision.cause in (Cause.RLA, Cause.HELD) and not grant.latched
+        held = pushes and touched(grant.wheel_speeds, grant.reasons) is not None
+        if held:
+            self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
+            self._free_ticks = 0
+        else:
+            self._free_ticks += 1
+            if self._free_ticks >= ASKS_AFTER_TICKS:
+                self._held_ticks = 0
+        return held and self._held_ticks >= ASKS_AFTER_TICKS
 
 
 class StandingWatch:
@@ -163,10 +206,7 @@ class StandingWatch:
         held = self._held_back(decision, grant)
         asks = decision.asking
         if grant.latched:
-            word = grant.reasons[0] if grant.reasons else ""
-            reason = LATCHED.get(word, StandReason.HALTED)
-            stall_s = self._stall_s if reason is StandReason.COMPUTER_TOO_SLOW else None
-            return Standing(reason, True, asks, stall_s, word if reason is StandReason.HALTED else "")
+            return standing_latched(grant.reasons, asks=asks, stall_s=self._stall_s)
         if held is not None:
             return Standing(held, asks=asks)
         if decision.driving:
@@ -176,10 +216,12 @@ class StandingWatch:
 
     def _held_back(self, decision: Decision, grant: Grant) -> StandReason | None:
         """Return why the guard lets none of what was decided through, once it has for some ticks."""
+        if decision.cause is Cause.TOUCHES and not grant.latched:
+            return touched(grant.wheel_speeds, grant.reasons)
         if grant.latched or not decision.driving:
             self._held, self._held_ticks = None, 0
             return None
-        bumpers = touched(grant)
+        bumpers = touched(grant.wheel_speeds, grant.reasons)
         if bumpers is not None:
             return bumpers
         held = next((_HELD[each] for each in grant.reasons if each in _HELD), None)

@@ -13,9 +13,9 @@ from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_uses import MidUses
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
-from kurt2rt.rla.rla import BASIC, Rla, TeachingEvent
+from kurt2rt.rla.rla import BASIC, Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.standing import DRIVES, Standing, StandingWatch
+from kurt2rt.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
 from kurt2rt.teaching.inbox import TeacherInbox
@@ -101,12 +101,14 @@ class Tick:
         circumstances: CircumstancesPerception | None = None,
         expecting: Expecting | None = None,
         tolerates_stalls: bool = False,
+        asks_when_held: bool = True,
     ) -> None:
         """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
 
         `circumstances`: what the school's critic looks at. `expecting`: None: nothing is expected.
         `tolerates_stalls`: whether ticks that are missed count against no lease of the teacher, as in a simulation that
         stalls with this program.
+        `asks_when_held`: whether the robot asks that touches something and is to drive on toward it.
         """
         self._robot = robot
         self._perception = perception
@@ -122,6 +124,10 @@ class Tick:
         self._now = now
         self._stale_infrared_s = stale_infrared_s
         self._driving = self._latched = False
+        self._waits = False
+        """Whether the robot stood at a bumper in the last tick, and waited for its teacher's answer."""
+        self._asks_when_held = asks_when_held
+        self._bumpers = BumperWatch()
         self._standing = StandingWatch()
         self._trouble: str | None = None
         self._tell_knowledge_at = 0
@@ -140,7 +146,7 @@ class Tick:
         mark(Stage.SENSE)
 
         # While the robot waits for its teacher history stands still: autonomy has no waits to learn from.
-        situation = self._perception.perceive(senses, history_frozen=not self._driving)
+        situation = self._perception.perceive(senses, history_frozen=not self._driving or self._waits)
         blind = not senses.infrared_age_s <= self._stale_infrared_s
         circumstances, opinion = self._appraise(tick, senses, blind=blind)
         mark(Stage.PERCEIVE)
@@ -190,19 +196,31 @@ class Tick:
             self._school.stopped_at_tick = tick
         self._latched = grant.latched
         self._driving = decision.driving and not grant.latched
-        if self._driving:
+        asks = self._asks_when_held and self._bumpers.update(decision, grant) and self._school.asked
+        # Where the critic alone is there, what pushes goes on to be blamed for it, until another action is tried.
+        self._waits = asks and self._school.phase is not Phase.AUTONOMOUS
+        turning = self._driving and not self._waits
+        if turning:
             self._perception.remember_driven(decision.wheel_speeds)
         surprise = None
         if self._expecting is not None:
-            surprise = self._expecting.see(tick, decision, situation, behaviour, driving=self._driving)
+            surprise = self._expecting.see(tick, decision, situation, behaviour, driving=turning)
             if surprise is not None and surprise.surprising and self._circumstances is not None:
                 self._circumstances.be_surprised()
-        self._statistics.count(decision.rla_id if self._driving else None)
-        self._mid_uses.count(decision, driving=self._driving)
-        # A robot that stands blames nobody, also where it is the guard that has it stand.
+        self._statistics.count(decision.rla_id if turning else None)
+        self._mid_uses.count(decision, driving=turning)
+        # A robot that stands blames nobody, also where it is the guard that has it stand; but for a bumper, which stops
+        # it for what an RLA wants.
         answered = decision if self._driving else decision._replace(action=None, answers=False)
         self._school.recent.remember(
-            tick, situation, answered, behaviour, blind=blind, circumstances=circumstances, opinion=opinion
+            tick,
+            situation,
+            answered,
+            behaviour,
+            blind=blind,
+            touches=asks,
+            circumstances=circumstances,
+            opinion=opinion,
         )
         if self._school.mid is not None:
             self._school.mid.remember(tick, decision)
@@ -221,7 +239,9 @@ class Tick:
             self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
         # A replay's clock stands still within a tick.
         stopped_because = self._school.stopped_because
-        standing = self._standing.update(decision, grant, max(now_s, drove_at_s), stopped_because, trouble)
+        if asks:
+            decision = standing(decision, Cause.TOUCHES)
+        stands = self._standing.update(decision, grant, max(now_s, drove_at_s), stopped_because, trouble)
         mark(Stage.PUBLISH)
         return TickRecord(
             tick,
@@ -240,7 +260,7 @@ class Tick:
             tuple(events),
             self._run,
             knowledge,
-            standing,
+            stands,
         )
 
     def _set_down(self) -> None:
@@ -260,7 +280,7 @@ class Tick:
         critic = self._school.critic
         if self._circumstances is None or critic is None:
             return None, None
-        circumstances = self._circumstances.perceive(senses, driving=self._driving)
+        circumstances = self._circumstances.perceive(senses, driving=self._driving and not self._waits)
         if blind:
             return None, None
         return circumstances, critic.think(tick, circumstances)

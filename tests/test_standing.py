@@ -10,16 +10,17 @@ from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.cli.status_line import doing
-from kurt2rt.cli.terminal_words import sentence_of
+from kurt2rt.cli.terminal_words import asks_in, question_in, sentence_of
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.snapshot import take_snapshot
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.page.views import state_view
 from kurt2rt.rounds import Status
-from kurt2rt.standing import DRIVES, HELD_TICKS, LATCHED, Standing, StandingWatch, StandReason
+from kurt2rt.standing import ASKS_AFTER_TICKS, DRIVES, HELD_TICKS, LATCHED, Standing, StandingWatch, StandReason
 from kurt2rt.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, why_it_stands
 from kurt2rt.teaching.commands import Stop, Teach, Watch
 from kurt2rt.teaching.link import Link
+from kurt2rt.teaching.scripted_lesson import picture_in
 from tests.channel.desk import Desk
 from tests.channel.states import state
 
@@ -184,3 +185,20 @@ def test_a_newer_robots_reason_stands_in_its_own_words() -> None:
     newer = cbor2.loads(encode_state(state(standing=Standing(StandReason.LATE))))
     newer["sd"][0] = "battery empty"
     assert decode_state(cbor2.dumps(newer)).stands == Standing(StandReason.HALTED, says="battery empty")
+
+
+def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
+    desk = LatchingDesk()
+    desk.robot.touches_in_front = True
+    desk.run(ASKS_AFTER_TICKS)
+    picture = desk.picture
+    assert (picture.cause, picture.stands) == ("touches", Standing(StandReason.FRONT_BUMPER, asks=True))
+    question = "I touch something in front of me; what now?"
+    assert page_of(picture) == question
+    assert str(question_in(picture)) == f"{question} RLA 1 says forward"
+    short = f"stands: {question}"
+    assert doing(Status(desk.record, desk.runtime, 0, None, "")) == short
+    assert take_snapshot(desk.runtime, desk.record, _Keeping(), Instruments(), 0.0).doing == short
+    assert picture.question == ()  # the situation is known: nothing differs
+    assert not asks_in(picture)  # an action that is typed corrects the RLA
+    assert picture_in(picture).asking  # and so a scripted teacher answers

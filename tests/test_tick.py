@@ -8,6 +8,7 @@ import pytest
 
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
+from hal.guard import FRONT_BUMPER
 from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
@@ -31,7 +32,9 @@ PAST_WEIGHT = 0.1  # little, so that the first seconds of a history are not anot
 
 
 class CorridorRobot:
-    """A robot whose four sensors show one count that the test sets; its guard does as it is asked until it latches."""
+    """A robot whose four sensors show one count that the test sets; its guard does as it is asked until it latches, but
+    drives toward nothing that touches a bumper.
+    """
 
     def __init__(self) -> None:
         self.counts = 100
@@ -40,6 +43,7 @@ class CorridorRobot:
         self.latched = self.relatches = False
         self.driven: list[WheelSpeeds] = []
         self.closed = False
+        self.touches_in_front = False
 
     def sense(self, now_s: float) -> Senses:
         return Senses(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
@@ -47,9 +51,11 @@ class CorridorRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         self.command_ages_s.append(now_s - decided_at_s)
         self.latched = self.latched or self.relatches
-        granted = STANDSTILL if self.latched else wanted
+        granted, reasons = (STANDSTILL, ("emergency stop",)) if self.latched else (wanted, ())
+        if self.touches_in_front and max(granted) > 0.0:
+            granted, reasons = WheelSpeeds(min(granted[0], 0.0), min(granted[1], 0.0)), (FRONT_BUMPER,)
         self.driven.append(granted)
-        return Grant(granted, ("emergency stop",) if self.latched else (), self.latched)
+        return Grant(granted, reasons, self.latched)
 
     def emergency_stop(self, reason: str) -> None:
         assert reason
@@ -77,7 +83,13 @@ class Corridor:
     """All that stands round a Tick, and one tick in a call."""
 
     def __init__(
-        self, *, attended: bool = False, behaviours: tuple[str, ...] = ("",), tolerates_stalls: bool = False
+        self,
+        *,
+        attended: bool = False,
+        behaviours: tuple[str, ...] = ("",),
+        tolerates_stalls: bool = False,
+        asked: bool = True,
+        asks_when_held: bool = True,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = Notebook()
@@ -91,7 +103,7 @@ class Corridor:
         self.statistics = StatisticsCounter()
         self.ledger = Ledger()
         authority = Authority(repertoire, attended=attended)
-        self.school = School(self.level, authority, insert_beyond_share=0.5, taken_command_ids=())
+        self.school = School(self.level, authority, insert_beyond_share=0.5, taken_command_ids=(), asked=asked)
         robot: Robot = self.robot
         self.tick = Tick(
             robot,
@@ -105,6 +117,7 @@ class Corridor:
             now=lambda: self.ticks * 0.01 + self.held_up_s,
             stale_infrared_s=0.05,
             tolerates_stalls=tolerates_stalls,
+            asks_when_held=asks_when_held,
         )
         self.ticks = 0
 

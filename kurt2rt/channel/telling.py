@@ -7,6 +7,7 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.health.report import SENSORS, HealthReport
+from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.question import FeatureDifference, ask
@@ -61,7 +62,7 @@ class Telling:
             self._late_p99_ms = self._late()
         self._pictures += 1
         question: tuple[FeatureDifference, ...] = ()
-        if decision.asking and match is not None and decision.asks_at == BASIC:
+        if decision.cause is Cause.UNKNOWN and match is not None and decision.asks_at == BASIC:
             question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
         nearest = None if match is None else match.rla
         plan = decision.plan

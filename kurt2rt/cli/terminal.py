@@ -28,7 +28,6 @@ from kurt2rt.cli.terminal_words import (
     way_in,
 )
 from kurt2rt.health.words import lines_of
-from kurt2rt.layers.decision import Cause
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -212,10 +211,10 @@ class TerminalTeacher:
             if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
                 standing = state.trusted, state.role
                 self._say(f"critic: {trust_in(state)}")
-            if state.cause == Cause.UNKNOWN:
-                if state.asks_at != asking:
+            if state.stands.asks and not state.stands.needs_go:
+                if state.stands.reason != asking:
                     self._say(str(question_in(state, self._words)))
-                asking = state.asks_at
+                asking = state.stands.reason
                 told = ""
                 continue
             asking = ""

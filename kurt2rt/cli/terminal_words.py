@@ -8,7 +8,7 @@ from kurt2rt.critic.role import Role
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import ASK, MID, rla_title
 from kurt2rt.standing import StandReason
-from kurt2rt.standing_text import GO_IN_TERMINAL, headline_of
+from kurt2rt.standing_text import GO_IN_TERMINAL, headline_of, what_it_asks
 from kurt2rt.teaching.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.teaching.lesson_line import LessonLine
 from kurt2rt.teaching.question import FeatureDifference, Question, WayQuestion
@@ -75,8 +75,9 @@ def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | WayQu
         came_by = tuple(word for word in mid.here if word)
         return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
+    touches = what_it_asks(state.stands)
     return Question(
-        state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour, words
+        state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour, words, touches
     )
 
 

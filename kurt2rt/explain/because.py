@@ -6,6 +6,8 @@ from kurt2rt.explain.facts import DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.explain.sentences import far, who
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
+from kurt2rt.standing import DRIVES, Standing, StandReason, standing_latched, touched
+from kurt2rt.standing_text import in_short, why_it_stands
 
 _STANDS = {
     Cause.BLIND: "it sees nothing",
@@ -14,6 +16,7 @@ _STANDS = {
     Cause.UNSAVED: "lessons cannot be saved",
     Cause.AT_GOAL: "it is at its goal",
     Cause.NO_WAY: "no way leads to its goal",
+    Cause.TOUCHES: "it touches something",
 }
 
 _NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
@@ -22,8 +25,9 @@ _NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
 
 def headline(facts: DecisionFacts) -> str:
     """What the robot does, in a few words."""
-    if facts.latched:
-        return f"stands: stopped by the guard ({', '.join(facts.reasons)})"
+    standing = standing_in(facts)
+    if standing.reason is not StandReason.DRIVES:
+        return in_short(standing)
     if facts.action is not None:
         if facts.cause == Cause.TEACHER:
             return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
@@ -31,6 +35,17 @@ def headline(facts: DecisionFacts) -> str:
     if facts.cause == Cause.UNKNOWN:
         return "stands and asks the way" if facts.asks_at == MID else "stands and asks"
     return f"stands: {_STANDS.get(Cause(facts.cause), facts.cause)}"
+
+
+def standing_in(facts: DecisionFacts) -> Standing:
+    """Return what the guard has the robot stand for, or what it touches; that it drives in any other case."""
+    if facts.latched:
+        return standing_latched(facts.reasons)
+    if facts.cause == Cause.TOUCHES or facts.action is not None:
+        bumpers = touched(facts.granted, facts.reasons)
+        if bumpers is not None:
+            return Standing(bumpers, asks=facts.cause == Cause.TOUCHES)
+    return DRIVES
 
 
 def because(facts: DecisionFacts) -> list[str]:
@@ -47,6 +62,8 @@ def because(facts: DecisionFacts) -> list[str]:
     elif facts.cause == Cause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
         lines += _would(facts)
+    elif facts.cause == Cause.TOUCHES:
+        lines += _touches(facts)
     elif facts.cause == Cause.UNKNOWN:
         lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
     else:
@@ -97,6 +114,12 @@ def _held(level: LevelFacts) -> list[str]:
         f"{driver.title} ({driver.action}) was chosen a moment ago, and its action keeps its minimum time.",
         f"Nearest by now is {who(nearest)}, at {far(nearest.distance)} of R {far(nearest.radius)}{_percent(nearest)}.",
     ]
+
+
+def _touches(facts: DecisionFacts) -> list[str]:
+    why, leader = why_it_stands(standing_in(facts)), facts.basic.leader
+    says = "an RLA goes on toward it" if leader is None else f"{who(leader)} goes on toward it"
+    return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
 
 
 def _asks(level: LevelFacts) -> list[str]:

@@ -120,7 +120,7 @@ def _heading(
 def _colour_of(facts: DecisionFacts, colours: Mapping[str, str]) -> str:
     if facts.action is not None and not facts.latched:
         return TEACHER if facts.cause == Cause.TEACHER else colours[facts.action]
-    return ASKS if facts.cause == Cause.UNKNOWN and not facts.latched else STANDS
+    return ASKS if facts.cause in (Cause.UNKNOWN, Cause.TOUCHES) and not facts.latched else STANDS
 
 
 def _situations(

@@ -278,6 +278,8 @@ def _doing(entry: TickEntry) -> tuple[Kind, str]:
         return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
     if decision.action is not None:
         return (Kind.LED if decision.cause is Cause.TEACHER else Kind.DRIVES), decision.action
+    if decision.cause is Cause.TOUCHES:
+        return Kind.ASKS, "asks: touches something"
     if decision.cause is Cause.UNKNOWN:
         return Kind.ASKS, "asks the way" if decision.asks_at != BASIC else "asks"
     return Kind.STANDS, decision.cause.value

@@ -31,6 +31,8 @@ class Cause(StrEnum):
     """Lessons cannot be saved at the moment: the robot stands until they are."""
     AT_GOAL = "at goal"
     """The robot has come to where it was sent."""
+    TOUCHES = "touches"
+    """The robot touches something, an RLA goes on toward it, and the guard lets no wheel turn: the robot asks."""
     NO_WAY = "no way"
     """From here nothing that was taught leads to where the robot was sent."""
 
@@ -79,8 +81,8 @@ class Decision(NamedTuple):
 
     @property
     def asking(self) -> bool:
-        """Whether the robot stands because it does not know this situation."""
-        return self.cause is Cause.UNKNOWN
+        """Whether the robot stands until it is taught: it does not know this situation, or touches something."""
+        return self.cause in (Cause.UNKNOWN, Cause.TOUCHES)
 
 
 def standing(decision: Decision, cause: Cause | None) -> Decision:

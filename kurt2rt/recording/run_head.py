@@ -1,13 +1,19 @@
 """What a run is, for the one who reads its recording: it stands in every segment's metadata."""
 
 import json
-from dataclasses import MISSING, asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from kurt2rt.recording.error import RecordingError
 
-RUN_VERSION = 1
-"""Raise it when head, entries or attachments change so that an older program would misread them."""
+RUN_VERSION = 2
+"""Raise it when head, entries or attachments change so that an older program would misread them.
+
+2: a robot that touches something asks.
+"""
+
+_BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False}
+"""What later versions tell of a run, as it was before they did."""
 
 RUN_METADATA = "run"
 """Name of the metadata record that holds the head, in each segment."""
@@ -43,7 +49,9 @@ class RunHead:
     """SHA-256 of each attachment, by its name."""
     version: int = RUN_VERSION
     tolerates_stalls: bool = False
-    """Whether ticks that were missed counted against no lease of the teacher. Before 2026-11-22 they always did."""
+    """Whether ticks that were missed counted against no lease of the teacher."""
+    asks_when_held: bool = True
+    """Whether the robot asked when it touched something and was to drive on toward it."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:
@@ -62,8 +70,9 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
             )
         content: dict[str, Any] = {}
         for each in fields(RunHead):
-            if each.name not in metadata and each.default is not MISSING:
-                continue  # an older program did not know it
+            if each.name in _BEFORE and each.name not in metadata:
+                content[each.name] = _BEFORE[each.name]
+                continue
             text = metadata[each.name]
             content[each.name] = text if each.type is str else json.loads(text)
         return RunHead(**content)

@@ -71,6 +71,7 @@ class Replay:
                     saved=run.saved,
                     asked=head.asked,
                     tolerates_stalls=head.tolerates_stalls,
+                    asks_when_held=head.asks_when_held,
                 )
         except (SettingsError, KnowledgeError, UnfitEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error

@@ -71,7 +71,9 @@ class Leading:
 def _is_to_drive(state: State) -> bool:
     """Whether it should make way; one that asks should not, unless nobody is there who answers, nor one that is blind.
 
+    Nor is one that touches something left to itself: it makes way when it is set down elsewhere.
+
     What a guard has stopped goes on as soon as it is told to, and may not come away.
     """
     alone = state.cause == Cause.UNKNOWN and state.phase == Phase.AUTONOMOUS
-    return state.action is not None or bool(state.stopped_because) or alone
+    return state.action is not None or state.cause == Cause.TOUCHES or bool(state.stopped_because) or alone

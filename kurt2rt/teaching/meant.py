@@ -18,3 +18,5 @@ class Meant(NamedTuple):
     """The RLA that answered there; None where none did."""
     insert_beyond_share: float
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
+    touched: bool = False
+    """Whether the robot asked what to do with what it touched: an answer corrects the RLA that goes on toward it."""

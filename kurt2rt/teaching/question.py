@@ -37,6 +37,8 @@ class Question:
     """The taught behaviour that is wanted; empty where the task has only one."""
     words: SensorWords = field(default=NO_WORDS, compare=False, repr=False)
     """For the features that differ."""
+    touches: str = ""
+    """The question of a robot that is held at a bumper; empty where it asks what it does not know."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
@@ -48,6 +50,8 @@ class Question:
             if self.words.differs(each.name, each.here, each.in_condition)
         )
         nearest = rla_title(self.nearest_rla, self.behaviour)
+        if self.touches:
+            return f"{self.touches} {nearest} says {self.action}"
         if self.action != ASK and self.distance <= self.radius:
             # It was chosen, and is a taught system itself, in which no RLA is near enough.
             return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"

@@ -18,6 +18,7 @@ class RecentDecisions:
         # Written once here: memory that is only promised costs the first tick that touches it half a millisecond.
         self._situations = np.full((capacity, dimensions), np.nan)
         self._seeing = np.zeros(capacity, dtype=np.bool_)
+        self._touches = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
@@ -34,17 +35,20 @@ class RecentDecisions:
         behaviour: str = "",
         *,
         blind: bool,
+        touches: bool = False,
         circumstances: Circumstances | None = None,
         opinion: Opinion | None = None,
     ) -> None:
         """Keep what was decided in a tick, for which taught behaviour, and what the critic thought of it.
 
-        The oldest is forgotten. A `blind` robot was in no situation.
+        The oldest is forgotten. A `blind` robot was in no situation; one that `touches` something asked what to do
+        there in place of what it had decided.
         """
         row = tick % self._capacity
         self.newest = tick
         self._ticks[row] = tick
         self._seeing[row] = not blind
+        self._touches[row] = touches
         self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
         self._behaviours[row] = behaviour
@@ -59,6 +63,10 @@ class RecentDecisions:
     def saw(self, tick: int) -> bool:
         """Whether the robot saw anything in a tick that is known."""
         return bool(self._seeing[tick % self._capacity])
+
+    def touched(self, tick: int) -> bool:
+        """Whether the robot asked what to do with what it touched, in a tick that is known."""
+        return bool(self._touches[tick % self._capacity])
 
     def situation(self, tick: int) -> NDArray[np.float64]:
         """Situation vector (d,) of a tick that is known and seen; a view, to be copied by whoever keeps it."""

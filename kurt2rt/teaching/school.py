@@ -78,7 +78,8 @@ class School:
         `asked`: False where nobody is there who could be asked, as in an exam.
         """
         self._level = level
-        self._asked = asked
+        self.asked = asked
+        """Whether somebody is there who could be asked."""
         self.wanted = level.wanted
         self.authority = authority
         self.critic = critic
@@ -154,7 +155,7 @@ class School:
 
         Where nobody is asked, RLAs whose action was withdrawn are passed over.
         """
-        self._level.nobody_is_asked = not self._asked or self.phase is Phase.AUTONOMOUS
+        self._level.nobody_is_asked = not self.asked or self.phase is Phase.AUTONOMOUS
         authority = self.authority
         if was_driving and not self.stopped_because and self.needs_a_teacher and not authority.present(tick):
             self.stop(authority.why_absent)

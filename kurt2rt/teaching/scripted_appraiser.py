@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import Judge
+from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of
@@ -65,7 +66,7 @@ class UnknownIsBad:
     def look(self, record: TickRecord) -> tuple[int, int] | None:
         """Of the tick before the robot began to ask."""
         drove, self._drove = self._drove, record.decision.driving
-        asking = record.decision.asking and record.decision.asks_at == BASIC
+        asking = record.decision.cause is Cause.UNKNOWN and record.decision.asks_at == BASIC
         return (-1, record.tick - 1) if asking and drove else None
 
 

@@ -169,7 +169,7 @@ async def _picture(robot: TeacherClient, tick: int) -> State:
 def picture_in(state: State) -> Picture:
     """What the picture on the wire shows a teacher."""
     return Picture(
-        state.cause == Cause.UNKNOWN,
+        state.cause in (Cause.UNKNOWN, Cause.TOUCHES),
         state.action is not None,
         state.action,
         state.infrared_counts,

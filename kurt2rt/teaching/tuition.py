@@ -101,7 +101,7 @@ class Tuition:
         if isinstance(command, Correct):
             self.corrections_at[command.level] += 1
             replace_within_share = meant.insert_beyond_share
-        elif nearest is not None and nearest.rla.asks:
+        elif meant.touched or (nearest is not None and nearest.rla.asks):
             replace_within_share = meant.insert_beyond_share  # it waits for this answer
         elif meant.level == MID and nearest is not None and _may_not_stand_beside(nearest, meant):
             return self._beside(command.action, meant, nearest, origin)
@@ -118,13 +118,15 @@ class Tuition:
     def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> Meant:
         share = self._insert_beyond_share
         if decision_tick is None:
-            drove = self._recent.rla(self._recent.newest)
-            return Meant(situation.vector, self._level.wanted.behaviour, BASIC, drove, share)
+            newest = self._recent.newest
+            drove, touched = self._recent.rla(newest), self._recent.touched(newest)
+            return Meant(situation.vector, self._level.wanted.behaviour, BASIC, drove, share, touched)
         self._require_known(decision_tick)
         if not self._recent.saw(decision_tick):
             raise RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
         behaviour, drove = self._recent.behaviour(decision_tick), self._recent.rla(decision_tick)
-        return Meant(self._recent.situation(decision_tick), behaviour, BASIC, drove, share)
+        touched = self._recent.touched(decision_tick)
+        return Meant(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
 
     def _beside(self, action: str, meant: Meant, nearest: Match | None, origin: Origin) -> Taught:
         """Another RLA on the very condition of those that know the situation; where none does, a first one."""

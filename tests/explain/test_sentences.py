@@ -171,7 +171,7 @@ def test_the_guard_tells_what_it_let_through() -> None:
 
 def test_an_alarm_goes_before_whatever_was_decided() -> None:
     alarm = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("bus lost",), latched=True)
-    assert headline(alarm) == "stands: stopped by the guard (bus lost)"
+    assert headline(alarm) == "stands until Go: its bus is lost"
     assert because(alarm)[0].startswith("The guard stopped the robot for bus lost")
     assert guarded(alarm) == ""
 
@@ -211,3 +211,15 @@ def test_a_mid_level_that_asks_has_the_robot_stand() -> None:
     assert because(asks) == [
         "The mid level does not know the way from here: nearest is mid-level RLA 12 (turn_left), at 20 of R 10."
     ]
+
+
+def test_a_robot_that_touches_something_tells_which_rla_goes_on_toward_it() -> None:
+    touches = replace(
+        facts(KNOWN, "touches", None), granted=WheelSpeeds(0, 0), reasons=("front bumper",), decided=WheelSpeeds(0, 0)
+    )
+    assert headline(touches) == "stands: I touch something in front of me; what now?"
+    (line,) = because(touches)
+    assert line.startswith("It touches something in front, and RLA ")
+    assert line.endswith(" goes on toward it: the guard lets no wheel turn that way, so the robot asks.")
+    pushes = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("rear bumper",))
+    assert headline(pushes) == "stands: it touches something behind"

@@ -60,7 +60,7 @@ export class ActionPad {
   show(state) {
     for (const [name, button] of this.#buttons) {
       button.classList.toggle("current", name === state.action);
-      button.classList.toggle("nearest", state.cause === "unknown" && name === state.nearest_action);
+      button.classList.toggle("nearest", state.stands.asks && name === state.nearest_action);
     }
   }
 

@@ -289,7 +289,8 @@ let announced = "";
 
 // The question alone is said by a screen reader without being asked, once for each time that the robot begins to ask.
 function announce(state) {
-  const asks = state.cause === "unknown" ? `${state.asks_at} ${state.behaviour}` : "";
+  const { asks: does, needs_go: waits, reason } = state.stands;
+  const asks = does && !waits ? `${reason} ${state.behaviour}` : "";
   if (asks === announced) return;
   announced = asks;
   setText($("announce"), asks ? $("sentence").textContent : "");

@@ -25,13 +25,13 @@ export class Trail {
     [this.points, this.asked] = kept(boot);
   }
 
-  see({ place, cause }) {
+  see({ place, stands }) {
     if (!place) return;
     const now = Date.now();
     const last = this.points.at(-1);
     if (!last || now - last[0] >= EACH_MS || now < last[0]) this.points.push([now, round(place.x_m), round(place.y_m)]);
     while (this.points.length && now - this.points[0][0] > TRAIL_S * 1000) this.points.shift();
-    const asking = cause === "unknown";
+    const asking = stands.asks && !stands.needs_go;
     if (asking && !this.#asking) {
       this.asked.push([round(place.x_m), round(place.y_m)]);
       if (this.asked.length > MOST_ASKED) this.asked.shift();
