@@ -23,6 +23,8 @@ _CODES = {
 _STATE = "/state"
 _DISCOVERY = ("GET", "/.well-known/core")
 _LINK_FORMAT = 40
+_SMALL_BLOCK = 1
+"""Size exponent of a block of 32 bytes (RFC 7959, 2.2)."""
 _CONFIRMED_EVERY_S = 1.0
 _OBSERVE_MASK = 0xFFFFFF
 """An Observe number has 24 bits (RFC 7641, 4.4); some clients refuse longer ones."""
@@ -224,13 +226,35 @@ def path_of(request: Any) -> str:
 
 def _to_a_stranger(request: Any) -> aiocoap.Message:
     if (str(request.code), path_of(request)) == _DISCOVERY:
-        return _discovery()
+        return _part_of_discovery(request.opt.block2)
     return aiocoap.Message(code=aiocoap.UNAUTHORIZED)
 
 
 def _discovery() -> aiocoap.Message:
-    links = ",".join([f"<{_STATE}>;obs;osc;ct={CONTENT_FORMAT}", *(f"<{path}>;osc" for path in PATHS)])
-    return aiocoap.Message(code=aiocoap.CONTENT, payload=links.encode(), content_format=_LINK_FORMAT)
+    return aiocoap.Message(code=aiocoap.CONTENT, payload=_links(), content_format=_LINK_FORMAT)
+
+
+def _part_of_discovery(wanted: Any) -> aiocoap.Message:
+    """Return one block of the links (RFC 7959).
+
+    The sender's address may be forged, so an answer has at most three times the bytes of its request. A request has at
+    least 21, an answer with 32 of the links at most 44, and both have the same token.
+    """
+    links = _links()
+    exponent, start = _SMALL_BLOCK, 0
+    if wanted is not None:
+        exponent, start = min(exponent, wanted.size_exponent), wanted.start
+    size = 16 << exponent
+    if start >= len(links):
+        return aiocoap.Message(code=aiocoap.BAD_REQUEST)
+    message = aiocoap.Message(code=aiocoap.CONTENT, payload=links[start : start + size], content_format=_LINK_FORMAT)
+    message.opt.block2 = (start // size, start + size < len(links), exponent)
+    return message
+
+
+def _links() -> bytes:
+    links = [f"<{_STATE}>;obs;osc;ct={CONTENT_FORMAT}", *(f"<{path}>;osc" for path in PATHS)]
+    return ",".join(links).encode()
 
 
 def _state(picture: bytes) -> aiocoap.Message:

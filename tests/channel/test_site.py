@@ -135,10 +135,39 @@ async def test_without_keys_everything_but_discovery_is_refused(school: School, 
 
 
 async def test_discovery_names_every_resource(school: School) -> None:
-    (event,) = await answers(school.site, carried(plain(CORE, aiocoap.GET)))
-    links = event.message.payload.decode().split(",")
-    assert links == ["</state>;obs;osc;ct=60", *(f"<{path}>;osc" for path in PATHS)]
-    assert event.message.opt.content_format == 40
+    told, more = b"", True
+    while more:
+        request = plain(CORE, aiocoap.GET)
+        request.opt.block2 = (len(told) // 32, False, 1)
+        (event,) = await answers(school.site, carried(request))
+        told += event.message.payload
+        more = event.message.opt.block2.more
+        assert event.message.opt.content_format == 40
+    assert told.decode().split(",") == ["</state>;obs;osc;ct=60", *(f"<{path}>;osc" for path in PATHS)]
+    whole = await school.phone().call(plain(CORE, aiocoap.GET))
+    assert (whole.payload, whole.opt.block2) == (told, None)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "given"),
+    [(None, (0, 0, 32)), ((0, False, 6), (0, 0, 32)), ((1, False, 2), (2, 64, 96)), ((3, False, 0), (3, 48, 64))],
+)
+async def test_discovery_without_keys_gives_small_blocks(
+    school: School, wanted: tuple[int, bool, int] | None, given: tuple[int, int, int]
+) -> None:
+    request = plain(CORE, aiocoap.GET)
+    request.opt.block2 = wanted
+    (event,) = await answers(school.site, carried(request))
+    number, begin, end = given
+    whole = await school.phone().call(plain(CORE, aiocoap.GET))
+    assert (event.message.opt.block2.block_number, event.message.payload) == (number, whole.payload[begin:end])
+
+
+async def test_a_block_behind_the_end_is_refused(school: School) -> None:
+    request = plain(CORE, aiocoap.GET)
+    request.opt.block2 = (1000, False, 1)
+    (event,) = await answers(school.site, carried(request))
+    assert (event.message.code, event.message.payload) == (aiocoap.BAD_REQUEST, b"")
 
 
 async def test_an_observation_without_keys_is_refused(school: School) -> None:
@@ -553,7 +582,7 @@ async def test_a_stranger_at_the_socket_is_told_that_he_is_one(tmp_path: Path) -
     async with on_line(tmp_path) as robot:
         assert (await robot.line.plain("/hello", aiocoap.POST)).code == aiocoap.UNAUTHORIZED
         assert (await robot.line.plain("/state", aiocoap.GET)).code == aiocoap.UNAUTHORIZED
-        assert b"</stop>" in (await robot.line.plain(CORE, aiocoap.GET)).payload
+        assert b"</state>" in (await robot.line.plain(CORE, aiocoap.GET)).payload
 
 
 async def test_forged_messages_are_not_answered_and_leave_nothing_behind(tmp_path: Path) -> None:
