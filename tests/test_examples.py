@@ -1,24 +1,110 @@
-"""The examples of the documentation teach a robot."""
+"""The examples of the documentation teach a robot and end by themselves."""
 
-import shutil
+import json
+import re
+import runpy
+import sys
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla import RlaCreated
-from tests.cli.helpers import running, started
+import pytest
+from matplotlib import pyplot as plt
 
-EXAMPLE = Path(__file__).parents[1] / "docs" / "examples" / "teach_from_a_notebook.py"
+import kurt2rt.teaching
+from kurt2rt.channel.credentials import local_pairing
+from kurt2rt.teaching import Teacher
+from tests.forked_robot import fork_robots
+
+EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
+SCRIPT = EXAMPLES / "teach_from_a_script.py"
+NOTEBOOK = EXAMPLES / "teach_in_a_notebook.ipynb"
 
 
-def test_a_notebook_teaches_the_robot(tmp_path: Path) -> None:
-    shutil.copy(EXAMPLE, tmp_path)
-    with running("run", "--seconds", "120", "--port", "0", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
-        words = ("var/devices/local", "--lessons", "2", "--port", port)
-        with started(EXAMPLE.stem, *words, folder=tmp_path) as notebook:
-            out, err = notebook.communicate()
-        assert (notebook.returncode, err) == (0, ""), out
-        assert "local teaches" in out
-        assert "answered" in out.splitlines()[-1]
-    with Journal.read_only(tmp_path / "mine.knowledge") as journal:
-        assert sum(isinstance(event, RlaCreated) for event in journal.events()) == 2
+@pytest.fixture(autouse=True)
+def _forked_robots(monkeypatch: pytest.MonkeyPatch) -> None:
+    fork_robots(monkeypatch)
+
+
+@pytest.fixture
+def _no_figures_left() -> Iterator[None]:
+    yield
+    plt.close("all")
+
+
+def run_script(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
+    monkeypatch.setattr(sys, "argv", [SCRIPT.name, *words])
+    runpy.run_path(str(SCRIPT), run_name="__main__")
+
+
+def cells() -> list[str]:
+    """Return the code cells of the notebook in order."""
+    notebook = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
+    return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+def run_notebook(**shorter: float) -> dict[str, Any]:
+    """Execute the cells in order; `shorter` gives constants of the notebook another value."""
+    names: dict[str, Any] = {"__name__": "__main__"}
+    for cell in cells():
+        source = cell
+        for name, value in shorter.items():
+            source = re.sub(rf"^{name} = .*$", f"{name} = {value}", source, flags=re.MULTILINE)
+        exec(compile(source, NOTEBOOK.name, "exec"), names)
+    return names
+
+
+def lessons_printed(text: str) -> tuple[int, int]:
+    """Return the number of lessons, and the percentage of time that the robot drove by itself."""
+    told = re.search(r"(\d+) lessons, \d+ RLAs; then it drove by itself (\d+)% of the time$", text.strip())
+    assert told, text
+    return int(told[1]), int(told[2])
+
+
+def test_the_script_teaches_and_ends(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    run_script(monkeypatch, "--seconds", "1.5")
+    lessons, _ = lessons_printed(capsys.readouterr().out)
+    assert lessons >= 1
+
+
+def test_the_script_without_a_robot_says_so_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kurt2rt.teaching, "Teacher", partial(Teacher, connect_s=0.1), raising=False)
+    device = local_pairing(tmp_path / "teachers", tmp_path / "devices", port=1).device.folder
+    with pytest.raises(SystemExit, match=r"no robot answers for .* s.*; start one: kurt2rt run$") as end:
+        run_script(monkeypatch, str(device))
+    assert "\n" not in str(end.value)
+
+
+@pytest.mark.usefixtures("_no_figures_left")
+async def test_the_notebook_runs_in_a_running_loop() -> None:
+    # Async although it awaits nothing: Jupyter runs its cells inside a loop as well.
+    names = run_notebook(TEACHING_S=1.5, WATCHING_S=0.5)
+    assert len(names["lessons"]) >= 1
+    assert names["alone"]
+    assert [len(figure.axes) for figure in map(plt.figure, plt.get_fignums())] == [1, 2, 1]
+    assert names["robot"]._process is None
+
+
+def test_the_notebook_shows_the_plots_of_its_last_run() -> None:
+    outputs = [
+        output
+        for cell in json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+        for output in cell.get("outputs", ())
+    ]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 3
+    assert not any(output["output_type"] == "error" for output in outputs)
+
+
+@pytest.mark.deep
+@pytest.mark.usefixtures("_no_figures_left")
+def test_a_minute_of_lessons_lets_the_robot_drive(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run_script(monkeypatch)
+    lessons, alone = lessons_printed(capsys.readouterr().out)
+    assert lessons >= 20
+    assert alone >= 50
+    names = run_notebook()
+    assert len(names["lessons"]) >= 20
+    assert names["share"] >= 0.5
