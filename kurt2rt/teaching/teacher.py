@@ -32,7 +32,6 @@ ATTENTION_S = 1.0
 """Default of `attention_s`, in seconds."""
 
 _LOOK_S = 0.05
-_UNKNOWN = "unknown"
 
 _Result = TypeVar("_Result")
 
@@ -159,8 +158,8 @@ class Teacher:
         return state
 
     def wait_for_question(self, timeout_s: float = 60.0) -> State:
-        """Return the state in which the robot stands and asks what to do. Raises as `wait_until` does."""
-        return self.wait_until(lambda state: state.cause == _UNKNOWN, timeout_s)
+        """Return the next state in which an answer lets the robot drive on. Raises as `wait_until` does."""
+        return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_go, timeout_s)
 
     def hello(self) -> Hello:
         """Return what the robot is: its task, actions, sensors and size."""
