@@ -1,11 +1,12 @@
 """`kurt2rt demo`."""
 
 from pathlib import Path
+from typing import Annotated
 
 import anyio
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, TaskName, WireName, changes_of
+from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, WireName, changes_of, task_option
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
@@ -17,7 +18,7 @@ from kurt2rt.text_table import print_whole
 
 
 def demo(
-    task: TaskName = "wall_following",
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following",
     plain: Plain = False,
     changes: Changes = None,
     seed: Seed = 1,

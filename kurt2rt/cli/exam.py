@@ -7,7 +7,7 @@ import anyio
 import typer
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskName, WireName, changes_of
+from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.courses.route import RouteSettings
@@ -16,22 +16,20 @@ from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_exams
 from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.knowledge.task_of_file import task_of_file
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.text_table import print_whole
 
 
 def exam(
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")],
-    task: TaskName = "wall_following",
+    task: TaskOfTheFile = None,
     plain: Plain = False,
     changes: Changes = None,
     seed: Seed = 1,
     world: Annotated[
         list[str] | None,
-        typer.Option(
-            help="World by name (config/worlds; rooms-N or streets-N for a new one by its seed) or path; repeat for "
-            "several. Default: those of the task."
-        ),
+        world_option("Repeat for several. Default: the worlds of the task."),
     ] = None,
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",
@@ -46,7 +44,10 @@ def exam(
     from kurt2rt.simulated import SimulatedStage
 
     settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain, changes=changes_of(changes))
+    other = changes_of(changes)
+    taught = load_task(task or task_of_file(knowledge), plain=plain, changes=other)
+    if task is not None:
+        task_of_file(knowledge, task)
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
         taught = with_route(taught, seed)
     worlds = tuple(world) if world else taught.exam.worlds

@@ -27,6 +27,7 @@ from kurt2rt.cli.options import (
     Seed,
     WireName,
     changes_of,
+    task_option,
 )
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
@@ -35,6 +36,7 @@ from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.set_aside import set_aside
+from kurt2rt.knowledge.task_of_file import task_of_file
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.text_table import print_whole
 
@@ -43,14 +45,12 @@ if TYPE_CHECKING:
 
 _TASK = "wall_following"
 _FOLDER = Path("results/lesson")
+_OLDER_SPELLING = typer.Argument(hidden=True, metavar=" ", help="The task, as --task names it.")
 
 
 def lesson(
-    task: Annotated[
-        str | None,
-        typer.Argument(help=f"Task by name (config/tasks) or a path to its YAML file. Default: {_TASK}."),
-    ] = None,
-    task_option: Annotated[str | None, typer.Option("--task", help="The same.")] = None,
+    task_word: Annotated[str | None, _OLDER_SPELLING] = None,
+    task: Annotated[str | None, task_option(f"Default: the task of the file in --knowledge, else {_TASK}.")] = None,
     plain: Plain = False,
     changes: Changes = None,
     seed: Seed = 1,
@@ -85,7 +85,7 @@ def lesson(
         Path | None,
         typer.Option(
             help="Of a route, or errands: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
-            "lesson streets leaves them. Without it the streets are taught first."
+            "lesson --task streets leaves them. Without it the streets are taught first."
         ),
     ] = None,
     controls: Annotated[
@@ -101,26 +101,29 @@ def lesson(
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59;
     results are reported on others:
 
-        kurt2rt lesson streets --seeds 100-119
+        kurt2rt lesson --task streets --seeds 100-119
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
     teacher. With --seeds results are kept in --out with hashes of what made
     them; a run that was interrupted goes on where it was:
 
-        kurt2rt lesson route
-        kurt2rt lesson route --seeds 0-9 --decisions 8 --decisions 12
+        kurt2rt lesson --task route
+        kurt2rt lesson --task route --seeds 0-9 --decisions 8 --decisions 12
 
     The task errands leads the robot about the town and names places, and then
     sends it to them by ways that it was never led as a whole; kept in --out
     likewise:
 
-        kurt2rt lesson errands --seeds 0-9 --controls
+        kurt2rt lesson --task errands --seeds 0-9 --controls
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage
 
-    name = _one_of(task, task_option)
+    name = _one_of(task, task_word)
+    if knowledge is not None and knowledge.exists():
+        name = task_of_file(knowledge, name)
+    name = name or _TASK
     settings = load_robot(robot_settings)
     taught = load_task(name, plain=plain, changes=changes_of(changes))
     stage = SimulatedStage(settings, wire)
@@ -192,16 +195,16 @@ def _lesson(
     print_whole(console_of(), render_seeds(results, task))
 
 
-def _one_of(task: str | None, task_option: str | None) -> str:
-    """The task, which may be said in two ways. Raises typer.BadParameter where they differ."""
-    if task is not None and task_option not in (None, task):
-        raise typer.BadParameter(f"{task_option!r} or {task!r}? Say it once", param_hint="--task")
-    return task or task_option or _TASK
+def _one_of(task: str | None, task_word: str | None) -> str | None:
+    """Return the task, which may be given in two ways. Raises typer.BadParameter if they differ."""
+    if task_word is not None and task not in (None, task_word):
+        raise typer.BadParameter(f"{task!r} or {task_word!r}? Say it once", param_hint="--task")
+    return task or task_word
 
 
 def _command(name: str, seeds: str, options: RouteOptions, *, plain: bool, changes: list[str]) -> str:
     """What was typed as far as it decides the numbers; no paths of this machine."""
-    words = [f"kurt2rt lesson {Path(name).name}", *(["--plain"] if plain else []), f"--seeds {seeds}"]
+    words = [f"kurt2rt lesson --task {Path(name).name}", *(["--plain"] if plain else []), f"--seeds {seeds}"]
     words += [f"--decisions {each}" for each in options.decisions]
     words += ["--basic FOLDER"] if options.basic is not None else []
     words += ["--controls"] if options.controls else []

@@ -1,12 +1,50 @@
 """Options that several commands share."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-TaskName = Annotated[str, typer.Option("--task", help="Task by name (config/tasks) or a path to its YAML file.")]
+from config import CONFIG_DIR
+
+
+def _names_in(kind: str) -> Callable[[str], list[str]]:
+    """Return what completes the names of shipped settings of a kind, for a shell."""
+
+    def complete(incomplete: str) -> list[str]:
+        names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
+        return [name for name in names if name.startswith(incomplete)]
+
+    return complete
+
+
+_NAME_OR_PATH = "NAME|PATH"
+_TASK = "Task: a name in config/tasks, or the path of a YAML file."
+_WORLD = (
+    "World: a name in config/worlds, rooms-N or streets-N for a generated one, or the path of a YAML file (a world, or "
+    "a map of ROS map_server)."
+)
+
+
+def task_option(default: str = "") -> Any:
+    """Return --task, the same in every command; `default` tells which task is taken without it."""
+    return _named("--task", "tasks", f"{_TASK} {default}".rstrip())
+
+
+def world_option(default: str = "") -> Any:
+    """Return --world, the same in every command; `default` tells which world is taken without it."""
+    return _named("--world", "worlds", f"{_WORLD} {default}".rstrip())
+
+
+def _named(option: str, kind: str, told: str) -> Any:
+    return typer.Option(option, metavar=_NAME_OR_PATH, help=told, autocompletion=_names_in(kind), show_default=False)
+
+
+TASK_OF_THE_FILE = "Default: the task that the knowledge file was taught for."
+TaskOfTheFile = Annotated[str | None, task_option(TASK_OF_THE_FILE)]
+"""Goes to kurt2rt.knowledge.task_of_file."""
 Plain = Annotated[
     bool,
     typer.Option(

@@ -7,7 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option, task_option
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -25,11 +25,7 @@ def paper(
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
     task: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Only this task, by name (config/tasks) or a path to its YAML file; repeat for several. Default: all "
-            "of config/paper.",
-            show_default=False,
-        ),
+        task_option("Repeat for several. Default: all tasks of config/paper."),
     ] = None,
     jobs: Jobs = ALL_PROCESSORS,
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None,

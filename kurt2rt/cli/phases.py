@@ -7,7 +7,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option
+from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option, task_option
 from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
 
@@ -16,9 +16,7 @@ _FOLDER = Path("results/phases")
 
 
 def phases(
-    task: Annotated[
-        str, typer.Option(help="By name (config/tasks), or a path to its YAML file; it needs a section `phases`.")
-    ] = "wall_following",
+    task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following",
     changes: Changes = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")

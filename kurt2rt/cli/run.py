@@ -8,7 +8,7 @@ import typer
 
 from kurt2rt.bus_names import NO_WIRE, SIMULATED
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import WireName
+from kurt2rt.cli.options import WireName, task_option, world_option
 
 if TYPE_CHECKING:
     from kurt2rt.service_settings import ServiceSettings
@@ -27,16 +27,16 @@ def run(
     ] = "default",
     task: Annotated[
         str | None,
-        typer.Option(
-            help="Task by name (config/tasks) or a path to its YAML file; with a knowledge file of its own beside that "
-            "of the settings, and in its own world, unless these are given. Default: as the settings say."
+        task_option(
+            "It comes with a knowledge file of its own beside that of the settings, and in its own world, unless these "
+            "are given. Default: the task of the file in --knowledge, else the task of the settings."
         ),
     ] = None,
     knowledge: Annotated[
         Path | None, typer.Option(help="Knowledge file; made when absent. Default: as the settings say.")
     ] = None,
     world: Annotated[
-        str | None, typer.Option(help="World of the simulated robot. Default: as the settings say.")
+        str | None, world_option("Of the simulated robot. Default: the world of the task or of the settings.")
     ] = None,
     teacher: Annotated[
         Literal["channel", "none"],
@@ -165,6 +165,10 @@ def run(
     if service and (auto or teacher == "none"):
         raise typer.BadParameter("after each start it waits for a person who says Go", param_hint="--service")
 
+    # Not as a service, which waits for a disk that is not there yet.
+    if knowledge is not None and not service and knowledge.exists():
+        task = _task_of(knowledge, task, load_service(settings).task)
+
     def read() -> "ServiceSettings":
         return _changed(load_service(settings), task, knowledge, world, port, record)
 
@@ -195,6 +199,16 @@ def run(
         wire=wire,
     )
     RobotProgram(orders, read, robot_settings, taught).run()
+
+
+def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
+    """Return --task: as given, or the task of the knowledge file where it is another than the `usual` one."""
+    from kurt2rt.knowledge.task_of_file import task_of_file
+    from kurt2rt.tasks.settings import load_task
+
+    if given is None and task_of_file(knowledge) == load_task(usual).system_name:
+        return None
+    return task_of_file(knowledge, given)
 
 
 def _changed(

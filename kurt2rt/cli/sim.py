@@ -14,7 +14,7 @@ from rich.console import Console
 from hal.bus import open_bus
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
-from kurt2rt.cli.options import RobotName
+from kurt2rt.cli.options import RobotName, world_option
 from kurt2rt.cli.printer import Printer
 from kurt2rt.signals import Hearing
 from kurt2rt.timing.short_turns import short_turns
@@ -32,7 +32,7 @@ def sim(
             "SocketCAN interface such as vcan0."
         ),
     ] = "shared:kurt2",
-    world: Annotated[str, typer.Option(help="World by name (config/worlds) or a path to its YAML file.")] = "a",
+    world: Annotated[str, world_option("Default: a.")] = "a",
     start: Annotated[
         int | None, typer.Option(min=1, help="Start pose of the world, 1, 2, ...; default: the seed decides.")
     ] = None,

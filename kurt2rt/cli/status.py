@@ -14,6 +14,7 @@ from rich.live import Live
 from rich.text import Text
 
 from kurt2rt.channel.credentials import Device, read_device
+from kurt2rt.cli.options import task_option
 from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
@@ -34,9 +35,7 @@ def status(
         Path | None,
         typer.Argument(help="Knowledge file that the robot program teaches on in. Default: as the settings say."),
     ] = None,
-    task: Annotated[
-        str | None, typer.Option(help="Task that the robot program was started with, where no file is given.")
-    ] = None,
+    task: Annotated[str | None, task_option("As the robot program was started with, if no file is given.")] = None,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",

@@ -9,7 +9,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, TaskName
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, task_option
 from kurt2rt.cli.printed import console_of
 from kurt2rt.experiments.pool import run_jobs
 from kurt2rt.experiments.shown.sheet import as_rich
@@ -22,7 +22,7 @@ def surprise(
     taught: Annotated[
         Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --task streets --seeds leaves them.")
     ],
-    task: TaskName = "streets",
+    task: Annotated[str, task_option("Default: streets.")] = "streets",
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-9.")] = "0-9",
     learns_s: Annotated[
         float, typer.Option("--learns", min=1.0, help="Seconds that a robot gets to know what to expect.")

@@ -20,6 +20,7 @@ from kurt2rt.channel.credentials import (
     read_device,
 )
 from kurt2rt.cli.end_of_teaching import end_of_teaching
+from kurt2rt.cli.options import task_option
 from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
@@ -75,7 +76,7 @@ def teach(
         typer.Option(help="Where a TLS proxy in front of the page serves it, such as https://robot.example."),
     ] = None,
     task: Annotated[
-        str | None, typer.Option(help="Task that the scripted teacher teaches. Default: as the settings say.")
+        str | None, task_option("Taught by the scripted teacher. Default: the task of the settings.")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Decides the scripted teacher's chance.")] = 1,
     settings: Annotated[

@@ -124,9 +124,9 @@ def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
         (("run", "--settings", "nope"), "nope: no such file in runtime"),
         (("run", "--world", "nope", "--seconds", "1"), "nope: no such file in worlds"),
         (("lesson", "--task", "wal_folowing"), "; did you mean wall_following?"),
-        (("exam", "none", "--world", "manhatan"), "did you mean manhattan?"),
+        (("sim", "--world", "manhatan"), "did you mean manhattan?"),
         (
-            ("exam", "none", "--world", "cave.png"),
+            ("sim", "--world", "cave.png"),
             "cave.png: is an image, not a world; give the YAML file of its map, ",
         ),
         (("run", "--world", "maps/cave.PGM"), "such as maps/cave.yaml (ROS map_server: image, resolution, origin,"),

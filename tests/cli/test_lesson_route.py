@@ -41,7 +41,7 @@ def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLin
     assert "Drives without a teacher" in said.out
     assert "Not judged: 2 robots only" in said.out
     report = Path("made/report.html").read_text(encoding="utf-8")
-    assert "kurt2rt lesson route --seeds 1,2" in report
+    assert "kurt2rt lesson --task route --seeds 1,2" in report
     assert str(streets) not in report
     kept = Path("made/results/taught/route-8-1.json")
     before = kept.stat().st_mtime_ns

@@ -26,7 +26,9 @@ def test_what_is_set_is_what_is_taught_and_examined(kurt2rt: CommandLine) -> Non
     assert "Exams without teacher, 2 s each" in both.out
 
 
-@pytest.mark.parametrize("command", [("lesson",), ("exam", KNOWLEDGE), ("demo",)], ids=lambda words: words[0])
+@pytest.mark.parametrize(
+    "command", [("lesson",), ("exam", KNOWLEDGE, "--task", "wall_following"), ("demo",)], ids=lambda words: words[0]
+)
 def test_a_key_that_there_is_not_and_a_word_without_a_value_are_told(
     kurt2rt: CommandLine, command: tuple[str | Path, ...]
 ) -> None:

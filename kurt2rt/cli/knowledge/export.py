@@ -7,10 +7,10 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.cli.options import RobotName
+from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
 from kurt2rt.exchange.given import export_knowledge, import_knowledge, read_given
 from kurt2rt.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.task_of_file import task_of_file
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.tasks.settings import load_task
 
@@ -21,16 +21,12 @@ def export(
     sign: Annotated[
         Path | None, typer.Option(help="Sign it with this private key, as kurt2rt knowledge key makes one.")
     ] = None,
-    task_name: Annotated[
-        str | None, typer.Option("--task", help="Task whose settings go with it; the one it was taught for if absent.")
-    ] = None,
+    task_name: TaskOfTheFile = None,
     robot_name: RobotName = "kurt2",
 ) -> None:
     """Write one file to give away: all lessons and counts, and the settings they were taught with."""
     key = None if sign is None else read_private_key(sign)
-    with Journal.read_only(file) as journal:
-        system = journal.binding.system
-    robot, task = load_robot(robot_name), load_task(task_name or system)
+    robot, task = load_robot(robot_name), load_task(task_of_file(file, task_name))
     size = export_knowledge(file, out, robot, task, key, stamp=utc_now())
     signed = "" if key is None else f", signed by {fingerprint(key.public_key().public_bytes_raw())}"
     say(f"export  {out}: {size / 1000:.0f} kB{signed}")
@@ -39,9 +35,7 @@ def export(
 def import_(
     file: Annotated[Path, typer.Argument(help="File that kurt2rt knowledge export wrote.")],
     into: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
-    task_name: Annotated[
-        str | None, typer.Option("--task", help="Task to use it for; the one whose settings came with it if absent.")
-    ] = None,
+    task_name: Annotated[str | None, task_option("Default: the task whose settings came with it.")] = None,
     robot_name: RobotName = "kurt2",
     trusted: Annotated[
         Path | None, typer.Option(help="Take it only if the owner of this public key (.pub) has signed it.")

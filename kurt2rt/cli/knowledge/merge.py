@@ -7,11 +7,11 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
-from kurt2rt.cli.options import RobotName
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.cli.options import RobotName, TaskOfTheFile
 from kurt2rt.knowledge.merging import Merge, Side
 from kurt2rt.knowledge.merging import merge as bring_in
 from kurt2rt.knowledge.nearness import borders_of
+from kurt2rt.knowledge.task_of_file import task_of_file
 from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.tasks.settings import load_task
 
@@ -22,9 +22,7 @@ def merge(
     prefer: Annotated[
         Side | None, typer.Option(help="Who is right where both changed the same, or say different things.")
     ] = None,
-    task_name: Annotated[
-        str | None, typer.Option("--task", help="Task whose R says what is near; the one it was taught for if absent.")
-    ] = None,
+    task_name: TaskOfTheFile = None,
     robot_name: RobotName = "kurt2",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would come of it.")] = False,
 ) -> None:
@@ -33,9 +31,7 @@ def merge(
     Conflicts are listed, and unless --prefer says who is right nothing is
     changed, with exit code 1.
     """
-    with Journal.read_only(file) as journal:
-        system = journal.binding.system
-    borders = borders_of(load_task(task_name or system), load_robot(robot_name))
+    borders = borders_of(load_task(task_of_file(file, task_name)), load_robot(robot_name))
     merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
     for conflict in merged.conflicts:
         say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {conflict.where}")

@@ -1,0 +1,104 @@
+"""The task comes from the knowledge file; a task that contradicts the file is refused in one line."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.opening import binding_of
+from kurt2rt.tasks.settings import load_task
+from tests.cli.helpers import CommandLine
+from tests.cli.test_bad_input import changed
+from tests.experiments.helpers import ROBOT
+
+
+@pytest.fixture
+def fleeing(tmp_path: Path) -> Path:
+    """A knowledge file of the task fleeing, in which nothing was taught yet."""
+    path = tmp_path / "mine.knowledge"
+    Journal.open(path, binding_of(ROBOT, load_task("fleeing"))).close()
+    return path
+
+
+def test_exam_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
+    short = ("--set", "exam.duration_s=1", "--world", "a")
+    named = kurt2rt("exam", fleeing, "--task", "fleeing", *short)
+    assert named.exit_code == 0, named.err
+    assert kurt2rt("exam", fleeing, *short).out == named.out
+
+
+def test_run_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
+    said = kurt2rt("run", "--seconds", "0.1", "--port", "0", "--no-record", "--knowledge", fleeing)
+    assert said.exit_code == 0, said.err
+    assert said.out.startswith("task fleeing, robot sim")
+
+
+def test_lesson_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
+    short = ("--set", "teaching.supervised_s=1", "--set", "teaching.corrections_s=1")
+    said = kurt2rt("lesson", "--knowledge", fleeing, *short, "--out", "made")
+    assert said.exit_code == 0, said.err
+    assert said.out.startswith("Lesson: fleeing in world")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("exam", "mine.knowledge"),
+        ("lesson", "--knowledge", "mine.knowledge"),
+        ("run", "--knowledge", "mine.knowledge"),
+        ("knowledge", "export", "mine.knowledge", "out.zip"),
+        ("knowledge", "merge", "mine.knowledge", "mine.knowledge"),
+    ],
+    ids=" ".join,
+)
+@pytest.mark.usefixtures("fleeing")
+def test_task_that_contradicts_the_file_is_refused(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
+    assert kurt2rt.refused(*words, "--task", "circle") == (
+        "kurt2rt: mine.knowledge: was taught for the task 'fleeing', not for 'circle'; leave out --task, or give "
+        "another knowledge file"
+    )
+
+
+def test_file_of_a_task_that_is_not_shipped_asks_for_its_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    task = changed("tasks", "fleeing", tmp_path, lambda content: content.update(name="sneaking"))
+    Journal.open(tmp_path / "mine.knowledge", binding_of(ROBOT, load_task(str(task)))).close()
+    refusal = kurt2rt.refused("exam", "mine.knowledge")
+    assert "mine.knowledge: was taught for the task 'sneaking', whose settings are not found" in refusal
+    assert refusal.endswith("give them: --task PATH.yaml")
+    short = ("--set", "exam.duration_s=1", "--world", "a")
+    assert kurt2rt("exam", "mine.knowledge", "--task", task, *short).exit_code == 0
+
+
+def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    Journal.open(tmp_path / "mine.knowledge", binding_of(ROBOT, load_task("streets"))).close()
+    short = ("--set", "exam.duration_s=1")
+    assert kurt2rt("exam", "mine.knowledge", "--task", "route", *short).exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["demo", "exam", "lesson", "phases", "run", "surprise", "sim"])
+def test_task_and_world_read_alike_in_every_command(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setattr("typer.rich_utils.MAX_WIDTH", 400)
+    monkeypatch.setenv("COLUMNS", "400")
+    told = kurt2rt(command, "--help").out
+    lines = [" ".join(line.strip("│ ").split()) for line in told.splitlines()]
+    named = [line for line in lines if line.startswith(("--task ", "--world "))]
+    assert named
+    for line in named:
+        assert line.startswith(
+            ("--task NAME|PATH Task: a name in config/tasks, or", "--world NAME|PATH World: a name in config/worlds, ")
+        )
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [("kurt2rt exam x --task wal", "wall_following"), ("kurt2rt run --world manh", "manhattan")],
+)
+def test_completion_offers_shipped_names(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, typed: str, offered: str
+) -> None:
+    monkeypatch.setenv("_KURT2RT_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", typed)
+    monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))
+    assert kurt2rt().out.split() == [offered]
