@@ -98,8 +98,13 @@ class SimulatedArena:
 
     @property
     def laps(self) -> float:
-        """Rounds made with the wall on the left."""
+        """Progress along walls, in laps."""
         return self.simulation.laps
+
+    @property
+    def lap_m(self) -> float:
+        """Length of a lap."""
+        return self.simulation.lap_m
 
     def step(self) -> None:
         """One cycle of 10 ms."""

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.channel.maps import LINE, NAME, Form, MapOf
+from kurt2rt.channel.maps import LINE, NAME, Form, MapOf, MayLack
 from kurt2rt.channel.schema import Flag, ManyOf, Real
 
 _MOST_WORLDS = 32
@@ -16,6 +16,8 @@ class WorldVerdict:
     passed: bool
     text: str
     """Progress beside that of the teacher's own policy, collisions, an early end."""
+    judged: bool = True
+    """False: the teacher's own policy gets nowhere in this world, and `passed` says nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +46,9 @@ EXAM = Form[ExamStanding](
         running=Flag(),
         share=Real(1.0),
         text=LINE,
-        verdicts=ManyOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE), most=_MOST_WORLDS),
+        verdicts=ManyOf(
+            MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=MayLack(Flag())), most=_MOST_WORLDS
+        ),
         picture=NAME,
         trouble=LINE,
     ),

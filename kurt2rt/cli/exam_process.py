@@ -18,7 +18,7 @@ from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.drawing import draw_exams
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import label_of, verdict_of
+from kurt2rt.experiments.report import label_of, not_judged, verdict_of
 from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
@@ -69,9 +69,13 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
     picture.parent.mkdir(parents=True, exist_ok=True)
     draw_exams(results, stage, unborn)
     unborn.rename(picture)
-    verdicts = tuple(WorldVerdict(label_of(each.learned.world), each.succeeded, verdict_of(each)) for each in results)
-    passed = sum(each.passed for each in verdicts)
-    _tell(ExamStanding(False, 1.0, f"Passed in {passed} of {len(verdicts)} worlds.", verdicts))
+    verdicts = tuple(
+        WorldVerdict(label_of(each.learned.world), each.succeeded, verdict_of(each), not not_judged(each))
+        for each in results
+    )
+    passed, judged = (sum(counts) for counts in zip(*((each.passed, each.judged) for each in verdicts), strict=True))
+    unjudged = f"; {len(verdicts) - judged} not judged" if judged < len(verdicts) else ""
+    _tell(ExamStanding(False, 1.0, f"Passed in {passed} of {judged} worlds{unjudged}.", verdicts))
 
 
 def _tell(standing: ExamStanding) -> None:

@@ -93,7 +93,12 @@ class Arena(Protocol):
 
     @property
     def laps(self) -> float:
-        """Way made along the world's outline with the wall on the left, in whole rounds; backwards counts against."""
+        """Way made along walls with the wall on the left, in lengths of the outer wall; backwards counts against."""
+        ...
+
+    @property
+    def lap_m(self) -> float:
+        """Length of the way along the outer wall, in m."""
         ...
 
     def step(self) -> None:

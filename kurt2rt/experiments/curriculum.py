@@ -8,6 +8,7 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lesson import LessonResult, teach
 from kurt2rt.experiments.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
@@ -26,7 +27,12 @@ class WorldResult:
 
     learned: ExamResult
     teacher: ExamResult
-    succeeded: bool
+    verdict: ExamVerdict
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the exam was judged and passed."""
+        return self.verdict is ExamVerdict.PASSED
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,5 +110,5 @@ async def run_exams(
     for world in worlds:
         learned = await drive(world, by_teacher=False)
         teacher = await drive(world, by_teacher=True)
-        results.append(WorldResult(learned, teacher, learned.succeeded(teacher.progress, task.exam.success)))
+        results.append(WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success)))
     return tuple(results)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from kurt2rt.experiments.arena import Position, Stage
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
+from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.trails import ASKED, TRAIL, columns, draw_trail
 from kurt2rt.tasks.settings import TaskSettings
@@ -48,7 +49,7 @@ def _draw_exam(panel: Axes, result: WorldResult, stage: Stage) -> None:
     draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
     unknown = _places("situation unknown", len(exam.unknown_positions))
     _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
-    verdict = "success" if result.succeeded else "failed"
+    verdict = "success" if result.succeeded else EXAM_VERDICT_TEXTS[result.verdict]
     panel.set_title(
         f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
         f"{verdict}"

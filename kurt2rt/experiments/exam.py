@@ -8,6 +8,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Course, Findings
 from kurt2rt.experiments.drive import Drive
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lesson import TRAIL_STRIDE
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
@@ -59,13 +60,20 @@ class ExamResult:
     collision_positions: tuple[Position, ...] = ()
     rescues: int = 0
     """How often it was stuck and set down elsewhere, where that does not end the exam."""
+    least_progress: float = 0.0
+    """A drive that comes no farther gets nowhere: no other drive is measured by it."""
 
-    def succeeded(self, teachers_progress: float, success: SuccessSettings) -> bool:
-        """No more collisions than allowed, no alarm, not stuck, and enough of what the teacher's own policy reaches."""
-        # Where the teacher gets nowhere either, standing still is no success.
+    def verdict(self, teachers_progress: float, success: SuccessSettings) -> ExamVerdict:
+        """Return the verdict on this drive, measured by the progress of the teacher's own policy from the same start.
+
+        A drive passes with no more collisions than allowed, no alarm, not stuck, and with enough progress.
+        """
+        if teachers_progress <= self.least_progress:
+            return ExamVerdict.NOT_JUDGED
         enough = self.progress > 0.0 and self.progress >= success.progress_share * teachers_progress
         right = self.right_share >= success.right_at_least
-        return self.collisions <= success.collisions_at_most and not self.stuck and not self.alarm and enough and right
+        clean = self.collisions <= success.collisions_at_most and not self.stuck and not self.alarm
+        return ExamVerdict.PASSED if clean and enough and right else ExamVerdict.FAILED
 
     @property
     def failed(self) -> bool:
@@ -74,8 +82,8 @@ class ExamResult:
 
     @property
     def got_nowhere(self) -> bool:
-        """Whether there is no progress that another drive could be measured by: it made none, or got stuck."""
-        return self.progress <= 0.0 or self.stuck
+        """Whether the progress is too small to measure another drive by."""
+        return self.progress <= self.least_progress
 
     @property
     def right_share(self) -> float:
@@ -211,6 +219,7 @@ async def examine(
         alarm=alarm,
         findings=drive.course.findings,
         collision_positions=tuple(collision_positions),
+        least_progress=task.course.least_progress(arena, task.exam.duration_s),
     )
 
 

@@ -9,8 +9,12 @@ from rich.text import Text
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Findings
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.exam import ExamResult
+from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, NOT_JUDGED_BECAUSE, ExamVerdict
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.text_table import TextTable
+
+_COLOURS = {ExamVerdict.PASSED: "green", ExamVerdict.FAILED: "red", ExamVerdict.NOT_JUDGED: "yellow"}
+_SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "no"}
 
 
 def render_curriculum(result: CurriculumResult, task: TaskSettings) -> RenderableType:
@@ -50,10 +54,16 @@ def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> Renderable
             str(exam.collisions),
             _early_end(exam, "after") or "no",
             f"{exam.share_unknown:.1%}",
-            Text("yes", "green") if each.succeeded else Text("no", "red"),
+            Text(_SUCCESS_WORDS[each.verdict], _COLOURS[each.verdict]),
         )
     measured = _render_measures("Measures", [each.learned.world for each in exams], [[each.learned] for each in exams])
-    return Group(driven, *measured)
+    note = [NOT_JUDGED_BECAUSE.capitalize() + "."] if any(not_judged(each) for each in exams) else []
+    return Group(driven, *note, *measured)
+
+
+def not_judged(result: WorldResult) -> bool:
+    """Return whether the exam has no verdict."""
+    return result.verdict is ExamVerdict.NOT_JUDGED
 
 
 def verdict_of(result: WorldResult) -> str:
@@ -61,6 +71,8 @@ def verdict_of(result: WorldResult) -> str:
     exam = result.learned
     collisions = {0: "no collision", 1: "1 collision"}.get(exam.collisions, f"{exam.collisions} collisions")
     of = f"of the teacher's {result.teacher.progress:.2f} {exam.unit}{_not_well(result.teacher)}"
+    if not_judged(result):
+        return f"{NOT_JUDGED_BECAUSE} ({result.teacher.progress:.2f} {exam.unit})"
     parts = [f"{exam.progress:.2f} {of}", collisions, _early_end(exam, "stuck after")]
     return ", ".join(part for part in parts if part)
 
@@ -147,9 +159,10 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             exam = each.learned
             early = _early_end(exam, "stuck at")
             end = f", {early}" if early else ""
-            colour = "green" if each.succeeded else "red"
+            colour = _COLOURS[each.verdict]
             of_teacher = f"{each.teacher.progress:.1f}{_not_well(each.teacher)}"
-            cells.append(Text(f"{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}", colour))
+            unjudged = f", {EXAM_VERDICT_TEXTS[each.verdict]}" if not_judged(each) else ""
+            cells.append(Text(f"{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}{unjudged}", colour))
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 
@@ -172,11 +185,12 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     for place, world in enumerate(worlds):
         exams = [result.exams[place] for result in results]
         passed = sum(each.succeeded for each in exams)
-        low, high = wilson_interval(passed, len(exams))
+        judged = len(exams) - sum(map(not_judged, exams))
+        unjudged = f", {len(exams) - judged} not judged" if judged < len(exams) else ""
         success.add_row(
             label_of(world),
-            f"{passed} of {len(exams)}",
-            f"{low:.0%} to {high:.0%}",
+            f"{passed} of {judged}{unjudged}",
+            "{:.0%} to {:.0%}".format(*wilson_interval(passed, judged)) if judged else "none",
             str(sum(each.learned.collisions > 0 for each in exams)),
             str(sum(each.learned.stuck or bool(each.learned.alarm) for each in exams)),
             f"{quartiles([each.learned.progress for each in exams])[1]:.2f}",

@@ -30,9 +30,9 @@ def exam_result(world: str = "a", seed: int = 1, laps: float = 8.0, collisions: 
     )
 
 
-def world_result(learned: ExamResult) -> WorldResult:
-    teacher = exam_result(learned.world, learned.seed, laps=9.0)
-    return WorldResult(learned, teacher, learned.succeeded(teacher.progress, SuccessSettings()))
+def world_result(learned: ExamResult, teachers_laps: float = 9.0) -> WorldResult:
+    teacher = exam_result(learned.world, learned.seed, laps=teachers_laps)
+    return WorldResult(learned, teacher, learned.verdict(teacher.progress, SuccessSettings()))
 
 
 def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumResult:

@@ -1,11 +1,12 @@
 """The guard stops the robot for good in the middle of a lesson, or of an exam."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import anyio
 
 from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.report import render_exams
@@ -75,6 +76,8 @@ def test_an_exam_ends_and_says_why() -> None:
     assert drive.alarm == "bus lost"
     assert drive.duration_s == ALARM_CYCLE / 100
     assert not drive.stuck
-    assert not drive.succeeded(drive.progress, TASK.exam.success)
-    rows = printed(render_exams([WorldResult(drive, drive, succeeded=False)], TASK))
+    # The teacher was stopped after a quarter of the time: that is no measure.
+    assert result.verdict is ExamVerdict.NOT_JUDGED
+    assert replace(drive, least_progress=0.0).verdict(drive.progress, TASK.exam.success) is ExamVerdict.FAILED
+    rows = printed(render_exams([WorldResult(drive, drive, ExamVerdict.FAILED)], TASK))
     assert any("bus lost after 5 s" in row for row in rows)

@@ -9,6 +9,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.experiments.arena import Position
 from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.exam import ExamResult, NothingIsTaught, examine
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated, TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import SuccessSettings, TaskSettings, load_task
@@ -156,32 +157,36 @@ def test_progress_is_told_each_second_and_at_the_end() -> None:
     assert told == pytest.approx([1.0, 2.0, 2.5])
 
 
+PASSED, FAILED, NOT_JUDGED = ExamVerdict
 DRIVE = exam_result(laps=8.0)
 JUNCTIONS = replace(DRIVE, findings={"junctions": 20.0, "junctions right": 18.0})
 
 
 @pytest.mark.parametrize(
-    ("drive", "teachers_laps", "success", "succeeded"),
+    ("drive", "teachers_laps", "success", "verdict"),
     [
-        (DRIVE, 10.0, SuccessSettings(), True),  # just enough
-        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(), False),
-        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(progress_share=0.7), True),
-        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(), False),
-        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(collisions_at_most=1), True),
-        (replace(DRIVE, stuck=True), 10.0, SuccessSettings(), False),
-        (replace(DRIVE, alarm="bus lost"), 10.0, SuccessSettings(), False),
-        (replace(DRIVE, share_unknown=0.5), 10.0, SuccessSettings(), True),  # asking costs laps, and is judged by them
-        (replace(DRIVE, progress=-1.0), 10.0, SuccessSettings(), False),
-        # where the teacher makes no way, standing still is no success
-        (replace(DRIVE, progress=0.0), 0.0, SuccessSettings(), False),
-        (replace(DRIVE, progress=0.0), -0.1, SuccessSettings(), False),
-        (replace(DRIVE, progress=-0.05), -0.1, SuccessSettings(), False),
-        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.9), True),
-        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.95), False),
-        (DRIVE, 10.0, SuccessSettings(right_at_least=0.9), False),  # no junction, none right
+        (DRIVE, 10.0, SuccessSettings(), PASSED),  # just enough
+        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(), FAILED),
+        (replace(DRIVE, progress=7.999), 10.0, SuccessSettings(progress_share=0.7), PASSED),
+        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(), FAILED),
+        (replace(DRIVE, collisions=1), 10.0, SuccessSettings(collisions_at_most=1), PASSED),
+        (replace(DRIVE, stuck=True), 10.0, SuccessSettings(), FAILED),
+        (replace(DRIVE, alarm="bus lost"), 10.0, SuccessSettings(), FAILED),
+        # Asking costs laps, which are judged.
+        (replace(DRIVE, share_unknown=0.5), 10.0, SuccessSettings(), PASSED),
+        (replace(DRIVE, progress=-1.0), 10.0, SuccessSettings(), FAILED),
+        # A teacher that makes no way, or too little, is no measure.
+        (replace(DRIVE, progress=0.0), 0.0, SuccessSettings(), NOT_JUDGED),
+        (DRIVE, -0.1, SuccessSettings(), NOT_JUDGED),
+        (replace(DRIVE, collisions=1), 0.0, SuccessSettings(), NOT_JUDGED),
+        (replace(DRIVE, least_progress=2.0), 2.0, SuccessSettings(), NOT_JUDGED),
+        (replace(DRIVE, least_progress=2.0), 2.001, SuccessSettings(), PASSED),
+        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.9), PASSED),
+        (JUNCTIONS, 10.0, SuccessSettings(right_at_least=0.95), FAILED),
+        (DRIVE, 10.0, SuccessSettings(right_at_least=0.9), FAILED),  # no junction, none right
     ],
 )
 def test_success_is_progress_without_a_collision(
-    drive: ExamResult, teachers_laps: float, success: SuccessSettings, *, succeeded: bool
+    drive: ExamResult, teachers_laps: float, success: SuccessSettings, verdict: ExamVerdict
 ) -> None:
-    assert drive.succeeded(teachers_laps, success) is succeeded
+    assert drive.verdict(teachers_laps, success) is verdict

@@ -79,7 +79,30 @@ def test_its_process_draws_and_judges(tmp_path: Path, capsys: pytest.CaptureFixt
     (verdict,) = standings[-1].verdicts
     assert (standings[-1].text, verdict.passed, verdict.world) == ("Passed in 0 of 1 worlds.", False, "A")
     assert "of the teacher's" in verdict.text
+    assert verdict.judged
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_exam_process_with_a_policy_that_gets_nowhere_does_not_judge(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    repertoire = yaml.safe_load((CONFIG_DIR / "repertoires" / "basic.yaml").read_text(encoding="utf-8"))
+    for action in repertoire["actions"]:
+        action |= {key: round(speed / 10, 2) for key, speed in action.items() if key in ("left_m_s", "right_m_s")}
+    slow = tmp_path / "slow.yaml"
+    slow.write_text(yaml.safe_dump(repertoire), encoding="utf-8")
+    settings = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
+    settings["exam"] |= {"worlds": ["a"], "duration_s": 2.0}
+    task = tmp_path / "slow_task.yaml"
+    task.write_text(yaml.safe_dump(settings | {"repertoire": str(slow)}), encoding="utf-8")
+    knowledge = tmp_path / "nothing.knowledge"
+    open_knowledge(knowledge, load_robot(), load_task(str(task))).close()
+    exam_process._examine(knowledge, tmp_path / "exam.png", "kurt2", str(task), 1)
+    standing = EXAM.read(json.loads(capsys.readouterr().out.splitlines()[-1]))
+    (verdict,) = standing.verdicts
+    assert standing.text == "Passed in 0 of 0 worlds; 1 not judged."
+    assert (verdict.passed, verdict.judged) == (False, False)
+    assert verdict.text.startswith("not judged: the policy itself gets nowhere here")
 
 
 def test_knowledge_of_another_task_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

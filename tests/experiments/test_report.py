@@ -8,7 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console, RenderableType
 
-from kurt2rt.experiments.report import quartiles, render_curriculum, render_exams, render_seeds, wilson_interval
+from kurt2rt.experiments.report import (
+    quartiles,
+    render_curriculum,
+    render_exams,
+    render_seeds,
+    verdict_of,
+    wilson_interval,
+)
 from tests.experiments.helpers import short_task
 from tests.experiments.results import curriculum_result, exam_result, world_result
 
@@ -114,8 +121,33 @@ def test_a_comparison_with_a_teacher_who_did_not_do_well_is_shown_as_such() -> N
 
     assert told() == "9.00"
     assert told(progress=-0.5) == "-0.50 (got nowhere)"
-    assert told(stuck=True) == "9.00 (got nowhere)"
-    assert told(collisions=1) == told(alarm="bus lost") == "9.00 (failed)"
+    assert told(least_progress=9.0) == "9.00 (got nowhere)"
+    assert told(collisions=1) == told(alarm="bus lost") == told(stuck=True) == "9.00 (failed)"
+
+
+def test_render_exams_with_a_teacher_that_gets_nowhere_is_not_judged() -> None:
+    exams = [world_result(exam_result("b")), world_result(exam_result("cave", collisions=2), teachers_laps=0.0)]
+    rows = printed(render_exams(exams, short_task()))
+    assert ["B", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
+    assert ["cave", "8.00", "0.00 (got nowhere)", "2", "no", "3.4%", "not judged"] in rows
+    assert ["Not judged: the policy itself gets nowhere here."] in rows
+    assert ["Not judged: the policy itself gets nowhere here."] not in printed(render_exams(exams[:1], short_task()))
+    assert verdict_of(exams[1]) == "not judged: the policy itself gets nowhere here (0.00 laps)"
+
+
+def test_render_seeds_counts_an_exam_that_is_not_judged_neither_way() -> None:
+    results = [
+        replace(
+            curriculum_result(seed, 80),
+            exams=(world_result(exam_result("a", seed), laps), world_result(exam_result("b", seed), 0.0)),
+        )
+        for seed, laps in ((100, 9.0), (101, 0.0), (102, 20.0))
+    ]
+    rows = printed(render_seeds(results, short_task()))
+    of_101 = next(row for row in rows if row[0] == "101")
+    assert of_101[5:] == ["8.0 of 0.0 (got nowhere), 0, not judged"] * 2
+    assert ["A", "1 of 2, 1 not judged", "9% to 91%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["B", "0 of 0, 3 not judged", "none", "0", "0", "8.00", "3.4%"] in rows
 
 
 def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:

@@ -16,8 +16,11 @@ DRIVES = ExamStanding(True, 0.42, "exam without teacher, world b")
 VERDICTS = (
     WorldVerdict("A", True, "4.86 of the teacher's 5.00 laps, no collision"),
     WorldVerdict("B", False, "1.02 of the teacher's 3.58 laps, 2 collisions, stuck after 113 s"),
+    WorldVerdict("cave", False, "not judged: the policy itself gets nowhere here (0.02 laps)", judged=False),
 )
-OVER = ExamStanding(False, 1.0, "Passed in 1 of 2 worlds.", VERDICTS, "wall-following-20261122T180000.png")
+OVER = ExamStanding(
+    False, 1.0, "Passed in 1 of 2 worlds; 1 not judged.", VERDICTS, "wall-following-20261122T180000.png"
+)
 LOADED = "const e = document.querySelector('#exam-picture'); return e.complete && e.naturalWidth;"
 
 
@@ -55,8 +58,9 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(lesson: Lesson) -> None:
     assert_handy(phone, PORTRAIT, "more")
     phone.show("21-exam-runs")
     later(lesson, OVER)
-    lesson.reads("#exam-verdict", "Passed in 1 of 2 worlds.")
+    lesson.reads("#exam-verdict", "Passed in 1 of 2 worlds; 1 not judged.")
     lesson.reads("#exam-worlds", "World B: failed")
+    lesson.reads("#exam-worlds", "World cave: not judged")
     phone.wait(lambda: phone.run(LOADED), "the picture is there")
     for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
         phone.turn(size)

@@ -8,6 +8,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 from hal.settings_by_kind import KindSettings
 from kurt2rt.experiments.arena import Arena, Plan, Pose
 
+LEAST_SPEED_M_S = 0.1
+"""A drive that makes way more slowly than this on average gets nowhere; the shipped policies make 0.2 m/s and more."""
+
 Findings = Mapping[str, float]
 """Measures by name, with the unit in the name where there is one."""
 DISTANCE_ERROR = "distance error, m"
@@ -97,6 +100,10 @@ class CourseSettings(KindSettings):
 
         Raises hal.settings.SettingsError.
         """
+
+    def least_progress(self, arena: Arena, duration_s: float) -> float:  # noqa: ARG002 - for other courses
+        """Return the progress up to which a drive of this length, in s, gets nowhere: 0 unless a course knows more."""
+        return 0.0
 
     @abstractmethod
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:

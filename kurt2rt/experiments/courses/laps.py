@@ -1,4 +1,4 @@
-"""Laps along the outer wall, with the wall on the left."""
+"""Way along the walls in laps, with the wall on the left."""
 
 import random
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from kurt2rt.experiments.arena import Arena, Pose
-from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
+from kurt2rt.experiments.courses.course import DISTANCE_ERROR, LEAST_SPEED_M_S, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
 
 
@@ -15,6 +15,10 @@ class LapsSettings(CourseSettings):
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance that is wanted from the robot's centre to the nearest wall."""
+
+    def least_progress(self, arena: Arena, duration_s: float) -> float:
+        """Return the laps of a drive that makes 0.1 m/s along walls."""
+        return LEAST_SPEED_M_S * duration_s / arena.lap_m
 
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""

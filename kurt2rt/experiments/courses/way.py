@@ -4,11 +4,15 @@ import math
 import random
 
 from kurt2rt.experiments.arena import Arena, Pose
-from kurt2rt.experiments.courses.course import Course, CourseSettings, Findings
+from kurt2rt.experiments.courses.course import LEAST_SPEED_M_S, Course, CourseSettings, Findings
 
 
 class WaySettings(CourseSettings):
     """Way."""
+
+    def least_progress(self, arena: Arena, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
+        """Return the way of a drive at 0.1 m/s, in m."""
+        return LEAST_SPEED_M_S * duration_s
 
     def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""

@@ -3,6 +3,7 @@
 from typing import Literal
 
 from hal.settings import Settings
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.kept.made_of import MadeOf
 
 Reading = Literal["shipped", "plain"]
@@ -33,6 +34,15 @@ class DriveOutcome(Settings):
     trail: tuple[Place, ...]
     asked_at: tuple[Place, ...]
     collided_at: tuple[Place, ...]
+    least_progress: float = 0.0
+    """A drive that comes no farther gets nowhere."""
+
+    @property
+    def verdict(self) -> ExamVerdict:
+        """Verdict on the exam."""
+        if self.teacher_got_nowhere:
+            return ExamVerdict.NOT_JUDGED
+        return ExamVerdict.PASSED if self.succeeded else ExamVerdict.FAILED
 
     @property
     def teacher_failed(self) -> bool:
@@ -41,8 +51,8 @@ class DriveOutcome(Settings):
 
     @property
     def teacher_got_nowhere(self) -> bool:
-        """Whether it made no progress, or got stuck, so that the comparison says little."""
-        return self.teachers_progress <= 0.0 or self.teachers_stuck
+        """Whether the teacher's own drive made too little progress to measure another drive by."""
+        return self.teachers_progress <= self.least_progress
 
 
 class TaughtOutcome(Settings):

@@ -7,7 +7,8 @@ from kurt2rt.tasks.settings import FeatureWeight
 SUCCESS = (
     "Success is an exam that ends neither stuck nor stopped by the guard, with no more collisions than allowed, more "
     "than no progress, at least the share that is asked of what the teacher's own policy reaches from the same start, "
-    "and at least the share that is asked of the junctions."
+    "and at least the share that is asked of the junctions. Where that policy itself gets nowhere, the exam is not "
+    "judged and counts neither way."
 )
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
 from kurt2rt.experiments.paper.programme import Experiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings
@@ -31,9 +32,11 @@ class WorldSummary:
     """Name of the world, or empty: the generated ones."""
     label: str
     robots: int
+    judged: int
+    """Exams with a verdict; in the others the teacher's own drive got nowhere."""
     succeeded: int
-    interval: tuple[float, float]
-    """Of the share that succeeded, 95 %."""
+    interval: tuple[float, float] | None
+    """Of the share of `judged` that succeeded, 95 %; None if no exam was judged."""
     collided: int
     """Drives with any collision."""
     collisions: Rate
@@ -48,7 +51,7 @@ class WorldSummary:
     teacher_failed: int
     """Of his drives, how many collided, got stuck or were stopped by the guard for good."""
     teacher_got_nowhere: int
-    """How many made no progress, or got stuck."""
+    """How many made too little progress to measure another drive by."""
     share_unknown: float
     """Median."""
     junctions: int
@@ -117,7 +120,9 @@ def summarize(experiment: Experiment, outcomes: Sequence[TaughtOutcome]) -> Summ
 
 
 def _summarize_world(world: str, label: str, drives: Sequence[DriveOutcome]) -> WorldSummary:
-    succeeded = sum(each.succeeded for each in drives)
+    verdicts = [each.verdict for each in drives]
+    succeeded = verdicts.count(ExamVerdict.PASSED)
+    judged = len(drives) - verdicts.count(ExamVerdict.NOT_JUDGED)
     at_junctions = [each for each in drives if each.findings.get(JUNCTIONS)]
     junctions = [round(each.findings[JUNCTIONS]) for each in at_junctions]
     wrong = [passed - round(each.findings[RIGHT]) for passed, each in zip(junctions, at_junctions, strict=True)]
@@ -128,8 +133,9 @@ def _summarize_world(world: str, label: str, drives: Sequence[DriveOutcome]) -> 
         world=world,
         label=label,
         robots=len(drives),
+        judged=judged,
         succeeded=succeeded,
-        interval=wilson_interval(succeeded, len(drives)),
+        interval=wilson_interval(succeeded, judged) if judged else None,
         collided=sum(each.collisions > 0 for each in drives),
         collisions=rate_of([each.collisions for each in drives], [each.duration_s / _TEN_MIN_S for each in drives]),
         ended_early=sum(each.stuck or bool(each.alarm) for each in drives),
@@ -145,3 +151,9 @@ def _summarize_world(world: str, label: str, drives: Sequence[DriveOutcome]) -> 
             name: quartiles([each.findings[name] for each in drives if name in each.findings])[1] for name in names
         },
     )
+
+
+def success_text(world: WorldSummary) -> str:
+    """Return `18 of 20`, or `18 of 19, 1 not judged`."""
+    left_out = world.robots - world.judged
+    return f"{world.succeeded} of {world.judged}" + (f", {left_out} not judged" if left_out else "")

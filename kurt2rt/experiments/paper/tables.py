@@ -3,15 +3,17 @@
 from collections.abc import Iterator, Sequence
 
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
+from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.settings_sheets import SUCCESS
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
-from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary
+from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary, success_text
 from kurt2rt.experiments.paper.verdict import verdicts
 from kurt2rt.experiments.report import quartiles
 from kurt2rt.experiments.shown.sheet import Sheet
 
+_SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
 _OF_RATES = (
     "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds "
@@ -80,14 +82,14 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
     """Success and collisions by world."""
     rows = []
     for each, world in _worlds(summaries):
-        low, high = world.interval
+        interval = "" if world.interval is None else "{:.0%} to {:.0%}".format(*world.interval)
         rate = world.collisions
         rows.append(
             (
                 each.label,
                 world.label,
-                f"{world.succeeded} of {world.robots}",
-                f"{low:.0%} to {high:.0%}",
+                success_text(world),
+                interval,
                 str(world.ended_early),
                 str(world.collided),
                 f"{rate.value:.2f}",
@@ -135,7 +137,7 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         note="Medians, but for the junctions, which are those of all drives. A junction that the robot was asked for "
         "and did not get through, because it got stuck, was stopped for good or turned back, was not left as asked. "
         f"{_OF_RATES} Failed: so many of the teacher's own drives collided, got stuck or were stopped by the guard for "
-        "good. Nowhere: so many made no progress or got stuck, and a comparison with them says little. "
+        "good. Nowhere: so many made too little progress to measure another drive by. "
         "Unknown: share of the time in which the robot did not know the situation.",
     )
 
@@ -198,7 +200,7 @@ def unseen_sheet(summary: Summary) -> Sheet:
             (
                 names[place],
                 f"{seed}",
-                "yes" if drive.succeeded else "NO",
+                _SUCCESS_WORDS[drive.verdict],
                 str(drive.collisions),
                 f"{drive.progress:.1f} ({_of_teacher(drive)}) {drive.unit}",
                 f"{early} after {drive.duration_s:.0f} s" if early else "",

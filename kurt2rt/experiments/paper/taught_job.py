@@ -114,6 +114,7 @@ def _drive(each: WorldResult) -> DriveOutcome:
         trail=_places(exam.trail[::_PLACE_STRIDE]),
         asked_at=_places(exam.unknown_positions),
         collided_at=_places(exam.collision_positions),
+        least_progress=exam.least_progress,
     )
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from kurt2rt.experiments.paper.settings import AskedSettings
-from kurt2rt.experiments.paper.summary import Summary, WorldSummary
+from kurt2rt.experiments.paper.summary import Summary, WorldSummary, success_text
 from kurt2rt.experiments.shown.verdict import Verdict
 
 
@@ -37,10 +37,11 @@ def verdicts(summary: Summary) -> Iterator[Verdict]:
 
 def _success(world: WorldSummary, share: float) -> Verdict:
     # 0.9 of 20 is 18, also where the product is a trifle more.
-    needed = math.ceil(share * world.robots - 1e-9)
+    needed = math.ceil(share * world.judged - 1e-9)
     return Verdict(
         f"success in {world.label}",
-        f"at least {needed} of {world.robots}",
-        f"{world.succeeded} of {world.robots}",
-        world.succeeded >= needed,
+        f"at least {needed} of {world.judged}",
+        success_text(world),
+        met=world.judged > 0 and world.succeeded >= needed,
+        judged=world.judged > 0,
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.curriculum import Report
 from kurt2rt.experiments.exam import ExamResult, examine
+from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 from kurt2rt.experiments.phases.scoring import Scoring
@@ -47,7 +48,8 @@ class Examiner:
         outcomes = []
         for world in worlds:
             drive = await self._drive(world, events, saved, alone, by_teacher=False)
-            outcomes.append(_outcome(drive, succeeded=drive.succeeded(progress[world], self.task.exam.success)))
+            verdict = drive.verdict(progress[world], self.task.exam.success)
+            outcomes.append(_outcome(drive, succeeded=verdict is ExamVerdict.PASSED))
         return tuple(outcomes)
 
     async def critic(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> tuple[Judgement, ...]:

@@ -11,8 +11,12 @@ class Verdict:
     asked: str
     came: str
     met: bool
+    judged: bool = True
+    """False: there is nothing to judge by."""
 
     @property
     def word(self) -> str:
         """As it is shown: a miss is in capitals, and no colour is needed to see it."""
+        if not self.judged:
+            return "not judged"
         return "met" if self.met else "MISSED"

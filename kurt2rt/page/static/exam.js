@@ -45,10 +45,10 @@ export class Exam {
   #fill(exam) {
     setText($("exam-verdict"), exam.text);
     $("exam-worlds").replaceChildren(
-      ...exam.verdicts.map(({ world, passed, text }) => {
+      ...exam.verdicts.map(({ world, passed, text, judged }) => {
         const row = document.createElement("li");
         const verdict = document.createElement("b");
-        verdict.textContent = `World ${world}: ${passed ? "passed" : "failed"}`;
+        verdict.textContent = `World ${world}: ${judged === false ? "not judged" : passed ? "passed" : "failed"}`;
         const told = document.createElement("span");
         told.textContent = text;
         row.append(verdict, told);

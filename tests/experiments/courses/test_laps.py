@@ -7,7 +7,9 @@ from hal.robot import WheelSpeeds
 from kurt2rt.experiments.arena import Pose
 from kurt2rt.experiments.courses.course import Course
 from kurt2rt.experiments.courses.laps import LapsSettings
+from kurt2rt.experiments.courses.way import WaySettings
 from kurt2rt.simulated import SimulatedArena
+from kurt2rt.tasks.settings import load_task
 from simbridge.pose import Pose as SimulatedPose
 from tests.experiments.courses.paths import Point, along
 from tests.experiments.helpers import STAGE
@@ -70,5 +72,17 @@ def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(to
         assert way_m > 0.5
         # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.
         assert sign * (course.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
+    finally:
+        arena.close()
+
+
+def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None:
+    arena = STAGE.open("one_object", 1, "test")
+    try:
+        assert arena.lap_m == pytest.approx(4 * (4.4 - 2 * 0.35))
+        laps = LapsSettings(kind="laps", wanted_m=WANTED_M).least_progress(arena, 300.0)
+        assert laps * arena.lap_m == pytest.approx(30.0)
+        assert WaySettings(kind="way").least_progress(arena, 300.0) == pytest.approx(30.0)
+        assert load_task("circle").course.least_progress(arena, 300.0) == 0.0
     finally:
         arena.close()

@@ -25,6 +25,7 @@ def drive(
     teachers_collisions: int = 0,
     teachers_stuck: bool = False,
     teachers_alarm: str = "",
+    least_progress: float = 0.0,
 ) -> DriveOutcome:
     return DriveOutcome(
         world=world,
@@ -45,6 +46,7 @@ def drive(
         trail=((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
         asked_at=((1.1, 1.0),),
         collided_at=((1.2, 1.1),) * collisions,
+        least_progress=least_progress,
     )
 
 

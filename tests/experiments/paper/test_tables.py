@@ -99,9 +99,27 @@ def test_comparisons_with_a_teacher_who_did_not_do_well_are_told() -> None:
     summary = summary_of("wall_following", robots)
     sheet = drive_sheet([summary], "drives")
     assert sheet.columns[4] == "failed, nowhere"
-    assert [row[4] for row in sheet.rows] == ["2, 1", "1, 1"]
+    assert [row[4] for row in sheet.rows] == ["2, 0", "1, 1"]
     told = [row[4] for row in unseen_sheet(summary).rows]
     assert told == ["8.0 (9.0) laps", "8.0 (9.0, failed) laps", "8.0 (0.0, got nowhere) laps"]
+
+
+def test_exams_with_a_teacher_that_gets_nowhere_count_neither_way() -> None:
+    nowhere = drive("rooms-100", teachers_progress=0.0)
+    robots = [
+        robot(1, 80, drive("a"), drive("b", teachers_progress=2.0, least_progress=2.0), nowhere),
+        robot(2, 80, drive("a", teachers_progress=0.0), drive("b", teachers_progress=0.0, succeeded=False)),
+        robot(3, 80, drive("a", succeeded=False), drive("b", teachers_progress=-1.0)),
+    ]
+    summary = summary_of("wall_following", robots)
+    a, b, _ = exam_sheet([summary], "exams").rows
+    assert a[1:4] == ("A", "1 of 2, 1 not judged", "9% to 91%")
+    assert b[1:4] == ("B", "0 of 0, 3 not judged", "")
+    assert [row[2] for row in unseen_sheet(summary).rows] == ["not judged"]
+    sheet = asked_sheet([summary], "what was asked")
+    said = verdicts_of(sheet)
+    assert said["success in A"] == ("at least 2 of 2", "1 of 2, 1 not judged", "MISSED")
+    assert said["success in B"] == ("at least 0 of 0", "0 of 0, 3 not judged", "not judged")
 
 
 def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.report import label_of
@@ -17,6 +18,7 @@ from kurt2rt.experiments.trails import ASKED, columns, draw_trail
 _LIFTED_M = 0.5
 """A robot that is so far from where it was a moment ago was set down elsewhere."""
 _COLUMNS = 3
+_VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
 
 
 def draw_eight(stage: StudyStage, drive: DriveOutcome, path: Path) -> None:
@@ -47,7 +49,7 @@ def draw_drives(stage: StudyStage, drives: Sequence[DriveOutcome], path: Path) -
 
 def _told(drive: DriveOutcome) -> str:
     collisions = f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
-    verdict = "success" if drive.succeeded else "no success"
+    verdict = _VERDICT_TEXTS[drive.verdict]
     early = drive.alarm or ("stuck" if drive.stuck else "")
     end = f", {early} after {drive.duration_s:.0f} s" if early else ""
     return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}{end}"
