@@ -30,7 +30,7 @@ class Lesson:
         self._address = f"http://127.0.0.1:{page.port}/pair?token={TOKEN}"
         self._begun = 0
 
-    def begin(self, prepare: Callable[[FakeRobot], None], **shown: object) -> None:
+    def begin(self, prepare: Callable[[FakeRobot], None] = lambda _: None, **shown: object) -> None:
         """Another robot comes up, prepared so, and drives by its RLA 1; the page has nothing open from the one before.
 
         A page introduces itself to a robot that was started anew; to load it anew for each story takes far longer.
