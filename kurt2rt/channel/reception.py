@@ -25,6 +25,7 @@ from kurt2rt.channel.requests import (
     HealthRequest,
     HelloRequest,
     LessonsRequest,
+    LoadRequest,
     MoveWallRequest,
     NextRunRequest,
     PlaceRequest,
@@ -40,10 +41,12 @@ from kurt2rt.channel.requests import (
     StopRequest,
     StreamRequest,
     TakeRequest,
+    UploadRequest,
     WhyRequest,
     WorldRequest,
 )
 from kurt2rt.channel.simulation import SIMULATION, Simulation, TeacherNow
+from kurt2rt.channel.upload import Upload
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.error import KnowledgeError
@@ -142,6 +145,7 @@ class Reception:
         self._why = why
         self._exam = exam
         self._simulation = simulation
+        self._upload = Upload()
         self._changing = False
         self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
         self._outcomes = Outcomes()
@@ -192,6 +196,8 @@ class Reception:
                 if self._exam is None:
                     return _not_simulated()
                 return Reply(Verdict.DONE, {"exam": EXAM.plain_of(self._exam())})
+            case UploadRequest():
+                return self._add_part(sender.device, request)
             case FileRequest(name=name, offset=offset):
                 return await self._part(name, offset)
         return Reply(Verdict.NOT_HERE)
@@ -246,7 +252,7 @@ class Reception:
     def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
         match request:
-            case NextRunRequest():
+            case NextRunRequest() | LoadRequest():
                 return self._begin_next_run(device, command_id, request)
             case ExamRequest():
                 return self._begin_exam(device, command_id)
@@ -291,7 +297,21 @@ class Reception:
         else:
             self._outcomes.settle(command_id, done(self.tick, "the exam has begun; the robot goes on meanwhile"))
 
-    def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest) -> Reply | None:
+    def _add_part(self, device: str, request: UploadRequest) -> Reply:
+        if self._simulation is None:
+            return _not_simulated()
+        if request.boot != self._boot:
+            return self._started_anew()
+        refused = self._not_in_charge(device)
+        if refused is not None:
+            return refused
+        try:
+            size = self._upload.add(device, request.upload, request.offset, request.part)
+        except ValueError as error:
+            return refusal("refused", str(error), self.tick)
+        return done(self.tick, size=size)
+
+    def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest | LoadRequest) -> Reply | None:
         if self._simulation is None:
             return _not_simulated()
         refused = self._not_in_charge(device)
@@ -299,18 +319,24 @@ class Reception:
             return refused
         if self._changing:
             return refusal("refused", "the next run is being prepared; wait for it", self.tick)
-        self._changing = True
-        self._outcomes.begin(command_id)
         school = self._runtime.school
         teacher = TeacherNow(device, int(school.phase), school.session)
-        self._do_outside(self._change_run(command_id, self._simulation, request, teacher))
+        if isinstance(request, LoadRequest):
+            try:
+                content = self._upload.take(device, request.upload, request.sha256)
+            except ValueError as error:
+                return refusal("refused", str(error), self.tick)
+            preparing = self._simulation.load(content, teacher)
+        else:
+            preparing = self._simulation.prepare(request.world, request.task, request.fresh, teacher)
+        self._changing = True
+        self._outcomes.begin(command_id)
+        self._do_outside(self._change_run(command_id, preparing))
         return None
 
-    async def _change_run(
-        self, command_id: str, simulation: Simulation, request: NextRunRequest, teacher: TeacherNow
-    ) -> None:
+    async def _change_run(self, command_id: str, preparing: Awaitable[str]) -> None:
         try:
-            text = await simulation.prepare(request.world, request.task, request.fresh, teacher)
+            text = await preparing
         except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
             text = str(error) if isinstance(error, ValueError) else f"the next run cannot begin: {error!r}"
             self._outcomes.settle(command_id, refusal("refused", " ".join(text.split()), self.tick))
@@ -391,12 +417,13 @@ class Reception:
 
     def _stale(self, boot: bytes, seen: int, longest: int) -> Reply | None:
         if boot != self._boot:
-            return refusal(
-                "boot", "the robot program was started anew; look at the robot, then say it again", self.tick
-            )
+            return self._started_anew()
         if not 0 <= self.tick - seen <= longest:
             return refusal("stale", "given on an old picture; look at the robot, then say it again", self.tick)
         return None
+
+    def _started_anew(self) -> Reply:
+        return refusal("boot", "the robot program was started anew; look at the robot, then say it again", self.tick)
 
     def _hand_in(self, command: Command) -> bool:
         try:

@@ -30,6 +30,19 @@ class Octets:
 
 
 @dataclass(frozen=True, slots=True)
+class OctetsUpTo:
+    """At least one byte, and no more than `most`."""
+
+    most: int
+
+    def __call__(self, what: str, value: object) -> bytes:
+        """Return these bytes. Raises WireError."""
+        if not isinstance(value, bytes) or not 1 <= len(value) <= self.most:
+            raise WireError(f"{what} has to be 1 to {self.most} bytes")
+        return value
+
+
+@dataclass(frozen=True, slots=True)
 class Whole:
     """A whole number; True is none."""
 

@@ -64,3 +64,11 @@ class Simulation(Protocol):
         aside. Raises ValueError in one line.
         """
         ...
+
+    async def load(self, content: bytes, teacher: TeacherNow) -> str:
+        """Look at knowledge that the next run is to begin with, and keep it until the present one ends.
+
+        `content`: an export's archive, or a knowledge file. What is known now is set aside then. Returns what to tell
+        the teacher. Raises ValueError in one line.
+        """
+        ...

@@ -4,6 +4,7 @@ import re
 import secrets
 from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import anyio.to_thread
 
@@ -11,9 +12,11 @@ from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
+from kurt2rt.exchange.given import import_knowledge
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.set_aside import set_aside
+from kurt2rt.knowledge.writer import utc_now
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import BeginSession, Command, SetPhase, Take
@@ -21,6 +24,8 @@ from simbridge.world_settings import load_world
 
 _GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
+_BY_SCRIPT = "the scripted teacher teaches this run; start kurt2rt run without --auto"
+_ZIP = b"PK"
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +39,8 @@ class SimulatedRun:
     knowledge: Path
     fresh: bool = False
     """Whether what stands at `knowledge` is set aside first."""
+    loaded: Path | None = None
+    """Knowledge file that comes to `knowledge` then."""
     teacher: TeacherNow | None = None
     """Who taught in the run before, and teaches on; None in the first run."""
 
@@ -72,7 +79,7 @@ class SimulatedRuns:
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
         """Look whether the next run can be so, and keep it. Raises ValueError in one line."""
         if self._taught_by_script:
-            raise ValueError("the scripted teacher teaches this run; start kurt2rt run without --auto")
+            raise ValueError(_BY_SCRIPT)
         view = await self.view()
         if world is not None and world not in (*view.worlds, view.world) and not _GENERATED.fullmatch(world):
             raise ValueError(f"world: {world!r} is not known; give one of {', '.join(view.worlds)}, rooms-N, streets-N")
@@ -94,9 +101,45 @@ class SimulatedRuns:
         self._files[self.present.task_name] = self.present.knowledge
         if not self.present.fresh:
             return ""
-        self.present = replace(self.present, fresh=False)
-        kept = set_aside(self.present.knowledge)
+        loaded, knowledge = self.present.loaded, self.present.knowledge
+        self.present = replace(self.present, fresh=False, loaded=None)
+        kept = set_aside(knowledge)
+        if loaded is not None:
+            loaded.rename(knowledge)
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"
+
+    async def load(self, content: bytes, teacher: TeacherNow) -> str:
+        """Look at knowledge that the next run is to begin with, and keep it. Raises ValueError in one line."""
+        if self._taught_by_script:
+            raise ValueError(_BY_SCRIPT)
+        try:
+            self.next, lessons = await anyio.to_thread.run_sync(self._load, content, teacher)
+        except (KnowledgeError, SettingsError, OSError) as error:
+            raise ValueError(str(error)) from error
+        return f"{lessons} lessons loaded: the robot stands until Go"
+
+    def _load(self, content: bytes, teacher: TeacherNow) -> tuple[SimulatedRun, int]:
+        present = self.present
+        folder = present.knowledge.parent
+        kept = folder / f".{present.knowledge.name}.loaded"
+        with TemporaryDirectory(dir=folder, prefix=".loading-") as room:
+            brought, loaded = Path(room, "upload"), Path(room, "loaded.knowledge")
+            brought.write_bytes(content)
+            try:
+                if content.startswith(_ZIP):
+                    import_knowledge(brought, loaded, self._robot, present.task, None, stamp=utc_now())
+                else:
+                    brought.rename(loaded)
+                # Opened as the next run opens it: damage, another task's lessons.
+                opened = go_on_teaching(loaded, self._robot, present.task)
+            except KnowledgeError as error:
+                text = str(error)
+                for path in (brought, loaded):
+                    text = text.replace(str(path), "the uploaded file")
+                raise KnowledgeError(text) from error
+            opened.journal.close()
+            loaded.rename(kept)
+        return replace(present, fresh=True, loaded=kept, teacher=teacher), len(opened.entries)
 
     def _prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> SimulatedRun:
         present = self.present
@@ -108,7 +151,7 @@ class SimulatedRuns:
         if knowledge != present.knowledge and knowledge.exists() and not fresh:
             # Opened as the next run opens it: damage, another task's lessons or another program that writes it.
             go_on_teaching(knowledge, self._robot, settings).journal.close()
-        return SimulatedRun(where, settings, name, knowledge, fresh, teacher)
+        return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
 
     def _look(self) -> SimulationView:
         names = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))

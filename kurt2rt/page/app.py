@@ -18,6 +18,7 @@ from kurt2rt.page.door import Door
 from kurt2rt.page.downloads import Downloads
 from kurt2rt.page.messages import parse
 from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.page.uploads import Uploads
 from kurt2rt.page.visitor import Visitor
 
 # Python's table of types does not know it, and a browser ignores a manifest of another type.
@@ -39,6 +40,7 @@ def build_app(bridge: Bridge, access: Access, robot: RobotLink) -> Starlette:
         routes=[
             WebSocketRoute("/robot", pictures_and_orders),
             Route("/files/{name}", Downloads(robot), methods=["GET"]),
+            Route("/upload", Uploads(robot, access), methods=["POST"]),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
         middleware=[Middleware(Door, access=access)],

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.schema import Check, Flag, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
+from kurt2rt.channel.requests import SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
 from kurt2rt.rla.rla import BASIC, MID, Phase
 
 LONGEST_MESSAGE = 1024
@@ -17,6 +18,16 @@ _SPEED_M_S = Real(2.0, "m/s")
 _PLACE_M = Real(100.0, "m")
 _NAME = Text(64, least=1)
 _LEVEL = OneWord((BASIC, MID))
+
+
+def _hexadecimal(length: int) -> Check:
+    def check(what: str, value: object) -> bytes:
+        try:
+            return Octets(length)(what, bytes.fromhex(value) if isinstance(value, str) else None)
+        except ValueError as error:
+            raise WireError(f"{what} has to be {2 * length} hexadecimal digits") from error
+
+    return check
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +114,7 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "examine": {},
     "move": {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
     "put_back": {},
+    "load": {"upload": _hexadecimal(UPLOAD_ID_BYTES), "sha256": _hexadecimal(SHA256_BYTES)},
     "next_run": {"world": OrNone(_NAME), "task": OrNone(_NAME), "fresh": Flag()},
     "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Real(7.0, "rad")},
 }

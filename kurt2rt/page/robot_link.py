@@ -197,3 +197,11 @@ class RobotLink(Protocol):
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
         """End the present run of a simulated robot and begin the next one."""
         ...
+
+    async def upload(self, upload: bytes, content: bytes) -> None:
+        """Bring a file to the robot's memory under a random id. Raises RefusedError."""
+        ...
+
+    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
+        """Begin the next run of a simulated robot with knowledge that was uploaded."""
+        ...

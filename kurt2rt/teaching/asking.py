@@ -9,6 +9,7 @@ import anyio
 import anyio.lowlevel
 
 from kurt2rt.channel.requests import COMMAND_ID_BYTES, CommandRequest, Request, StopRequest
+from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError, decode_answer, encode_request
 from kurt2rt.teaching.answer import Answer, NoAnswerError, answer_of
 from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response
@@ -51,6 +52,12 @@ class Asking:
     async def command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
         """Give a command on the newest picture; `moves` says that it may set the robot in motion."""
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
+        state = await self.picture()
+        seen = self._pictures.looked_tick if moves else self._pictures.heard_tick
+        return await self.ask(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
+
+    async def picture(self) -> State:
+        """Return the newest picture of the robot, or wait for the first one. Raises NoAnswerError."""
         with anyio.move_on_after(self.patience_s):
             await self._pictures.first()
         state = self._pictures.newest
@@ -58,8 +65,7 @@ class Asking:
             raise NoAnswerError(
                 f"there is no picture of the robot, so nothing was sent to it. {self._requests.trouble}".strip()
             )
-        seen = self._pictures.looked_tick if moves else self._pictures.heard_tick
-        return await self.ask(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
+        return state
 
     async def ask(self, request: Request, patience_s: float | None = None) -> Answer:
         """Send a request until it is answered; `patience_s` other than the usual, infinite if need be."""

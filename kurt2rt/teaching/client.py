@@ -7,6 +7,8 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
             await robot.answer("forward", of=state.tick)
 """
 
+import hashlib
+import secrets
 import time
 from collections.abc import Callable
 from contextlib import AsyncExitStack
@@ -14,15 +16,21 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+import anyio
+
 from kurt2rt.channel.requests import (
+    UPLOAD_ID_BYTES,
+    UPLOAD_PART_BYTES,
     BackToStartRequest,
+    LoadRequest,
     MoveWallRequest,
     NextRunRequest,
     PlaceRequest,
     SimulationRequest,
+    UploadRequest,
 )
 from kurt2rt.channel.simulation import SIMULATION, SimulationView
-from kurt2rt.teaching.answer import Answer
+from kurt2rt.teaching.answer import Answer, RefusedError
 from kurt2rt.teaching.asking import facts_of
 from kurt2rt.teaching.charge import Charge
 from kurt2rt.teaching.connection import open_connection
@@ -32,6 +40,7 @@ from kurt2rt.teaching.moving import Moving
 from kurt2rt.teaching.oscore_requests import Response
 
 ANSWER_WITHIN_S = 3.5
+_PART_EACH_S = 0.008
 
 
 class TeacherClient(Lessons, Goals, Charge, Moving):
@@ -110,3 +119,31 @@ class TeacherClient(Lessons, Goals, Charge, Moving):
         kept under another name.
         """
         return await self._asking.command(NextRunRequest, world=world, task=task, fresh=fresh)
+
+    async def load(self, content: bytes) -> Answer:
+        """Begin the next run with this knowledge, an archive of `export` or a knowledge file; as `next_run`.
+
+        It is uploaded first, at up to 100 kB a second.
+        """
+        upload = secrets.token_bytes(UPLOAD_ID_BYTES)
+        try:
+            await self.upload(upload, content)
+        except RefusedError as error:
+            return Answer(False, "refused", str(error), -1)
+        return await self.load_upload(upload, hashlib.sha256(content).digest())
+
+    async def upload(self, upload: bytes, content: bytes) -> None:
+        """Bring a file to the robot's memory under the random id `upload`. Raises RefusedError, NoAnswerError."""
+        state = await self._asking.picture()
+        for offset in range(0, len(content), UPLOAD_PART_BYTES):
+            part = content[offset : offset + UPLOAD_PART_BYTES]
+            began_s = self._now()
+            answer = await self._asking.ask(UploadRequest(state.boot, upload, offset, part))
+            if not answer.accepted:
+                raise RefusedError(answer.text or answer.why)
+            # More requests a second than this the robot throws away.
+            await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))
+
+    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
+        """Begin the next run with a file that was uploaded."""
+        return await self._asking.command(LoadRequest, upload=upload, sha256=sha256)

@@ -1,5 +1,6 @@
 """The rules by which the robot takes what its teachers send, on ticks that the test makes."""
 
+import hashlib
 from collections.abc import Callable
 
 import pytest
@@ -25,6 +26,7 @@ from kurt2rt.channel.requests import (
     HealthRequest,
     HelloRequest,
     LessonsRequest,
+    LoadRequest,
     MoveWallRequest,
     NameRequest,
     NextRunRequest,
@@ -46,6 +48,7 @@ from kurt2rt.channel.requests import (
     StreamRequest,
     TakeRequest,
     UndoRequest,
+    UploadRequest,
     WhyRequest,
     WorldRequest,
 )
@@ -90,6 +93,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
     ExamRequest: (),
     NextRunRequest: (None, None, False),
+    LoadRequest: (bytes(8), bytes(32)),
     BackToStartRequest: (),
 }
 COMMANDS = {**MOVING, **LASTING}
@@ -101,6 +105,7 @@ READING = {
     LessonsRequest,
     SimulationRequest,
     SituationsRequest,
+    UploadRequest,
     WhyRequest,
     WorldRequest,
 }
@@ -563,9 +568,31 @@ async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> No
     assert yard.changes == [("start",)]
 
 
+async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kurt2rt.channel.reception.LAST_ANSWER_S", 0.0)
+    desk, content, upload = Desk(ground=Yard()), b"PK" + bytes(1000), b"12345678"
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
+    parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]
+    assert why(await desk.ask(parts[0])) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    assert why(await desk.ask(parts[1])) == "refused"
+    assert [(await desk.ask(each)).body["size"] for each in (parts[0], parts[0], parts[1])] == [896, 896, 1002]
+    assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
+    fingerprint = hashlib.sha256(content).digest()
+    assert why(await desk.ask(desk.command(LoadRequest, upload, bytes(32)))) == "refused"
+    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).verdict is Verdict.DONE
+    assert desk.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
+
+
 async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
     await desk.ask(desk.command(TakeRequest))
-    requests = (desk.command(NextRunRequest, None, None, True), desk.command(BackToStartRequest), SimulationRequest())
+    requests = (
+        desk.command(NextRunRequest, None, None, True),
+        desk.command(BackToStartRequest),
+        desk.command(LoadRequest, bytes(8), bytes(32)),
+        UploadRequest(BOOT, bytes(8), 0, b"PK"),
+        SimulationRequest(),
+    )
     for request in requests:
         assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
 

@@ -23,7 +23,20 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     checks_of,
 )
-from kurt2rt.channel.schema import Check, Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
+from kurt2rt.channel.schema import (
+    Check,
+    Flag,
+    ManyOf,
+    Octets,
+    OctetsUpTo,
+    OneOf,
+    OneWord,
+    OrNone,
+    Real,
+    Row,
+    Text,
+    Whole,
+)
 from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.channel.wire import (
     PATHS,
@@ -56,6 +69,8 @@ def values(check: Check) -> st.SearchStrategy[Any]:
     match check:
         case Octets(length=length):
             return st.binary(min_size=length, max_size=length)
+        case OctetsUpTo(most=most):
+            return st.binary(min_size=1, max_size=min(most, 64))
         case Whole(least=least, most=most):
             return st.integers(least, most)
         case Real(most=most):

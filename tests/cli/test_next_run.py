@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -11,6 +12,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.simulation import TeacherNow
 from kurt2rt.channel.state import State
 from kurt2rt.cli.simulated_runs import SimulatedRun, SimulatedRuns
+from kurt2rt.exchange.given import export_knowledge
+from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.rla.rla import Phase
@@ -18,9 +21,14 @@ from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.commands import BeginSession, SetPhase, Take
 from tests.cli.helpers import Running, running
+from tests.knowledge.lessons import created
 
 ROBOT, TASK = load_robot(), load_task("wall_following")
 TEACHER = TeacherNow("phone", 2, "noon")
+
+
+def names_in(folder: Path) -> list[str]:
+    return [each.name for each in folder.iterdir()]
 
 
 def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
@@ -76,6 +84,59 @@ async def test_the_run_of_a_scripted_teacher_stays(tmp_path: Path) -> None:
         await runs_in(tmp_path, taught_by_script=True).prepare("b", None, False, TEACHER)
 
 
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A knowledge file with one RLA."""
+    path = tmp_path_factory.mktemp("taught") / "taught.knowledge"
+    with open_knowledge(path, ROBOT, TASK) as journal:
+        condition = (100.0,) * len(journal.binding.feature_names)
+        rla = replace(created(1).rla, condition=condition)
+        journal.append([JournalEntry(replace(created(1), rla=rla), "2026-11-22T10:00:00.000+00:00")])
+    return path
+
+
+@pytest.mark.parametrize("form", ["archive", "knowledge file"])
+async def test_loaded_knowledge_takes_the_place_of_what_is_kept_beside(tmp_path: Path, taught: Path, form: str) -> None:
+    runs = runs_in(tmp_path)
+    open_knowledge(runs.present.knowledge, ROBOT, TASK).close()
+    if form == "archive":
+        export_knowledge(taught, tmp_path / "out.zip", ROBOT, TASK, None, stamp="2026-11-22T10:00:00.000+00:00")
+    content = (tmp_path / "out.zip" if form == "archive" else taught).read_bytes()
+    assert await runs.load(content, TEACHER) == "1 lessons loaded: the robot stands until Go"
+    assert runs.advance() == f"the knowledge up to now is kept as {tmp_path / 'walls.knowledge.1'}"
+    with Journal.read_only(tmp_path / "walls.knowledge") as loaded:
+        assert len(list(loaded.entries())) == 1
+    assert not runs.present.fresh
+    assert not [name for name in names_in(tmp_path) if name.startswith(".")]
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (b"PK\x03\x04 and no more", "the uploaded file: is torn or changed"),
+        (b"a letter to my robot", "the uploaded file: "),
+        (b"SQLite format 3\x00" + bytes(4000), "the uploaded file: "),
+    ],
+)
+async def test_what_is_no_knowledge_is_refused_in_one_line_and_leaves_nothing(
+    tmp_path: Path, content: bytes, why: str
+) -> None:
+    runs = runs_in(tmp_path)
+    with pytest.raises(ValueError, match=why) as refused:
+        await runs.load(content, TEACHER)
+    assert "\n" not in str(refused.value)
+    assert str(tmp_path) not in str(refused.value)
+    assert runs.next is None
+    assert names_in(tmp_path) == []
+
+
+async def test_knowledge_of_another_task_is_not_loaded(tmp_path: Path) -> None:
+    other = tmp_path / "eight.knowledge"
+    open_knowledge(other, ROBOT, load_task("eight")).close()
+    with pytest.raises(ValueError, match="the uploaded file: taught for the task 'eight'"):
+        await runs_in(tmp_path).load(other.read_bytes(), TEACHER)
+
+
 @asynccontextmanager
 async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClient]:
     port = int(robot.wait_for("UDP port").split()[-1])
@@ -109,9 +170,13 @@ async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(t
             assert simulation is not None
             assert world is not None
             assert (simulation.world, world.name) == ("b", "B")
+            saved = (knowledge.parent / "wall_following.knowledge.1").read_bytes()
+            answer = await client.load(saved)
+            assert answer.accepted, answer.text
+            await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
     with Journal.read_only(knowledge.with_name("wall_following.knowledge.1")) as kept:
         assert len(list(kept.entries())) == 1
     with Journal.read_only(knowledge) as new:
-        assert list(new.entries()) == []
-    assert len(list((tmp_path / "var" / "runs").iterdir())) == 2
+        assert len(list(new.entries())) == 1
+    assert len(names_in(tmp_path / "var" / "runs")) == 3

@@ -130,6 +130,10 @@ class FakeRobot:
                 new = each.default if each.default_factory is MISSING else each.default_factory()
                 setattr(self, each.name, new)
 
+    def told_of(self, name: str) -> list[tuple[Any, ...]]:
+        """What it was told of one kind."""
+        return [each for each in self.told if each[0] == name]
+
     async def is_told(self, name: str) -> None:
         """Wait until it is."""
         while not any(each[0] == name for each in self.told):
@@ -270,6 +274,14 @@ class FakeRobot:
 
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
         return await self._answer("next_run", world, task, fresh)
+
+    async def upload(self, upload: bytes, content: bytes) -> None:
+        answer = await self._answer("upload", upload, content)
+        if not answer.accepted:
+            raise RefusedError(answer.text)
+
+    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
+        return await self._answer("load", upload, sha256)
 
     async def _answer(self, *told: Any) -> Answer:
         self._hear(told)

@@ -157,3 +157,16 @@ def test_no_fields_do_either(fields: dict[str, Any]) -> None:
         parse(json.dumps(fields))
     except WireError:
         return
+
+
+def test_an_upload_is_named_in_hexadecimal() -> None:
+    def load(upload: str) -> str:
+        arguments = {"upload": upload, "sha256": "ab" * 32}
+        return json.dumps({"kind": "order", "number": 1, "name": "load", "arguments": arguments, "picture": 1})
+
+    order = parse(load("0f" * 8))
+    assert isinstance(order, Order)
+    assert order.arguments == {"upload": b"\x0f" * 8, "sha256": b"\xab" * 32}
+    for wrong in ("0f" * 7, "0f" * 9, "zz" * 8):
+        with pytest.raises(WireError, match="upload has to be 16 hexadecimal digits"):
+            parse(load(wrong))

@@ -47,11 +47,13 @@ class Served:
     def cookie(self) -> dict[str, str]:
         return {"Cookie": f"{self.access.cookie_name}={self.access.cookie}"}
 
-    async def get(self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET") -> Got:
+    async def get(
+        self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET", body: bytes | None = None
+    ) -> Got:
         def ask() -> Got:
             connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
             try:
-                connection.request(method, path, headers=headers or {})
+                connection.request(method, path, body, headers or {})
                 response = connection.getresponse()
                 return Got(response.status, response.headers, response.read())
             finally:

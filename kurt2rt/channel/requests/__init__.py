@@ -26,7 +26,11 @@ from kurt2rt.channel.requests.limits import (
     MOST_GOAL_FEATURES,
     MOST_LESSONS,
     MOST_SITUATIONS,
+    MOST_UPLOAD_BYTES,
     PART_BYTES,
+    SHA256_BYTES,
+    UPLOAD_ID_BYTES,
+    UPLOAD_PART_BYTES,
     VERSION,
 )
 from kurt2rt.channel.requests.moving import BehaviourRequest, DriveRequest, ResumeRequest, StopRequest, WatchRequest
@@ -50,6 +54,7 @@ from kurt2rt.channel.requests.reading import (
 )
 from kurt2rt.channel.requests.request import CommandRequest, Request, StreamRequest
 from kurt2rt.channel.requests.simulation import BackToStartRequest, NextRunRequest, SimulationRequest
+from kurt2rt.channel.requests.uploads import LoadRequest, UploadRequest
 from kurt2rt.channel.requests.world import MoveWallRequest, PlaceRequest, WorldRequest
 from kurt2rt.channel.schema import Check
 
@@ -64,10 +69,14 @@ __all__ = [
     "MOST_GOAL_FEATURES",
     "MOST_LESSONS",
     "MOST_SITUATIONS",
+    "MOST_UPLOAD_BYTES",
     "PACKAGE",
     "PART_BYTES",
     "REQUESTS",
+    "SHA256_BYTES",
     "TABLE",
+    "UPLOAD_ID_BYTES",
+    "UPLOAD_PART_BYTES",
     "VERSION",
     "AnswerRequest",
     "AppraiseRequest",
@@ -85,6 +94,7 @@ __all__ = [
     "HealthRequest",
     "HelloRequest",
     "LessonsRequest",
+    "LoadRequest",
     "MoveWallRequest",
     "NameRequest",
     "NextRunRequest",
@@ -107,6 +117,7 @@ __all__ = [
     "StreamRequest",
     "TakeRequest",
     "UndoRequest",
+    "UploadRequest",
     "WatchRequest",
     "WhyRequest",
     "WorldRequest",
@@ -152,6 +163,8 @@ REQUESTS: tuple[type[Request], ...] = (
     BackToStartRequest,
     SimulationRequest,
     NextRunRequest,
+    UploadRequest,
+    LoadRequest,
 )
 
 

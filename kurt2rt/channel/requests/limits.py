@@ -14,6 +14,12 @@ MOST_SITUATIONS = 250
 PART_BYTES = 8192
 """Of a file that one answer brings: a few datagrams of the network, as a world with many walls is."""
 LONGEST_FILE_NAME = 128
+UPLOAD_PART_BYTES = 896
+"""Of a file that one request brings: the longest whole part of a kilobyte that a request may have."""
+MOST_UPLOAD_BYTES = 8_000_000
+"""Of a file that is uploaded: twice what a day of 24 hours of teaching takes."""
+UPLOAD_ID_BYTES = 8
+SHA256_BYTES = 32
 LARGEST_NUMBER = 2**53
 """Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
 LONGEST_BEHAVIOUR_TICKS = 60_000

@@ -43,7 +43,7 @@ const critic = new Critic(appraise);
 const health = new Health();
 const explanation = new Explanation(link);
 const organising = new Organising(tell);
-new Files(tell);
+const files = new Files(tell, say);
 const exam = new Exam(tell);
 const simulation = new Simulation(tell);
 const world = new WorldView($("world-view"), (name, args) => tell(name, args));
@@ -212,6 +212,7 @@ link.addEventListener("hello", ({ detail }) => {
   goals.build(hello);
   critic.build(hello);
   world.greet(hello);
+  files.build(hello);
   exam.build(hello);
   setText($("what"), hello.what || `Task ${words(hello.task)}`);
   simulation.build(hello);
