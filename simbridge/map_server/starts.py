@@ -1,19 +1,27 @@
-"""Start poses found on a map: far from walls, and far from each other."""
+"""Start poses found on a map: in sight of a wall on the left, and far from each other."""
 
 import math
 
 import numpy as np
 import shapely
-from shapely.ops import nearest_points
+from numpy.typing import NDArray
 
 from simbridge.geometry import polygons_of
 from simbridge.pose import Pose
 
 _STARTS = 8
 _APART_M = 0.5
+_STEP_M = 0.1
+"""From one candidate to the next, at least."""
 _CANDIDATES = 2000
-_FAR_M = 0.8
-"""Farther from a wall than this is no better: nothing is in sight either way."""
+_ROOM_M = 0.03
+"""Added to the radius in which the robot turns: candidates are so much farther from the wall than they must be."""
+_SENSOR_M = 0.14
+"""From the robot's centre to its front and rear side sensors, along its heading."""
+_IN_SIGHT_M = 0.45
+"""From the robot's centre to a wall that its side sensors see well: 0.285 m from the sensors."""
+
+Points = NDArray[np.float64]
 
 
 def turning_places(floor: shapely.Polygon, turning_m: float) -> shapely.Polygon | None:
@@ -22,34 +30,57 @@ def turning_places(floor: shapely.Polygon, turning_m: float) -> shapely.Polygon 
     return max(pieces, key=lambda piece: float(piece.area), default=None)
 
 
-def starts_away_from_walls(floor: shapely.Polygon, places: shapely.Polygon) -> list[Pose]:
-    """Up to 8 poses in `places`, each with the nearest wall on the left; the same ones on every call."""
-    candidates = _lattice(places)
+def starts_beside_walls(floor: shapely.Polygon, places: shapely.Polygon) -> list[Pose]:
+    """Return up to 8 poses in `places`, each parallel to a wall on its left; the same poses on every call.
+
+    The side sensors see that wall. On a floor without such a place, the poses are merely near walls.
+    """
     walls = floor.boundary
     shapely.prepare(walls)
-    clear_m = np.minimum(shapely.distance(shapely.points(candidates), walls), _FAR_M)
-    chosen = [int(np.argmax(clear_m))]
+    candidates = _beside(places)
+    feet = _closest_points(walls, candidates)
+    headings_rad = np.arctan2(feet[:, 1] - candidates[:, 1], feet[:, 0] - candidates[:, 0]) - math.pi / 2
+    seen = _see_their_wall(walls, candidates, headings_rad)
+    if seen.any():
+        candidates, headings_rad = candidates[seen], headings_rad[seen]
+    chosen = _spread(candidates)
+    return [Pose(*map(float, (*candidates[each], headings_rad[each]))) for each in chosen]
+
+
+def _beside(places: shapely.Polygon) -> Points:
+    """Return positions along all walls, (n, 2)."""
+    inside = places.buffer(-_ROOM_M, quad_segs=4)
+    lines = (places if inside.is_empty else inside).boundary
+    step_m = max(_STEP_M, lines.length / _CANDIDATES)
+    rings = [ring for ring in shapely.get_parts(lines) if ring.length > 0.0]
+    return np.concatenate(
+        [shapely.get_coordinates(shapely.line_interpolate_point(r, np.arange(0.0, r.length, step_m))) for r in rings]
+    )
+
+
+def _closest_points(walls: shapely.Geometry, positions: Points) -> Points:
+    return shapely.get_coordinates(shapely.shortest_line(shapely.points(positions), walls))[1::2]
+
+
+def _see_their_wall(walls: shapely.Geometry, positions: Points, headings_rad: Points) -> NDArray[np.bool_]:
+    """Return whether the wall on the left is close to the front and the rear side sensor."""
+    ahead = _SENSOR_M * np.column_stack([np.cos(headings_rad), np.sin(headings_rad)])
+    left = _IN_SIGHT_M * np.column_stack([-np.sin(headings_rad), np.cos(headings_rad)])
+    seen = np.ones(len(positions), dtype=bool)
+    for sensors in (positions + ahead, positions - ahead):
+        rays = shapely.linestrings(np.stack([sensors, sensors + left], axis=1))
+        seen &= shapely.intersects(walls, rays)
+    return seen
+
+
+def _spread(candidates: Points) -> list[int]:
+    """Return indices of candidates far from each other, the one closest to the middle of all first."""
+    chosen = [int(np.argmin(np.hypot(*(candidates - candidates.mean(axis=0)).T)))]
     apart_m = np.full(len(candidates), np.inf)
     while len(chosen) < _STARTS:
         apart_m = np.minimum(apart_m, np.hypot(*(candidates - candidates[chosen[-1]]).T))
-        next_one = int(np.argmax(np.where(apart_m >= _APART_M, apart_m * clear_m, 0.0)))
+        next_one = int(np.argmax(apart_m))
         if apart_m[next_one] < _APART_M:
             break
         chosen.append(next_one)
-    return [_facing_along(walls, float(x), float(y)) for x, y in candidates[chosen]]
-
-
-def _lattice(places: shapely.Polygon) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    west_m, south_m, east_m, north_m = places.bounds
-    step_m = math.sqrt(places.area / _CANDIDATES)
-    x, y = np.meshgrid(np.arange(west_m, east_m, step_m), np.arange(south_m, north_m, step_m))
-    within = shapely.contains_xy(places, x, y)
-    if not within.any():  # narrower than the lattice is wide
-        inside = places.representative_point()
-        return np.array([[inside.x, inside.y]])
-    return np.stack([x[within], y[within]], axis=1)
-
-
-def _facing_along(walls: shapely.Geometry, x_m: float, y_m: float) -> Pose:
-    on_wall, _ = nearest_points(walls, shapely.Point(x_m, y_m))
-    return Pose(x_m, y_m, math.atan2(on_wall.y - y_m, on_wall.x - x_m) - math.pi / 2)
+    return chosen

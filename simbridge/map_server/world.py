@@ -12,7 +12,7 @@ from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, load_settings
 from simbridge.map_server.occupancy import drivable_cells
 from simbridge.map_server.settings import MapSettings, MapWorldSettings
-from simbridge.map_server.starts import starts_away_from_walls, turning_places
+from simbridge.map_server.starts import starts_beside_walls, turning_places
 from simbridge.map_server.tracing import TooRaggedError, trace
 from simbridge.obstacle_settings import PolygonObstacleSettings
 from simbridge.pose import Pose
@@ -27,7 +27,7 @@ _SLIP_M = 0.06
 
 
 def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
-    """A map as it is; start poses are found where the robot can turn, away from walls.
+    """A map as it is; start poses are found where the robot can turn and sees a wall on its left.
 
     Raises SettingsError that names file and key.
     """
@@ -54,7 +54,7 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
             f"{source}: image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns; "
             "see whether resolution, negate, the thresholds and mode are those of the image"
         )
-    return _world(source, best[1], starts_away_from_walls(best[1], best[2]), _rays_for(best[1]))
+    return _world(source, best[1], starts_beside_walls(best[1], best[2]), _rays_for(best[1]))
 
 
 def world_on_map(source: Path) -> WorldSettings:

@@ -1,5 +1,6 @@
 """Maps of ROS's map_server as worlds."""
 
+import itertools
 import json
 import math
 import os
@@ -126,7 +127,7 @@ def test_the_robot_drives_on_a_map_and_sees_its_walls(tmp_path: Path) -> None:
         assert rig.robot.pose.x_m == pytest.approx(1.5 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
 
 
-def test_start_poses_are_found_away_from_walls_and_always_the_same(tmp_path: Path) -> None:
+def test_start_poses_of_a_map_are_beside_a_wall_and_always_the_same(tmp_path: Path) -> None:
     path = write_map(tmp_path)
     world = load_world(path, ROBOT)
     assert load_world(path, ROBOT) == world
@@ -135,9 +136,27 @@ def test_start_poses_are_found_away_from_walls_and_always_the_same(tmp_path: Pat
     for start in world.start_poses:
         at = shapely.Point(start.x_m, start.y_m)
         away_m = floor.boundary.distance(at)
-        assert away_m > 0.33
+        assert 0.33 < away_m < 0.42
         left = shapely.affinity.translate(at, *(away_m * part for part in left_of(start.heading_deg)))
         assert floor.boundary.distance(left) < 1e-6
+    for one, other in itertools.combinations(world.start_poses, 2):
+        assert math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) >= 0.5
+
+
+def test_start_poses_of_the_shipped_map_show_both_left_sensors_a_wall() -> None:
+    world = load_world("maps/flat", ROBOT)
+    with Rig(world) as rig:
+        for start in world.start_poses:
+            rig.robot.place(start.pose)
+            rig.run(0.5)
+            for sensor in ("s1", "s2"):
+                assert ROBOT.infrared.distance_m(rig.reading(sensor)) < 0.35, (start, sensor)
+
+
+def test_start_poses_where_no_wall_is_straight_are_near_one(tmp_path: Path) -> None:
+    world = load_world(write_map(tmp_path, drawn(shapely.Point(50, 40).buffer(9.5))), ROBOT)
+    assert world.start_poses
+    assert all(floor_of(world).boundary.distance(shapely.Point(s.x_m, s.y_m)) < 0.5 for s in world.start_poses)
 
 
 def left_of(heading_deg: float) -> tuple[float, float]:
