@@ -3,14 +3,18 @@
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import cbor2
 import pytest
 
 from kurt2rt.channel.requests import VERSION, checks_of
+from kurt2rt.channel.schema import Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
 from kurt2rt.channel.wire import PATHS, encode_state
 from kurt2rt.health.plain import plain_of
 from kurt2rt.standing import Standing
+from tests.channel.jumping_loop import run_jumping
+from tests.channel.robot_at_work import robot_at_work
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.health.reports import ILL
 
@@ -48,6 +52,68 @@ def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
     assert {path: len(body) for path, body in bodies().items()} == {
         path: len(checks_of(kind)) for path, kind in PATHS.items()
     }
+
+
+def ranges() -> dict[str, str]:
+    """By word of a body, what it takes."""
+    table = SAID[SAID.index("What each of them takes") : SAID.index("Answers are maps;")]
+    return {
+        word: text
+        for words, text in re.findall(r"^\| (`.*?`) \| (.*?) \|$", table, re.MULTILINE)
+        for word in re.findall(r"`(.*?)`", words)
+    }
+
+
+def in_words(check: object) -> str:
+    match check:
+        case Octets(length):
+            return f"{length} bytes"
+        case Whole(least, most):
+            return f"whole number, {least} to {most}"
+        case Real(most, unit):
+            return f"number, {-most:g} to {most:g} {unit}".strip()
+        case Text(most, least):
+            return f"text, {least} to {most} printable characters"
+        case OneWord(words):
+            return " or ".join(words)
+        case OneOf(numbers):
+            return " or ".join(filter(None, (", ".join(map(str, numbers[:-1])), str(numbers[-1]))))
+        case Flag():
+            return "true or false"
+        case OrNone(inner):
+            return f"{in_words(inner)}, or null"
+        case ManyOf(Row(checks), most):
+            return f"up to {most} of `[{'; '.join(map(in_words, checks))}]`"
+    raise AssertionError(check)
+
+
+@pytest.mark.parametrize("path", sorted(PATHS))
+def test_the_range_of_every_place_is_written(path: str) -> None:
+    written = ranges()
+    for word, (_, check) in zip(bodies()[path], checks_of(PATHS[path]), strict=True):
+        name = word.removesuffix(" or null")
+        takes = in_words(check)
+        if name != word:
+            takes = takes.removesuffix(", or null")
+        if path == "/file" and name == "name":
+            assert "for `/file` up to 128" in written[name]
+            assert takes == "text, 1 to 128 printable characters"
+            continue
+        assert written[name].split("; the guard")[0].split("; for `/file`")[0] == takes, word
+
+
+def test_every_key_of_hello_is_explained(tmp_path: Path) -> None:
+    told: list[set[str]] = []
+
+    async def story() -> None:
+        async with robot_at_work(tmp_path) as at_work:
+            reception: Any = at_work.channel._reception
+            told.append({*reception._hello, "tick"})
+
+    run_jumping(story)
+    table = SAID[SAID.index("`/hello` answers:") :]
+    explained = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| `.*?` \|", table, re.MULTILINE))))
+    assert told == [told[0] & explained]
 
 
 def keys_in(plain: object) -> Iterator[str]:
