@@ -9,7 +9,7 @@ import cbor2
 import pytest
 
 from kurt2rt.channel.requests import VERSION, checks_of
-from kurt2rt.channel.schema import Flag, ManyOf, Octets, OneOf, OneWord, OrNone, Real, Row, Text, Whole
+from kurt2rt.channel.schema import Flag, ManyOf, Octets, OctetsUpTo, OneOf, OneWord, OrNone, Real, Row, Text, Whole
 from kurt2rt.channel.wire import PATHS, encode_state
 from kurt2rt.health.plain import plain_of
 from kurt2rt.standing import Standing
@@ -68,6 +68,8 @@ def in_words(check: object) -> str:
     match check:
         case Octets(length):
             return f"{length} bytes"
+        case OctetsUpTo(most):
+            return f"1 to {most} bytes"
         case Whole(least, most):
             return f"whole number, {least} to {most}"
         case Real(most, unit):

@@ -51,6 +51,7 @@ from kurt2rt.channel.wire import (
 from kurt2rt.rla.rla import BASIC, MID, Phase
 from kurt2rt.teaching.progress import Progress
 from kurt2rt.teaching.question import FeatureDifference
+from tests.channel.mischief import Mischief
 from tests.channel.states import COMMANDS, SURPRISED, state
 
 BOOT = b"boot"
@@ -378,3 +379,9 @@ def test_rows_and_lists_count_what_they_hold() -> None:
         Row((Flag(), Flag()))("place", [True, 1])
     with pytest.raises(WireError, match="a list of up to 2"):
         ManyOf(Flag(), most=2)("flags", [True] * 3)
+
+
+@pytest.mark.parametrize("kind", PATHS.values(), ids=lambda kind: kind.path)
+def test_mischief_knows_the_fields_of_every_request(kind: type[Request]) -> None:
+    request = Mischief(1, lambda: (b"boot", 0)).valid(kind)
+    assert decode_request(kind.path, encode_request(request)) == request
