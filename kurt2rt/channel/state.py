@@ -156,6 +156,8 @@ class State:
     """The behaviours that lead there, the next one first."""
     plan_says: str = ""
     """How far the plan is, or why there is none, in a line; empty without a goal."""
+    nearest_value: float | None = None
+    """What the nearest RLA was worth when its action was withdrawn; None where it has its action."""
     progress: Progress = NO_PROGRESS
     """How much the robot drove by itself, and asked, in the last minute."""
     standing: Standing | None = None

@@ -8,7 +8,7 @@ from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.health.report import SENSORS, HealthReport
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import BASIC
+from kurt2rt.rla.rla import ASK, BASIC, Rla
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.question import FeatureDifference, ask
 from kurt2rt.tick import TickRecord
@@ -115,9 +115,15 @@ class Telling:
             goal="" if plan is None else plan.goal,
             plan=() if plan is None else plan.behaviours,
             plan_says="" if plan is None else plan.says,
+            nearest_value=self._withdrawn_at(nearest),
             progress=runtime.progress.progress(),
             standing=record.standing,
         )
+
+    def _withdrawn_at(self, nearest: Rla | None) -> float | None:
+        if nearest is None or nearest.level != BASIC or nearest.action != ASK:
+            return None
+        return float(self._runtime.reinforcement.worth(nearest.rla_id))
 
     def _late(self) -> float:
         health = self._health()

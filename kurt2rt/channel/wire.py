@@ -182,6 +182,7 @@ def encode_state(state: State) -> bytes:
     picture["mid"] = _row(state.mid, _MID)
     picture["su"] = _row(state.surprise, _SURPRISE)
     picture["pg"] = _row(state.progress, _PROGRESS)
+    picture["nv"] = state.nearest_value
     picture["sd"] = _row(state.standing, _STANDING)
     return encode_plainly(picture)
 
@@ -200,8 +201,9 @@ def decode_state(payload: bytes) -> State:
     place = _PLACE("place", _take(picture, "pl"))
     mid = OrNone(Row(_MID))("mid level", _take(picture, "mid"))
     surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
-    # Younger than the rest of version 4: a robot that does not count yet leaves it out.
+    # Younger than the rest of version 4: a robot of before leaves them out.
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
+    nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
     return State(
         left_m_s=left_m_s,
@@ -210,6 +212,7 @@ def decode_state(payload: bytes) -> State:
         place=None if place is None else SimulatedPlace(*place),
         mid=None if mid is None else MidState(*mid),
         surprise=None if surprise is None else SurpriseState(*surprise),
+        nearest_value=nearest_value,
         progress=NO_PROGRESS if progress is None else Progress(*progress),
         standing=None if standing is None else _standing(*standing),
         **values,

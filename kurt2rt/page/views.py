@@ -65,6 +65,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str, words: Sens
         "missed_ticks": state.missed_ticks,
         "behaviour": state.behaviour,
         "value": state.value,
+        "nearest_value": state.nearest_value,
         "opinion": state.opinion,
         "opinion_of": state.opinion_of,
         "agreement": state.agreement,

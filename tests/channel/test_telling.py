@@ -19,7 +19,7 @@ from kurt2rt.channel.state import SimulatedPlace, State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble
-from kurt2rt.rla.rla import Phase
+from kurt2rt.rla.rla import ASK, Phase
 from kurt2rt.standing import Standing, StandReason
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
@@ -265,6 +265,20 @@ async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> N
     after = picture(desk).value
     assert after is not None
     assert after < before
+
+
+async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: Desk) -> None:
+    await drives(desk)
+    assert picture(desk).nearest_value is None
+    while picture(desk).nearest_action != ASK:
+        await desk.stream(desk.watch())
+        desk.run()
+        await desk.ask(desk.command(RewardRequest, -1, None))
+        desk.run()
+    told = picture(desk)
+    assert told.cause == "unknown"
+    assert told.nearest_value is not None
+    assert told.nearest_value < 0
 
 
 async def test_where_an_action_was_withdrawn_it_asks_again(desk: Desk) -> None:

@@ -116,8 +116,17 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
 
 def test_an_action_that_was_withdrawn_is_answered_and_not_corrected(lesson: Lesson) -> None:
     phone = lesson.phone
-    lesson.show(cause="unknown", action=None, rla=None, nearest=17, nearest_action="ask", left_m_s=0.0, right_m_s=0.0)
-    lesson.reads("#sentence", "RLA 17 went wrong too often, teach me anew")
+    lesson.show(
+        cause="unknown",
+        action=None,
+        rla=None,
+        nearest=17,
+        nearest_action="ask",
+        nearest_value=-0.1,
+        left_m_s=0.0,
+        right_m_s=0.0,
+    )
+    lesson.reads("#sentence", "RLA 17 was blamed: worth \N{MINUS SIGN}0.10 now, teach me again")
     assert phone.text("#nearest") == "nearest: RLA 17, its action was withdrawn"
     phone.touch("[data-action=forward]")
     phone.wait(lambda: lesson.told("answer") == ["forward"], "an answer")

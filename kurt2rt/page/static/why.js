@@ -32,6 +32,10 @@ function standsFor(state) {
   return waits || !["drives", "asks", "asks the way"].includes(reason);
 }
 
+function worthNow({ nearest_value: value }) {
+  return typeof value === "number" ? `: worth ${signed(value)} now` : "";
+}
+
 export function sentence(state) {
   if (standsFor(state)) return state.stands.text;
   switch (state.cause) {
@@ -46,13 +50,13 @@ export function sentence(state) {
     case "unknown":
       if (state.asks_at === MID) {
         if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
-          return `Which way? Mid-level RLA ${state.nearest} went wrong too often, teach me anew`;
+          return `Which way? Mid-level RLA ${state.nearest} was blamed, teach me again`;
         }
         if (state.nearest === null) return "Which way? I know none yet, teach me";
         return state.distance === null ? "Where am I? Say at which goal" : "Which way? I don't know, teach me";
       }
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
-        return `RLA ${state.nearest}${of(state)} went wrong too often, teach me anew`;
+        return `RLA ${state.nearest}${of(state)} was blamed${worthNow(state)}, teach me again`;
       }
       if (state.nearest !== null && state.distance !== null && state.distance <= state.radius) {
         return `RLA ${state.nearest}${of(state)}: ${words(state.nearest_action)} is lost here, teach me another`;
