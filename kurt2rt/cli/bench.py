@@ -13,19 +13,20 @@ from hal.robot_settings import load_robot
 from kurt2rt.bench.report import as_json, look_at_machine, print_report
 from kurt2rt.bench.subject import SEED, OnProgress, Subject
 from kurt2rt.bench.suite import FULL, QUICK, Bench, run_suite
+from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
+from kurt2rt.cli.printed import console_of
 from kurt2rt.tasks.settings import load_task
 
 
 def bench(
+    file: JsonFile = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Measure less, in under a minute; rare lateness may hide.")
     ] = False,
     only: Annotated[
         str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(Bench)}.", show_default=False)
     ] = ",".join(Bench),
-    json: Annotated[
-        Path | None, typer.Option("--json", dir_okay=False, help="Also write the results to this file, as JSON.")
-    ] = None,
+    json: AsJson = False,
     folder: Annotated[
         Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
     ] = Path(),
@@ -49,8 +50,7 @@ def bench(
     from kurt2rt.simulated import SimulatedStage
 
     benches = _chosen(only)
-    if json is not None and not json.absolute().parent.is_dir():
-        raise typer.BadParameter(f"there is no folder {json.parent}; make it first", param_hint="--json")
+    require_json_file(file, as_json=json)
     machine = look_at_machine()
     settings = load_robot()
     task = load_task("wall_following")
@@ -68,9 +68,12 @@ def bench(
             return lambda share: progress.update(task_id, completed=share, refresh=True)
 
         results = anyio.run(run_suite, benches, subject, Path(scratch), QUICK if quick else FULL, progress_of)
-    print_report(results, machine, Console())
-    if json is not None:
-        json.write_text(as_json(results, machine) + "\n", encoding="utf-8")
+    if json and file is None:
+        typer.echo(as_json(results, machine))
+    else:
+        print_report(results, machine, console_of())
+    if file is not None:
+        file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
 
 
 def _chosen(names: str) -> frozenset[Bench]:

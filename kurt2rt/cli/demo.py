@@ -6,12 +6,13 @@ from typing import Annotated
 import anyio
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, WireName, changes_of, task_option
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import render_curriculum
+from kurt2rt.experiments.report import curriculum_as_data, render_curriculum
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.text_table import print_whole
@@ -25,6 +26,7 @@ def demo(
     out: OutFolder = Path("results/demo"),
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",
+    as_json: AsJson = False,
 ) -> None:
     """Teach a simulated robot from nothing, examine it without its teacher, show what came of it.
 
@@ -59,5 +61,8 @@ def demo(
     with job_bars() as report:
         result = anyio.run(run, report)
     draw_curriculum(result, taught, stage, picture)
+    if as_json:
+        print_json({**curriculum_as_data(result, taught), "picture": picture, "knowledge": knowledge})
+        return
     files = (f"picture    {picture}", f"knowledge  {knowledge}")
     print_whole(console_of(), render_curriculum(result, taught), *files)

@@ -6,13 +6,15 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.printed import console_of
 from kurt2rt.doctor.examination import examine
 from kurt2rt.doctor.report import as_json, print_report
 
 
 def doctor(
     folder: Annotated[Path, typer.Option(help="The folder where knowledge is kept.")] = Path("var"),
-    json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON, for programs.")] = False,
+    json: AsJson = False,
     ticks: Annotated[
         int, typer.Option(min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness.")
     ] = 100,
@@ -33,6 +35,6 @@ def doctor(
     if json:
         typer.echo(as_json(findings))
     else:
-        print_report(findings, Console())
+        print_report(findings, console_of())
     if any(finding.forbids_run for finding in findings):
         raise typer.Exit(1)

@@ -7,13 +7,14 @@ import anyio
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import render_exams
+from kurt2rt.experiments.report import exams_as_data, render_exams
 from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.task_of_file import task_of_file
@@ -33,6 +34,7 @@ def exam(
     ] = None,
     robot_settings: RobotName = "kurt2",
     wire: WireName = "none",
+    as_json: AsJson = False,
 ) -> None:
     """Let the simulated robot drive without its teacher, and its teacher's policy for comparison.
 
@@ -61,4 +63,7 @@ def exam(
 
     with job_bars() as report:
         results = anyio.run(run, report)
-    print_whole(console_of(), render_exams(results, taught))
+    if as_json:
+        print_json({"knowledge": knowledge, "seed": seed, **exams_as_data(results, taught)})
+    else:
+        print_whole(console_of(), render_exams(results, taught))

@@ -1,6 +1,5 @@
 """`kurt2rt faults`."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, get_args
 
 import anyio
@@ -9,6 +8,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
+from kurt2rt.cli.printed import console_of
 from kurt2rt.faults.table import KINDS, TARGETS, Kind, Target, cases_of, load_faults
 from kurt2rt.tasks.settings import load_task
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 
 def faults(
+    file: JsonFile = None,
     target: Annotated[
         list[str] | None,
         typer.Option(help=f"Try only what fails here; repeat for several: {', '.join(TARGETS)}.", show_default=False),
@@ -29,9 +31,7 @@ def faults(
         int,
         typer.Option(min=1, help="Try each case with so many seeds: noise, and the moment in a cycle when it fails."),
     ] = 1,
-    json: Annotated[
-        Path | None, typer.Option("--json", dir_okay=False, help="Also write the results to this file, as JSON.")
-    ] = None,
+    json: AsJson = False,
     table: Annotated[str, typer.Option(help="What must come of what, by name (config/faults) or a path.")] = "kurt2",
 ) -> None:
     """Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.
@@ -52,8 +52,7 @@ def faults(
     from kurt2rt.faults.suite import try_cases
     from simbridge.faults.stage import FaultStage
 
-    if json is not None and not json.absolute().parent.is_dir():
-        raise typer.BadParameter(f"there is no folder {json.parent}; make it first", param_hint="--json")
+    require_json_file(file, as_json=json)
     targets, kinds = _targets(target), _kinds(kind)
     chosen = load_faults(table)
     settings = load_robot(chosen.robot)
@@ -70,9 +69,12 @@ def faults(
 
         trials = anyio.run(run)
     times = stop_times(chosen, trials)
-    print_report(trials, times, Console())
-    if json is not None:
-        json.write_text(as_json(trials, times) + "\n", encoding="utf-8")
+    if json and file is None:
+        typer.echo(as_json(trials, times))
+    else:
+        print_report(trials, times, console_of())
+    if file is not None:
+        file.write_text(as_json(trials, times) + "\n", encoding="utf-8")
     if not all(trial.verdict.passed for trial in trials):
         raise typer.Exit(1)
 

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import RobotSettings, load_robot
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.lesson_errands import ERRANDS, errands, runs_errands
 from kurt2rt.cli.lesson_route import (
     ROUTES,
@@ -33,7 +34,7 @@ from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import render_curriculum, render_seeds
+from kurt2rt.experiments.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.knowledge.task_of_file import task_of_file
@@ -94,6 +95,7 @@ def lesson(
             "--controls", help="Of routes, with --seeds, and of errands: also go about it in other ways, to compare."
         ),
     ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Teach the simulated robot with a scripted teacher, in simulated time.
 
@@ -142,16 +144,35 @@ def lesson(
             controls=controls,
             jobs=jobs,
             out=out or ERRANDS,
+            as_json=as_json,
         )
     elif not teaches_route(taught):
         require_no_route_options(taught, options)
-        _lesson(stage, settings, taught, seed=seed, knowledge=knowledge, seeds=seeds, jobs=jobs, out=out or _FOLDER)
+        _lesson(
+            stage,
+            settings,
+            taught,
+            seed=seed,
+            knowledge=knowledge,
+            seeds=seeds,
+            jobs=jobs,
+            out=out or _FOLDER,
+            as_json=as_json,
+        )
     elif seeds is None:
-        one_route(stage, settings, taught, options, seed=seed, knowledge=knowledge, out=out or ROUTES)
+        one_route(stage, settings, taught, options, seed=seed, knowledge=knowledge, out=out or ROUTES, as_json=as_json)
     else:
         command = _command(name, seeds, options, plain=plain, changes=changes or [])
         many_routes(
-            stage, settings, taught, options, seeds=parse_seeds(seeds), jobs=jobs, out=out or ROUTES, command=command
+            stage,
+            settings,
+            taught,
+            options,
+            seeds=parse_seeds(seeds),
+            jobs=jobs,
+            out=out or ROUTES,
+            command=command,
+            as_json=as_json,
         )
 
 
@@ -165,6 +186,7 @@ def _lesson(
     seeds: str | None,
     jobs: int,
     out: Path,
+    as_json: bool,
 ) -> None:
     worlds = (task.teaching.world, *(task.exam.worlds if seeds is not None else ()))
     stage.require_worlds(*worlds)
@@ -181,7 +203,10 @@ def _lesson(
 
         with job_bars() as report:
             result = anyio.run(run, report)
-        print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
+        if as_json:
+            print_json({**curriculum_as_data(result, task), "knowledge": file})
+        else:
+            print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
         return
     work = []
     for each in parse_seeds(seeds):
@@ -192,7 +217,10 @@ def _lesson(
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))
         results = run_seeds(work, jobs, lambda _seed: progress.advance(bar))
-    print_whole(console_of(), render_seeds(results, task))
+    if as_json:
+        print_json({"task": task.name, "robots": [curriculum_as_data(each, task) for each in results]})
+    else:
+        print_whole(console_of(), render_seeds(results, task))
 
 
 def _one_of(task: str | None, task_word: str | None) -> str | None:

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.json_output import print_json
+from kurt2rt.cli.printed import console_of, tables_of
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.experiments.courses.errands import ErrandsSettings
 from kurt2rt.experiments.errands.lesson import errands_of
@@ -36,6 +37,7 @@ def errands(
     controls: bool,
     jobs: int,
     out: Path,
+    as_json: bool,
 ) -> None:
     """Lead robots about and send them to goals; what is done already is kept. Prints tables and draws each robot."""
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
@@ -51,5 +53,8 @@ def errands(
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
             draw_errands(stage, task.exam.worlds[0], outcome, pictures[-1])
+    if as_json:
+        print_json({"tables": tables_of(sheets(outcomes, errands_of(task))), "pictures": pictures})
+        return
     pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"
     print_whole(console_of(), *map(as_rich, sheets(outcomes, errands_of(task))), pictures_told)

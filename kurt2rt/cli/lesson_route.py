@@ -8,7 +8,8 @@ import anyio
 import typer
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.cli.printed import console_of, print_study
+from kurt2rt.cli.json_output import print_json
+from kurt2rt.cli.printed import console_of, print_study, tables_of
 from kurt2rt.cli.progress import job_bars, one_bar
 from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import Report, run_lesson
@@ -63,6 +64,7 @@ def one_route(
     seed: int,
     knowledge: Path | None,
     out: Path,
+    as_json: bool,
 ) -> None:
     """Teach one robot one route, examine it, print the numbers and draw the drive."""
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
@@ -96,6 +98,9 @@ def one_route(
         outcome = anyio.run(run, report).outcome()
     picture = out / f"{stem}.png"
     draw_route(stage, task.exam.worlds[0], outcome, picture)
+    if as_json:
+        print_json({"tables": tables_of([robot_sheet(outcome, task)]), "knowledge": file, "picture": picture})
+        return
     files = (f"{what}  {path}" for what, path in (("knowledge", file), ("picture", picture)))
     print_whole(console_of(), as_rich(robot_sheet(outcome, task)), *files)
 
@@ -110,6 +115,7 @@ def many_routes(
     jobs: int,
     out: Path,
     command: str,
+    as_json: bool,
 ) -> None:
     """Teach and examine many robots; what is done already is kept. Prints tables and writes a report."""
     from kurt2rt.experiments.route.report import draw_pictures, write_report
@@ -133,4 +139,4 @@ def many_routes(
         pictures = list(draw_pictures(study, stage, results.folder))
         report = results.folder / "report.html"
         write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_of_robots(programme.seeds), report)
+    print_study(sheets(study), reasons_of_robots(programme.seeds), report, as_json=as_json)

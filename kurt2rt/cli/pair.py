@@ -11,6 +11,8 @@ from rich.text import Text
 
 from kurt2rt.channel import credentials
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, Pairing, paired
+from kurt2rt.cli.json_output import plain, print_json
+from kurt2rt.cli.printed import console_of
 from kurt2rt.page.hosts import own_address
 from kurt2rt.service_settings import load_service
 from kurt2rt.text_table import TextTable, print_whole
@@ -26,6 +28,9 @@ def pair(
         ),
     ] = None,
     list_: Annotated[bool, typer.Option("--list", help="List who is paired; change nothing.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="With --list, print the list as one JSON document, and nothing else.")
+    ] = False,
     renew: Annotated[
         bool, typer.Option("--renew", help="Give NAME new keys and a new page address; the old ones are refused.")
     ] = False,
@@ -63,8 +68,13 @@ def pair(
     console = Console()
     if list_ + renew + revoke > 1:
         raise typer.BadParameter("one of these at a time", param_hint="--list, --renew, --revoke")
+    if as_json and not list_:
+        raise typer.BadParameter("only a list is told as JSON; give --list, too", param_hint="--json")
     if list_:
-        print_whole(console, _table(teachers, devices))
+        if as_json:
+            print_json({"paired": [{**plain(row), "device": _where(row.name, devices)} for row in paired(teachers)]})
+        else:
+            print_whole(console_of(), _table(teachers, devices))
         return
     if name is None:
         raise typer.BadParameter("whose device? Give it a name, such as anna-phone", param_hint="NAME")

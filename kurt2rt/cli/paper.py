@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option, task_option
 from kurt2rt.cli.printed import print_study
@@ -32,6 +33,7 @@ def paper(
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
     ] = True,
+    as_json: AsJson = False,
 ) -> None:
     """Teach and examine every basic task of the paper, and set its results beside ours.
 
@@ -87,7 +89,7 @@ def paper(
             pictures = list(draw_pictures(study, stage, results.folder))
             report = results.folder / "report.html"
             write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_not_to_judge(programme), report)
+    print_study(sheets(study), reasons_not_to_judge(programme), report, as_json=as_json)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

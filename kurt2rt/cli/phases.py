@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option, task_option
 from kurt2rt.cli.printed import print_study
@@ -24,6 +25,7 @@ def phases(
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
     jobs: Jobs = ALL_PROCESSORS,
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None,
+    as_json: AsJson = False,
 ) -> None:
     """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
 
@@ -67,7 +69,7 @@ def phases(
             command = _command(quick=quick, seeds=typed_seeds, task=task, changes=changes or [])
             write_report(study, pictures, command, report)
     reasons = list(reasons_not_to_judge(programme))
-    print_study(sheets(study, reasons), reasons, report)
+    print_study(sheets(study, reasons), reasons, report, as_json=as_json)
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:

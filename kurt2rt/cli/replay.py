@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.recording.run_folder import find_run
@@ -43,7 +44,7 @@ def replay(
     ] = None,
     runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
     limit: Annotated[int, typer.Option(min=1, help="With --with: list so many stretches, the longest.")] = 30,
-    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON; all stretches.")] = False,
+    as_json: AsJson = False,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",

@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 
 from hal.settings import find_config
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.service_settings import load_service
 from kurt2rt.systemd.access import Wanted, closed_to_others, to_hand_over
 from kurt2rt.systemd.error import UnitError
@@ -41,7 +42,11 @@ def show(
 
 @service.command()
 def check(
-    robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
+    robot: RobotBus = "can0",
+    settings: RuntimeSettings = "default",
+    name: UnitName = "kurt2rt",
+    page: WithPage = False,
+    as_json: AsJson = False,
 ) -> None:
     """Let systemd's own tools look at the unit: does it load, what may it do.
 
@@ -53,16 +58,29 @@ def check(
     require_free(name)
     unit, wanted = _unit(robot, settings, name, page=page)
     found = examine(unit)
-    console = Console()
-    for line in found.open:
-        console.print(f"open: {line}", markup=False, highlight=False, soft_wrap=True)
-    console.print(f"exposure {found.exposure} of 10, at most {MOST_EXPOSURE} is well", markup=False, highlight=False)
     wrong = (*found.complaints, *closed_to_others(wanted), *to_hand_over(name, wanted))
-    for line in wrong:
-        console.print(line, style="red", markup=False, highlight=False, soft_wrap=True)
-    if wrong or not found.passed:
+    passed = found.passed and not wrong
+    if as_json:
+        told = {
+            "unit": f"{name}.service",
+            "passed": passed,
+            "exposure": found.exposure,
+            "exposure_limit": MOST_EXPOSURE,
+        }
+        print_json({**told, "open": found.open, "wrong": wrong})
+    else:
+        console = Console()
+        for line in found.open:
+            console.print(f"open: {line}", markup=False, highlight=False, soft_wrap=True)
+        console.print(
+            f"exposure {found.exposure} of 10, at most {MOST_EXPOSURE} is well", markup=False, highlight=False
+        )
+        for line in wrong:
+            console.print(line, style="red", markup=False, highlight=False, soft_wrap=True)
+        if passed:
+            console.print(f"{name}.service loads")
+    if not passed:
         raise typer.Exit(1)
-    console.print(f"{name}.service loads")
 
 
 @service.command()

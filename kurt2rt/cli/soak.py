@@ -13,6 +13,8 @@ from rich.console import Console
 from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.printed import console_of
 from kurt2rt.faults.table import load_faults
 from kurt2rt.memory import give_back_large_pieces
 from kurt2rt.recording.recording import Recording
@@ -46,6 +48,7 @@ def soak(
             help="Trace memory and tell which modules took more after the first hour; four times slower.",
         ),
     ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Let a day of the robot pass in simulated time in which everything fails.
 
@@ -67,7 +70,8 @@ def soak(
     # Not at the top: simulator and plots are extras, and `kurt2rt run` on the robot does without them.
     from kurt2rt.soak.day import Day
     from kurt2rt.soak.picture import draw_soak
-    from kurt2rt.soak.report import as_json, print_report
+    from kurt2rt.soak.report import as_json as soak_as_json
+    from kurt2rt.soak.report import print_report
     from simbridge.faults.lasting_place import LastingPlace
 
     give_back_large_pieces()  # as the robot's program does
@@ -89,10 +93,13 @@ def soak(
                 result = anyio.run(running.run, hours, lambda now_s: progress.update(bar, completed=now_s))
     finally:
         place.close()
-    print_report(result, Console())
+    if as_json:
+        typer.echo(soak_as_json(result))
+    else:
+        print_report(result, console_of())
     with (out / "soak.txt").open("w", encoding="utf-8") as file:
         print_report(result, Console(file=file, width=120))
-    (out / "soak.json").write_text(as_json(result) + "\n", encoding="utf-8")
+    (out / "soak.json").write_text(soak_as_json(result) + "\n", encoding="utf-8")
     draw_soak(result, settings.limits, out / "soak.png")
     if not result.passed:
         raise typer.Exit(1)

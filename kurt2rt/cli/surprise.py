@@ -8,9 +8,10 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, task_option
-from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.printed import console_of, tables_of
 from kurt2rt.experiments.pool import run_jobs
 from kurt2rt.experiments.shown.sheet import as_rich
 from kurt2rt.experiments.surprise.study import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
@@ -32,6 +33,7 @@ def surprise(
     ] = DIFFERENT_S,
     jobs: Jobs = ALL_PROCESSORS,
     robot_settings: RobotName = "kurt2",
+    as_json: AsJson = False,
 ) -> None:
     """Measure how surprised taught robots are: on known ground, and where something is different."""
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
@@ -48,4 +50,7 @@ def surprise(
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("robots", total=len(work))
         results = run_jobs(work, jobs, on_done=lambda _place: progress.advance(bar))
-    print_whole(console_of(), as_rich(sheet_of(results)))
+    if as_json:
+        print_json({"tables": tables_of([sheet_of(results)])})
+    else:
+        print_whole(console_of(), as_rich(sheet_of(results)))

@@ -12,6 +12,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.explain.facts import DecisionFacts
@@ -66,6 +67,7 @@ def why(
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",
+    as_json: AsJson = False,
 ) -> None:
     """Explain what the robot did, and why: at a moment of a run, in a whole run, or now.
 
@@ -91,7 +93,7 @@ def why(
     if live:
         if run is not None or at is not None or from_s or to_s is not None:
             raise typer.BadParameter("is of now; leave out run, --at, --from and --to", param_hint="--live")
-        _show_live(service, name, robot, port, picture)
+        _show_live(service, name, robot, port, picture, as_json=as_json)
         return
     if name is not None or robot is not None or port is not None:
         raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
@@ -99,10 +101,10 @@ def why(
     recorded = read_run(found, in_part=at is None)
     console = console_of()
     if at is None:
-        _show_timeline(console, recorded, from_s, math.inf if to_s is None else to_s, limit, picture)
+        _show_timeline(console, recorded, from_s, math.inf if to_s is None else to_s, limit, picture, as_json=as_json)
     else:
-        _show_decision(console, recorded, at, picture)
-    if recorded.trouble:
+        _show_decision(console, recorded, at, picture, as_json=as_json)
+    if recorded.trouble and not as_json:
         console.print(f"The recording: {recorded.trouble}.", markup=False, highlight=False, soft_wrap=True)
 
 
@@ -113,19 +115,26 @@ def _require_picture(picture: Path | None) -> None:
         )
 
 
-def _show_timeline(console: Console, run: Run, from_s: float, to_s: float, limit: int, picture: Path | None) -> None:
+def _show_timeline(
+    console: Console, run: Run, from_s: float, to_s: float, limit: int, picture: Path | None, *, as_json: bool
+) -> None:
     known = (lesson.event for lesson in run.lessons)
     with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=None)
         entries = _counted(run.entries_in_part(), lambda read_s: progress.update(bar, completed=read_s))
         timeline = timeline_of(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
-    print_whole(console, render_timeline(timeline, _of(run), limit))
+    if as_json:
+        numbers = {"from_s": timeline.from_s, "to_s": timeline.to_s, "ticks": timeline.ticks, "missed": timeline.missed}
+        told = {**numbers, "stretches": timeline.stretches, "notes": timeline.notes, "trouble": run.trouble}
+        print_json({"run": run.name, "task": run.head.task, **told, "picture": picture})
+    else:
+        print_whole(console, render_timeline(timeline, _of(run), limit))
     if picture is not None:
         # Not at the top: matplotlib is an extra, and a robot does without it.
         from kurt2rt.explain.timeline_picture import draw_timeline
 
         draw_timeline(timeline, _of(run), picture)
-        _say_where(picture)
+        _say_where(picture, as_json=as_json)
 
 
 def _counted(entries: Iterable[TickEntry], report: Callable[[float], None]) -> Iterator[TickEntry]:
@@ -138,15 +147,20 @@ def _counted(entries: Iterable[TickEntry], report: Callable[[float], None]) -> I
         yield entry
 
 
-def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None) -> None:
+def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None, *, as_json: bool) -> None:
     explained = _explain(run, at_s)
     if explained.at_s < at_s - 1.0:
         raise typer.BadParameter(
             f"the run ends at {explained.at_s:.2f} s; give a moment before that", param_hint="--at"
         )
     where = f"{_of(run)}, {explained.at_s:.2f} s (tick {explained.facts.tick})"
-    print_whole(console, render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
-    if explained.difference is not None:
+    if as_json:
+        difference = None if explained.difference is None else str(explained.difference)
+        told = {"facts": explained.facts, "tips": explained.tips, "difference": difference, "trouble": run.trouble}
+        print_json({"run": run.name, "at_s": explained.at_s, **told, "picture": picture})
+    else:
+        print_whole(console, render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
+    if explained.difference is not None and not as_json:
         console.print(
             f"This program decides otherwise than the one that was recorded: {explained.difference}. "
             "What stands above is what this one makes of it; kurt2rt replay tells more.",
@@ -156,23 +170,32 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
             style="yellow",
         )
     if picture is not None:
-        _draw(explained.facts, explained.tips, run.robot, where, picture)
+        _draw(explained.facts, explained.tips, run.robot, where, picture, as_json=as_json)
 
 
 def _show_live(
-    service: ServiceSettings, name: str | None, host: str | None, port: int | None, picture: Path | None
+    service: ServiceSettings,
+    name: str | None,
+    host: str | None,
+    port: int | None,
+    picture: Path | None,
+    *,
+    as_json: bool,
 ) -> None:
     device = _device(service, name or ONLOOKER)
     robot = load_robot(service.robot)
     facts, found = ask_why(device, host or device.host, port or device.port, robot)
     where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
-    print_whole(console_of(), render_why(facts, found, where, words_for(robot.infrared)))
+    if as_json:
+        print_json({"facts": facts, "tips": found, "picture": picture})
+    else:
+        print_whole(console_of(), render_why(facts, found, where, words_for(robot.infrared)))
     if picture is not None:
         if not set(robot.infrared.names) <= set(facts.basic.names):
             raise SettingsError(
                 f"{robot.name}: has other sensors than the robot that answers; name its settings in runtime settings"
             )
-        _draw(facts, found, robot, where, picture)
+        _draw(facts, found, robot, where, picture, as_json=as_json)
 
 
 def _device(service: ServiceSettings, name: str) -> Device:
@@ -181,12 +204,14 @@ def _device(service: ServiceSettings, name: str) -> Device:
     return read_device(Path(service.devices) / name)
 
 
-def _draw(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, where: str, picture: Path) -> None:
+def _draw(
+    facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, where: str, picture: Path, *, as_json: bool
+) -> None:
     # Not at the top: matplotlib is an extra, and a robot does without it.
     from kurt2rt.explain.picture import draw_why
 
     draw_why(facts, found, robot, where, picture)
-    _say_where(picture)
+    _say_where(picture, as_json=as_json)
 
 
 def _explain(run: Run, at_s: float) -> Explained:
@@ -201,5 +226,5 @@ def _of(run: Run) -> str:
     return f"{Path(run.name).name}: {head.task} on {head.robot}, begun {head.started_at[:19].replace('T', ' ')} UTC"
 
 
-def _say_where(picture: Path) -> None:
-    Console(highlight=False).print(f"picture  {picture}", markup=False, soft_wrap=True)
+def _say_where(picture: Path, *, as_json: bool) -> None:
+    Console(highlight=False, quiet=as_json).print(f"picture  {picture}", markup=False, soft_wrap=True)

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -36,6 +38,38 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     if lesson.alarms:
         taught.add_row("alarms of the guard", str(lesson.alarms), "")
     return Group(taught, render_exams(result.exams, task)) if result.exams else taught
+
+
+_TRAILS = ("trail", "unknown_positions", "collision_positions")
+"""Fields of an exam that are for pictures."""
+
+
+def curriculum_as_data(result: CurriculumResult, task: TaskSettings) -> dict[str, Any]:
+    """Return the numbers of one lesson and its exams, for JSON; units as in `LessonResult` and `ExamResult`."""
+    lesson = result.lesson
+    numbers = ("seed", "world", "teaching_s", "asks", "corrections", "rescues", "alarms", "repositions", "deletions")
+    taught = {name: getattr(lesson, name) for name in numbers} | {"rlas": len(lesson.rlas)}
+    return {"lesson": taught, **exams_as_data(result.exams, task)}
+
+
+def exams_as_data(exams: Sequence[WorldResult], task: TaskSettings) -> dict[str, Any]:
+    """Return the numbers of exams and of the teacher's own drives, for JSON, without trails."""
+    return {
+        "task": task.name,
+        "exams": [
+            {
+                "world": each.learned.world,
+                "succeeded": each.succeeded,
+                "learned": _exam_as_data(each.learned),
+                "teacher": _exam_as_data(each.teacher),
+            }
+            for each in exams
+        ],
+    }
+
+
+def _exam_as_data(exam: ExamResult) -> dict[str, Any]:
+    return {field.name: getattr(exam, field.name) for field in fields(exam) if field.name not in _TRAILS}
 
 
 def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:

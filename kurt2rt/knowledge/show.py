@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -12,9 +13,10 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.show_level import level_table
 from kurt2rt.knowledge.show_mid import mid_table, named_table
 from kurt2rt.knowledge.shown import answer, appraised, instead_of, plain, valued, when_and_who
-from kurt2rt.knowledge.statistics import follow_ups
+from kurt2rt.knowledge.statistics import Statistics, follow_ups
 from kurt2rt.perception.definition import AVERAGED
 from kurt2rt.rla.rla import (
+    BASIC,
     CRITIC,
     MID,
     ActionReplaced,
@@ -114,6 +116,89 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
         )
     hidden = len(records) - table.row_count
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
+
+
+def knowledge_as_data(journal: Journal) -> dict[str, Any]:
+    """Return binding, RLAs of all levels and named situations, for JSON. Raises KnowledgeError."""
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    entries = journal.entries()
+    system = fold_entries(journal, entries, radius=math.inf)
+    statistics = journal.statistics()
+    taught = {entry.event.origin.command_id: entry for entry in entries}
+    binding = journal.binding
+    features = {BASIC: binding.feature_names} | {
+        level: others.feature_names for level, others in binding.levels.items()
+    }
+    return {
+        "file": str(journal.path),
+        "task": binding.system,
+        "robot": binding.robot,
+        "definition": binding.feature_hash,
+        "lessons": system.standing_lessons,
+        "rlas": [
+            _rla_as_data(rla, taught[rla.origin.command_id], system, statistics, features[rla.level])
+            for level in features
+            for rla in system.rlas_at(level)
+        ],
+        "named": {
+            level: {
+                name: dict(zip(names, situation, strict=True)) for name, situation in system.named_at(level).items()
+            }
+            for level, names in features.items()
+            if system.named_at(level)
+        },
+    }
+
+
+def _rla_as_data(
+    rla: Rla, entry: StoredEntry, system: RlaSystem, statistics: Statistics, names: tuple[str, ...]
+) -> dict[str, Any]:
+    appraisal = system.appraisal(rla.rla_id)
+    return {
+        "rla": rla.rla_id,
+        "level": rla.level,
+        "behaviour": rla.behaviour,
+        "action": rla.action,
+        "asks": rla.asks,
+        "instead_of": instead_of(entry).plain,
+        "teacher": rla.origin.teacher,
+        "phase": rla.origin.phase.value,
+        "tick": rla.origin.tick,
+        "taught_at": entry.stamped_at,
+        "lesson": rla.origin.command_id,
+        "uses": statistics.uses.get(rla.rla_id, 0),
+        "rewards": appraisal.rewards,
+        "punishments": appraisal.punishments,
+        "value": statistics.values.get(rla.rla_id),
+        "followed_by_percent": follow_ups(statistics).get(rla.rla_id, {}),
+        "condition": dict(zip(names, rla.condition, strict=True)),
+    }
+
+
+def lessons_as_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
+    """Return the lessons that `render_lessons` shows, for JSON. Raises KnowledgeError."""
+    entries = journal.entries()
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    undone_by = {
+        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
+    }
+    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
+    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)][::-1]
+    shown = records[:limit]
+    return {
+        "file": str(journal.path),
+        "lessons": [
+            {
+                "id": record.event.origin.command_id,
+                "lesson": record.text,
+                "teacher": record.event.origin.teacher,
+                "taught_at": stamps[record.event.origin.command_id],
+                "undone_by": undone_by[record.event.origin.command_id] if record.undone else None,
+            }
+            for record in shown
+        ],
+        "older": len(records) - len(shown),
+    }
 
 
 def _empty_table(*, named: bool, any_value: bool, wide: bool) -> TextTable:

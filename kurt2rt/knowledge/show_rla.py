@@ -1,6 +1,7 @@
 """One RLA, whole: condition, action, and what is expected to follow it (paper, III.A), for `knowledge show --rla`."""
 
 import math
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -48,6 +49,28 @@ def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> Rende
         parts.append(Text(f"expected, of {expectation.count} ends seen, {seconds} after it began:"))
     parts.append(_features(rla, names, expectation, limit))
     return Group(*parts)
+
+
+def expectation_as_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
+    """Return what is expected to follow an RLA, for JSON; None if nothing is yet.
+
+    Raises KnowledgeError if no such RLA lives.
+    """
+    system = fold_entries(journal, journal.entries(), radius=math.inf)
+    rla = system.get(rla_id)
+    if rla is None:
+        raise KnowledgeError(f"{journal.path}: holds no RLA {rla_id}; kurt2rt knowledge show lists them")
+    binding = journal.binding
+    names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
+    known = journal.statistics().expectations.get(rla_id)
+    if known is None or not is_of(system, rla_id, known, rla.level):
+        return None
+    return {
+        "ends_seen": known.count,
+        "after_s": known.ticks * TICK_S,
+        "mean": dict(zip(names, known.mean.tolist(), strict=True)),
+        "spread": dict(zip(names, known.spread.tolist(), strict=True)),
+    }
 
 
 def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None, limit: int | None) -> RenderableType:

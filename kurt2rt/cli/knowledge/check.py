@@ -2,17 +2,20 @@
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 
 
-def check(file: KnowledgeFile) -> None:
+def check(file: KnowledgeFile, as_json: AsJson = False) -> None:
     """Check that every lesson in the file can be read and fits; exit code 1 when something does not."""
     with Journal.read_only(file) as journal:
         faults = check_knowledge(journal)
-    for fault in faults:
-        typer.echo(fault)
+    if as_json:
+        print_json({"file": file, "sound": not faults, "faults": faults})
+    else:
+        for line in faults or [f"{file}: every lesson can be read and fits"]:
+            typer.echo(line)
     if faults:
         raise typer.Exit(1)
-    typer.echo(f"{file}: every lesson can be read and fits")

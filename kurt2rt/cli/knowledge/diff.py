@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.knowledge.binding import require_same
 from kurt2rt.knowledge.difference import Difference, difference
@@ -19,7 +20,7 @@ from kurt2rt.rla.rla import Rla
 def diff(
     file: KnowledgeFile,
     other: Annotated[Path, typer.Argument(help="Another knowledge file of the same features.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Tell lessons and RLAs that only one of two files has, and RLAs with another action."""
     with Journal.read_only(file) as a, Journal.read_only(other) as b:

@@ -4,10 +4,11 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.cli.printed import console_of
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import render_lessons
+from kurt2rt.knowledge.show import lessons_as_data, render_lessons
 from kurt2rt.text_table import print_whole
 
 
@@ -15,7 +16,11 @@ def lessons(
     file: KnowledgeFile,
     limit: Annotated[int, typer.Option(min=1, help="Show only the newest so many lessons.")] = 20,
     of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
+    as_json: AsJson = False,
 ) -> None:
     """List the lessons, newest first, with their ids and who undid them."""
     with Journal.read_only(file) as journal:
-        print_whole(console_of(), render_lessons(journal, limit, of))
+        if as_json:
+            print_json(lessons_as_data(journal, limit, of))
+        else:
+            print_whole(console_of(), render_lessons(journal, limit, of))

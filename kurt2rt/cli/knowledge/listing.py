@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.printed import console_of
 from kurt2rt.exchange.given import COME_FROM
@@ -18,30 +19,48 @@ from kurt2rt.text_table import TextTable, print_whole
 
 def list_files(
     place: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it; or one file.")] = Path("var"),
+    as_json: AsJson = False,
 ) -> None:
     """List the knowledge files of a folder: task, how much they know, and where it came from."""
     if not place.exists():
         raise KnowledgeError(f"{place}: is not there; give the folder that your knowledge files are in, or one of them")
+    paths = sorted(place.rglob("*.knowledge")) if place.is_dir() else [place]
+    rows: dict[Path, tuple[str, str, str, str, str]] = {}
+    unreadable: dict[Path, str] = {}
+    for path in paths:
+        try:
+            rows[path] = _row(path)
+        except KnowledgeError as error:
+            if not place.is_dir():
+                raise
+            unreadable[path] = str(error)
+    if as_json:
+        files = [
+            {
+                "file": path,
+                "task": task,
+                "rlas": int(rlas),
+                "lessons": int(lessons),
+                "newest": newest,
+                "came_from": came,
+            }
+            for path, (task, rlas, lessons, newest, came) in rows.items()
+        ]
+        print_json({"files": files, "unreadable": [{"file": path, "why": why} for path, why in unreadable.items()]})
+        return
     table = TextTable()
     for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
         table.add_column(heading, number=heading in ("RLAs", "lessons"), whole=heading in ("file", "newest (UTC)"))
-    unreadable: list[str] = []
-    if place.is_dir():
-        for path in sorted(place.rglob("*.knowledge")):
-            try:
-                table.add_row(plain(str(path)), *map(plain, _row(path)))
-            except KnowledgeError as error:
-                unreadable.append(f"cannot be read: {error}")
-    else:
-        table.add_row(plain(str(place)), *map(plain, _row(place)))
+    for path, row in rows.items():
+        table.add_row(plain(str(path)), *map(plain, row))
     if table.row_count:
         print_whole(console_of(), table)
     elif not unreadable:
         say(f"{place}: holds no knowledge file (*.knowledge)")
-    print_whole(console_of(), *map(plain, unreadable))
+    print_whole(console_of(), *(plain(f"cannot be read: {why}") for why in unreadable.values()))
 
 
-def _row(path: Path) -> tuple[str, ...]:
+def _row(path: Path) -> tuple[str, str, str, str, str]:
     with Journal.read_only(path) as journal:
         taught, whence, imported = read_taught(journal), whence_of(journal), journal.notes().get(COME_FROM, "")
     newest = taught.entries[-1].stamped_at[:19].replace("T", " ") if taught.entries else ""

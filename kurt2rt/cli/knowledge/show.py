@@ -1,14 +1,15 @@
 """`kurt2rt knowledge show`."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
 from kurt2rt.cli.printed import console_of
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import render_knowledge
-from kurt2rt.knowledge.show_rla import render_rla
+from kurt2rt.knowledge.show import knowledge_as_data, render_knowledge
+from kurt2rt.knowledge.show_rla import expectation_as_data, render_rla
 from kurt2rt.text_table import print_whole
 
 
@@ -18,11 +19,25 @@ def show(
         int | None, typer.Option(min=1, help="Show only the oldest so many RLAs; with --rla so many features.")
     ] = None,
     rla: Annotated[int | None, typer.Option(help="Show this RLA whole, with what is expected to follow it.")] = None,
+    as_json: AsJson = False,
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
     with Journal.read_only(file) as journal:
+        if as_json:
+            print_json(_as_data(journal, rla, limit))
+            return
         console = console_of()
         if rla is not None:
             print_whole(console, render_rla(journal, rla, limit))
             return
         print_whole(console, render_knowledge(journal, limit, wide=console.width >= WIDE))
+
+
+def _as_data(journal: Journal, rla_id: int | None, limit: int | None) -> dict[str, Any]:
+    """Return all RLAs, the first `limit` of them, or one with what is expected to follow it."""
+    told = knowledge_as_data(journal)
+    if rla_id is None:
+        return {**told, "rlas": told["rlas"][:limit], "hidden": len(told["rlas"][limit:]) if limit else 0}
+    expected = expectation_as_data(journal, rla_id)
+    (rla,) = (each for each in told["rlas"] if each["rla"] == rla_id)
+    return {"file": told["file"], **rla, "expected": expected}

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.table import export_table
@@ -14,9 +15,13 @@ from kurt2rt.knowledge.writer import utc_now
 def table(
     file: KnowledgeFile,
     out: Annotated[Path, typer.Option(help="Folder for the table; made where it is missing.")] = Path("results/export"),
+    as_json: AsJson = False,
 ) -> None:
     """Write the RLAs as a table (CSV): one row each, with its condition, who taught it and how it was used."""
     journal_file.require_ours(file)
     saved = export_table(file, out, utc_now())
+    if as_json:
+        print_json({"table": out / saved.name, "sha256": saved.sha256})
+        return
     say(f"table  {out / saved.name}")
     say(f"sha256  {saved.sha256}")

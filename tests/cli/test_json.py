@@ -1,0 +1,98 @@
+"""--json in every command that reports: one JSON document on standard output, nothing else, and the same exit code."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.cli.json_output import plain
+from tests.cli.helpers import CommandLine
+from tests.cli.test_help import commands
+from tests.replay.stored_runs import STORED
+
+WALLS = str(STORED / "walls.mcap")
+SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1", "--set", "exam.duration_s=1")
+REPORTS: dict[tuple[str, ...], set[str]] = {
+    ("demo", *SHORT, "--set", "exam.worlds=[a]"): {"lesson", "task", "exams", "picture", "knowledge"},
+    ("lesson", *SHORT): {"lesson", "task", "exams", "knowledge"},
+    ("lesson", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots"},
+    ("exam", "mine.knowledge", "--world", "a", *SHORT[-2:]): {"knowledge", "seed", "task", "exams"},
+    ("faults", "--target", "tick", "--kind", "stuck"): {"stop_times", "trials"},
+    ("why", WALLS, "--at", "1"): {"run", "at_s", "facts", "tips", "difference", "trouble", "picture"},
+    ("why", WALLS, "--to", "5", "--picture", "made.svg"): {
+        *("run", "task", "from_s", "to_s", "ticks", "missed", "stretches", "notes", "trouble", "picture")
+    },
+    ("pair", "--list"): {"paired"},
+    ("knowledge", "list", "."): {"files", "unreadable"},
+    ("knowledge", "lessons", "mine.knowledge"): {"file", "lessons", "older"},
+    ("knowledge", "show", "mine.knowledge"): {
+        *("file", "task", "robot", "definition", "lessons", "rlas", "named", "hidden")
+    },
+    ("knowledge", "check", "mine.knowledge"): {"file", "sound", "faults"},
+    ("knowledge", "diff", "mine.knowledge", "mine.knowledge"): {
+        *("common_rows", "lessons_only_here", "lessons_only_there", "rlas_only_here", "rlas_only_there"),
+        "rlas_with_another_action",
+    },
+    ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
+}
+REPORTING = {
+    *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
+    *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("why",)),
+    *(("knowledge", name) for name in ("list", "lessons", "show", "check", "diff", "table")),
+}
+
+
+@pytest.fixture
+def mine(lessons: Path, tmp_path: Path) -> None:
+    (tmp_path / "mine.knowledge").write_bytes(lessons.read_bytes())
+
+
+def test_every_command_that_reports_has_the_option() -> None:
+    assert {words for words, names in commands().items() if "--json" in names} == REPORTING
+
+
+@pytest.mark.usefixtures("mine")
+@pytest.mark.parametrize(("words", "keys"), REPORTS.items(), ids=[" ".join(words[:2]) for words in REPORTS])
+def test_json_is_one_document_and_nothing_else(kurt2rt: CommandLine, words: tuple[str, ...], keys: set[str]) -> None:
+    said = kurt2rt(*words, "--json")
+    assert said.exit_code == 0, said.err
+    assert set(json.loads(said.out)) == keys
+
+
+@pytest.mark.usefixtures("mine")
+def test_json_keeps_the_exit_code_of_a_failure(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    file = tmp_path / "mine.knowledge"
+    file.write_bytes(file.read_bytes().replace(b'"teacher":"scripted teacher"', b'"teacher":"scripted preacher"'[:28]))
+    said = kurt2rt("knowledge", "check", file, "--json")
+    assert said.exit_code == 1
+    assert json.loads(said.out)["sound"] is False
+
+
+def test_json_leaves_standard_output_empty_where_the_input_is_refused(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("knowledge", "show", "none", "--json")
+    assert (said.exit_code, said.out) == (2, "")
+
+
+@pytest.mark.usefixtures("mine")
+def test_rlas_come_with_conditions_and_teachers(kurt2rt: CommandLine) -> None:
+    rlas = json.loads(kurt2rt("knowledge", "show", "mine.knowledge", "--json").out)["rlas"]
+    (first,) = [each for each in rlas if each["rla"] == 1]
+    assert first["teacher"] == "scripted teacher"
+    assert len(first["condition"]) == 72
+    whole = json.loads(kurt2rt("knowledge", "show", "mine.knowledge", "--rla", "1", "--json").out)
+    assert whole["condition"] == first["condition"]
+    assert kurt2rt("knowledge", "show", "mine.knowledge", "--limit", "1", "--json").out.count('"rla":') == 1
+
+
+def test_file_behind_json_still_gets_the_results_beside_the_table(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    said = kurt2rt("faults", "--target", "tick", "--kind", "stuck", "--json", "results.json")
+    assert said.exit_code == 0, said.err
+    assert "1 cases, 1 trials" in said.out
+    assert set(json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))) == {"stop_times", "trials"}
+    assert "unexpected argument" in kurt2rt.misused("faults", "results.json")
+
+
+def test_no_number_is_one_that_json_does_not_have() -> None:
+    document = json.dumps(plain({"far": [math.inf, -math.inf], "none": (math.nan, 0.5)}), allow_nan=False)
+    assert json.loads(document) == {"far": [None, None], "none": [None, 0.5]}
