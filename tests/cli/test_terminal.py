@@ -10,6 +10,7 @@ from pathlib import Path
 import anyio
 import pytest
 
+from hal.robot_settings import load_robot
 from kurt2rt.channel.credentials import Pairing, pair
 from kurt2rt.channel.reply import Reply, Verdict, done
 from kurt2rt.channel.requests import (
@@ -36,10 +37,12 @@ from kurt2rt.channel.requests import (
 from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, question_in, sentence_of
 from kurt2rt.health.plain import plain_of
+from kurt2rt.perception.sensor_words import law_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
+from kurt2rt.teaching.question import FeatureDifference
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.health.reports import ILL
 from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
@@ -314,6 +317,23 @@ async def test_where_several_behaviours_are_taught_the_terminal_says_which_to_fo
         assert [each.behaviour for each in robot.all_of(PursueRequest)] == ["turn_left"]
         desk.type("pursue")
         await desk.reads("pursue NAME ")
+
+
+async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing: Pairing, robot: StandInRobot) -> None:
+    mind = Mind()
+
+    async def tells_more(request: Request) -> Reply:
+        if not isinstance(request, HelloRequest):
+            return await mind(request)
+        sensors = [["s9", "front left", 0.2, 0.1, 0.0]]
+        told = {"what": "Teach it to follow the wall", "law": list(law_of(load_robot().infrared)), "sensors": sensors}
+        return Reply(Verdict.DONE, HELLO | told)
+
+    robot.mind = tells_more
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("Teach it to follow the wall")
+        await looked_at(desk, robot, cause="unknown", question=(FeatureDifference("s9", 441.0, 108.0),))
+        await desk.reads("; front left: 13 cm, was 46 cm")
 
 
 def test_a_question_is_about_the_behaviour_that_is_wanted() -> None:

@@ -110,6 +110,18 @@ def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> 
     assert presses(driving) == []  # it was held before
 
 
+def test_second_gamepad_that_is_held_does_not_go_on_for_the_first(driving: Lesson) -> None:
+    hold(driving)
+    phone = driving.phone
+    phone.run("pads[1] = {...pad, index: 1, buttons: pad.buttons.map((each) => ({...each}))};")
+    polled(phone)
+    phone.run("shoulder(false)")
+    phone.wait(lambda: not driving.robot.pressing, "the first lets go")
+    count = len(presses(driving))
+    polled(phone)
+    assert len(presses(driving)) == count
+
+
 def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
     driving.phone.run("pad.mapping = ''; tellPad('gamepadconnected')")
     driving.reads("#said", "its buttons are not known")

@@ -39,15 +39,14 @@ export function gamepad({ drive, mayDrive, say }) {
         continue;
       }
       if (spent.has(pad.index)) continue;
-      if (driving === null && (drive.held || !mayDrive() || !document.hasFocus())) spent.add(pad.index); // it is not its turn
-      else if (driving === null || driving === pad.index) {
-        if (!mayDrive()) {
-          end();
-          continue;
-        }
-        driving = pad.index;
-        drive.hold(deadzone(pad.axes[0] ?? 0), -deadzone(pad.axes[1] ?? 0));
+      const mayBegin = driving === null && !drive.held && document.hasFocus();
+      if (!mayDrive() || (driving !== pad.index && !mayBegin)) {
+        if (driving === pad.index) end();
+        spent.add(pad.index); // pressed when it was not its turn
+        continue;
       }
+      driving = pad.index;
+      drive.hold(deadzone(pad.axes[0] ?? 0), -deadzone(pad.axes[1] ?? 0));
     }
     if (!there.length) {
       clearInterval(timer);
