@@ -10,6 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from kurt2rt.bus_names import NO_WIRE, SIMULATED
 from kurt2rt.channel.ground import Ground
+from kurt2rt.timing.simulated_clock import HeldWorld
 
 
 class OpenedRobot(NamedTuple):
@@ -19,6 +20,8 @@ class OpenedRobot(NamedTuple):
     ground: Ground | None
     lives: Callable[[], bool]
     """Whether the simulator still runs; always so where there is none."""
+    world: HeldWorld | None = None
+    """Of a simulated robot whose time may pass faster than real time."""
 
 
 class Opening(Protocol):
@@ -45,7 +48,8 @@ def open_robot(
         from kurt2rt.simulated import simulated_robot
 
         with simulated_robot(settings, world, seed, wire, tap) as (simulated, ground):
-            yield OpenedRobot(simulated, ground, lambda: ground.lives)
+            # A wire has a time of its own, in real time.
+            yield OpenedRobot(simulated, ground, lambda: ground.lives, ground.held_world if wire == NO_WIRE else None)
         return
     end = open_bus(bus)
     end.tap = tap

@@ -92,7 +92,8 @@ class Rounds:
             self._channel.after_tick(record)
         if self._health is not None:
             self._health.after_tick(record)
-        saves = ticks % self._checkpoint_ticks == 0
+        speed = runtime.school.authority.speed
+        saves = ticks % (self._checkpoint_ticks * speed) == 0
         if self._recorder is not None:
             # Before all that is noted at its time: the question that comes of it, and what became of lessons.
             self._recorder.note(record, saved=saves)
@@ -101,7 +102,7 @@ class Rounds:
             self.settled(acknowledgement)
         if saves:
             self.save_statistics()
-        if ticks % self._status_ticks == 0:
+        if ticks % (self._status_ticks * speed) == 0:
             channel_trouble = "" if self._channel is None else self._channel.trouble
             recording_trouble = "" if self._recorder is None else self._recorder.trouble
             self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble, recording_trouble)

@@ -38,9 +38,11 @@ from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import Command
 from kurt2rt.tick import TickRecord
+from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.short_turns import short_turns
+from kurt2rt.timing.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.timing.timerfd import TimerfdClock
 from kurt2rt.upkeep import Upkeep
 
@@ -69,6 +71,8 @@ class Openness:
     """Of a robot that is simulated in this program."""
     simulation: Simulation | None = None
     """The same."""
+    world: HeldWorld | None = None
+    """The same, where robot time may pass faster than real time."""
     begin_with: tuple[Command, ...] = ()
     """What the first tick takes: who teaches on after the run before."""
 
@@ -106,7 +110,10 @@ async def serve(
     if behaviour is not None:
         wanted.pursue(behaviour)
     with ExitStack() as around:
-        clock = around.enter_context(TimerfdClock())
+        clock: Clock = around.enter_context(TimerfdClock())
+        speed = None
+        if openness is not None and openness.world is not None:
+            clock = speed = SimulatedClock(clock, openness.world)
         upkeep = upkeep or Upkeep(around.enter_context(Ending()), Notifier({}))
         ending = upkeep.ending
         opened = knowledge or go_on_teaching(path, settings, task)
@@ -155,7 +162,7 @@ async def serve(
             heartbeat = Heartbeat(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
             async with (
                 anyio.create_task_group() as tasks,
-                _channel(runtime, writer, stamps, service, openness, boot, watch, ending) as channel,
+                _channel(runtime, writer, stamps, service, openness, boot, watch, ending, speed) as channel,
             ):
                 rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch, recorder)
 
@@ -197,6 +204,7 @@ async def _channel(
     boot: bytes,
     watch: HealthWatch,
     ending: Ending,
+    speed: Speed | None,
 ) -> AsyncIterator[Channel | None]:
     if openness is None:
         yield None
@@ -218,6 +226,7 @@ async def _channel(
         health=lambda: watch.newest,
         exam=None if exam is None else lambda: exam.standing,
         simulation=openness.simulation,
+        speed=speed,
     )
     teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
     try:

@@ -5,6 +5,7 @@ import shapely
 from hal.robot_settings import GeometrySettings
 from kurt2rt.channel.ground import Post, Wall, WorldView
 from kurt2rt.channel.state import SimulatedPlace
+from kurt2rt.timing.simulated_clock import HeldWorld
 from simbridge.geometry import rectangle
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
@@ -24,6 +25,11 @@ class SimulatedGround:
         self._simulation = simulation
         self._version = 0
         self._start = robot.pose
+
+    @property
+    def held_world(self) -> HeldWorld:
+        """The simulation, for a clock that steps it."""
+        return self._simulation
 
     @property
     def lives(self) -> bool:

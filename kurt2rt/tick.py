@@ -17,7 +17,7 @@ from kurt2rt.rla.rla import BASIC, Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
-from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown
+from kurt2rt.teaching.happenings import Input, PressesForgotten, SetDown, SpeedChanged
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
@@ -160,6 +160,9 @@ class Tick:
                 continue
             if isinstance(command, PressesForgotten):
                 self._school.authority.forget(command.teacher)
+                continue
+            if isinstance(command, SpeedChanged):
+                self._school.authority.speed = command.times
                 continue
             if isinstance(command, SetDown):
                 self._set_down()

@@ -21,6 +21,8 @@ class RealtimeSimulation:
         self._cycle_ns = round(cycle_s * 1e9)
         self._stopping = threading.Event()
         self._asked: deque[Callable[[], object]] = deque()
+        self._stepping = threading.Lock()
+        self._held = False
         self._thread = threading.Thread(target=self._run, name="simulated-robot", daemon=True)
         self.missed_cycles = 0
         self.error: Exception | None = None
@@ -39,6 +41,22 @@ class RealtimeSimulation:
     def ask(self, job: Callable[[], object]) -> None:
         """Have something done before the next step, by the thread that steps; from any thread. An error ends it."""
         self._asked.append(job)
+
+    def hold(self) -> None:
+        """Let the thread step no more; whoever holds the simulation steps it, until `go_on`."""
+        with self._stepping:
+            self._held = True
+
+    def step(self) -> None:
+        """One cycle in the caller's thread, while the simulation is held."""
+        while self._asked:
+            self._asked.popleft()()
+        self._robot.step()
+
+    def go_on(self) -> None:
+        """Let the thread step again."""
+        with self._stepping:
+            self._held = False
 
     def wait(self, timeout_s: float) -> bool:
         """Wait until the thread has ended, by `stop` or by an error; False when it still runs."""
@@ -79,6 +97,6 @@ class RealtimeSimulation:
                 deadline_ns += missed * self._cycle_ns
             if self._stopping.wait(max(0.0, (deadline_ns - time.monotonic_ns()) / 1e9)):
                 return
-            while self._asked:
-                self._asked.popleft()()
-            self._robot.step()
+            with self._stepping:
+                if not self._held:
+                    self.step()

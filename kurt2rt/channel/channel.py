@@ -29,6 +29,7 @@ from kurt2rt.teaching.commands import HandOver, Stop
 from kurt2rt.teaching.happenings import PressesForgotten
 from kurt2rt.teaching.inbox import InboxFullError
 from kurt2rt.tick import TickRecord
+from kurt2rt.timing.simulated_clock import Speed
 
 PICTURES_PER_S = 20
 LOOPBACK, EVERYWHERE = "127.0.0.1", "::"
@@ -51,6 +52,8 @@ class Surroundings:
     """How the exam stands; None where the robot is not examined."""
     simulation: Simulation | None = None
     """None where the simulator is not in this program."""
+    speed: Speed | None = None
+    """None where robot time is real time."""
 
 
 class Channel:
@@ -65,6 +68,7 @@ class Channel:
         endpoint: Endpoint,
         pairing_trouble: Callable[[], tuple[str, ...]],
         explaining: Explaining,
+        speed: Speed | None = None,
     ) -> None:
         self._reception = reception
         self._site = site
@@ -73,6 +77,7 @@ class Channel:
         self._explaining = explaining
         self._texts: dict[str, str] = {}
         self._every_ticks = max(1, round(1 / (PICTURES_PER_S * runtime.robot.can.cycle_s)))
+        self._speed = speed
         self._ticks = 0
         self.endpoint = endpoint
 
@@ -114,7 +119,9 @@ class Channel:
         self._telling.follow(record)
         self._explaining.follow(record)
         self._ticks += 1
-        if self._ticks % self._every_ticks == 0:
+        # As many a second of real time, at whatever speed a simulation comes to.
+        speed = 1 if self._speed is None else max(1, round(min(self._speed.reached, self._speed.wanted)))
+        if self._ticks % (self._every_ticks * speed) == 0:
             self._site.show(encode_state(self._telling.picture(record)))
 
     def settled(self, acknowledgement: Acknowledgement) -> None:
@@ -147,6 +154,7 @@ async def open_channel(
         why=explaining.tell,
         exam=surroundings.exam,
         simulation=surroundings.simulation,
+        speed=surroundings.speed,
     )
     telling = Telling(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health
@@ -158,7 +166,9 @@ async def open_channel(
     try:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(_refresh, teachers, runtime)
-            yield Channel(runtime, reception, site, telling, endpoint, lambda: teachers.trouble, explaining)
+            yield Channel(
+                runtime, reception, site, telling, endpoint, lambda: teachers.trouble, explaining, surroundings.speed
+            )
             tasks.cancel_scope.cancel()
     finally:
         reception.close()

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple, Protocol
 
 from kurt2rt.channel.allowance import Allowance
@@ -38,6 +39,7 @@ from kurt2rt.channel.requests import (
     SeekRlaRequest,
     SimulationRequest,
     SituationsRequest,
+    SpeedRequest,
     StopRequest,
     StreamRequest,
     TakeRequest,
@@ -60,7 +62,9 @@ from kurt2rt.teaching.commands import (
     Stop,
     Watch,
 )
+from kurt2rt.teaching.happenings import SpeedChanged
 from kurt2rt.teaching.inbox import InboxFullError
+from kurt2rt.timing.simulated_clock import Speed
 
 STREAM_TICKS = 40
 """A message of a stream on an older picture is refused: it was held back on its way."""
@@ -127,12 +131,13 @@ class Reception:
         why: Callable[[], dict[str, Any] | None] = lambda: None,
         exam: Callable[[], ExamStanding] | None = None,
         simulation: Simulation | None = None,
+        speed: Speed | None = None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
         `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
         `exam`: how the exam stands; None where the robot is not examined. `simulation`: None where the simulator is not
-        in this program.
+        in this program. `speed`: None where robot time is real time.
         """
         self._runtime = runtime
         self._boot = boot
@@ -145,6 +150,7 @@ class Reception:
         self._why = why
         self._exam = exam
         self._simulation = simulation
+        self._speed = speed
         self._upload = Upload()
         self._changing = False
         self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
@@ -191,7 +197,10 @@ class Reception:
             case SimulationRequest():
                 if self._simulation is None:
                     return _not_simulated()
-                return Reply(Verdict.DONE, {"simulation": SIMULATION.plain_of(await self._simulation.view())})
+                view = await self._simulation.view()
+                if self._speed is not None:
+                    view = replace(view, speed=self._speed.wanted, reached=self._speed.reached)
+                return Reply(Verdict.DONE, {"simulation": SIMULATION.plain_of(view)})
             case ExamStandingRequest():
                 if self._exam is None:
                     return _not_simulated()
@@ -252,6 +261,11 @@ class Reception:
     def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
         match request:
+            case SpeedRequest(times=times):
+                refused = self._change_speed(device, times)
+                if refused is None:
+                    self._outcomes.begin(command_id).set_result(done(self.tick, f"speed {times}"))
+                return refused
             case NextRunRequest() | LoadRequest():
                 return self._begin_next_run(device, command_id, request)
             case ExamRequest():
@@ -310,6 +324,20 @@ class Reception:
         except ValueError as error:
             return refusal("refused", str(error), self.tick)
         return done(self.tick, size=size)
+
+    def _change_speed(self, device: str, times: int) -> Reply | None:
+        """A refusal; None where robot time passes so from the next tick on."""
+        if self._simulation is None:
+            return _not_simulated()
+        if self._speed is None:
+            return refusal(
+                "refused", "a simulated wire has a time of its own; start kurt2rt run without --wire", self.tick
+            )
+        refused = self._not_in_charge(device)
+        if refused is None:
+            self._speed.set(times)
+            self._runtime.inbox.put(SpeedChanged(times))
+        return refused
 
     def _begin_next_run(self, device: str, command_id: str, request: NextRunRequest | LoadRequest) -> Reply | None:
         if self._simulation is None:
@@ -418,7 +446,8 @@ class Reception:
     def _stale(self, boot: bytes, seen: int, longest: int) -> Reply | None:
         if boot != self._boot:
             return self._started_anew()
-        if not 0 <= self.tick - seen <= longest:
+        # So long in real time, which is the teacher's, at any speed of a simulation.
+        if not 0 <= self.tick - seen <= longest * self._runtime.school.authority.speed:
             return refusal("stale", "given on an old picture; look at the robot, then say it again", self.tick)
         return None
 

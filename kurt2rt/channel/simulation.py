@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from kurt2rt.channel.maps import LINE, NAME, Form, MapOf
-from kurt2rt.channel.schema import ManyOf
+from kurt2rt.channel.schema import ManyOf, Real, Whole
+from kurt2rt.timing.simulated_clock import FASTEST
 
 _MOST_NAMES = 64
 
@@ -28,6 +29,10 @@ class SimulationView:
     worlds: tuple[str, ...]
     """Worlds by name; `rooms-N` and `streets-N` are made for any whole number N."""
     tasks: tuple[TaskName, ...]
+    speed: int = 1
+    """Robot seconds in one second, as chosen."""
+    reached: float = 1.0
+    """The same as measured over the last second."""
 
 
 SIMULATION = Form[SimulationView](
@@ -38,6 +43,8 @@ SIMULATION = Form[SimulationView](
         task=NAME,
         worlds=ManyOf(NAME, most=_MOST_NAMES),
         tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
+        speed=Whole(1, FASTEST),
+        reached=Real(1000.0),
     ),
 )
 

@@ -205,6 +205,7 @@ class RobotProgram:
             self._listening,
             self._exam(opened),
             self._runs,
+            opened.world,
             () if run is None else run.begin_with,
         )
         goes_on = run is not None and run.teacher is not None

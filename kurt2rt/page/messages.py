@@ -8,6 +8,7 @@ from typing import Any
 from kurt2rt.channel.requests import SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
 from kurt2rt.rla.rla import BASIC, MID, Phase
+from kurt2rt.timing.simulated_clock import FASTEST
 
 LONGEST_MESSAGE = 1024
 """In characters."""
@@ -114,6 +115,7 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "examine": {},
     "move": {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
     "put_back": {},
+    "speed": {"times": Whole(1, FASTEST)},
     "load": {"upload": _hexadecimal(UPLOAD_ID_BYTES), "sha256": _hexadecimal(SHA256_BYTES)},
     "next_run": {"world": OrNone(_NAME), "task": OrNone(_NAME), "fresh": Flag()},
     "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Real(7.0, "rad")},

@@ -67,6 +67,8 @@ async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
             return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
         case "put_back":
             return await robot.put_back()
+        case "speed":
+            return await robot.set_speed(given["times"])
         case "load":
             return await robot.load_upload(given["upload"], given["sha256"])
         case "next_run":

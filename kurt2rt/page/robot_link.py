@@ -205,3 +205,7 @@ class RobotLink(Protocol):
     async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
         """Begin the next run of a simulated robot with knowledge that was uploaded."""
         ...
+
+    async def set_speed(self, times: int) -> Answer:
+        """Let the time of a simulated robot pass so many times as fast as real time."""
+        ...

@@ -20,6 +20,8 @@ class Authority:
         """
         self.attended = attended
         self.teacher: str | None = None
+        self.speed = 1
+        """Robot seconds in one second, as chosen. A lease is a teacher's, so it is that much longer in robot time."""
         self._repertoire = repertoire
         self._lease_ticks = lease_ticks
         self._reach_ticks = reach_ticks
@@ -134,4 +136,4 @@ class Authority:
         self._there_until = -1
 
     def _until(self, tick: int, seen_tick: int) -> int:
-        return min(tick + self._lease_ticks, seen_tick + self._reach_ticks)
+        return min(tick + self._lease_ticks * self.speed, seen_tick + self._reach_ticks * self.speed)

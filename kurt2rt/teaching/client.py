@@ -27,6 +27,7 @@ from kurt2rt.channel.requests import (
     NextRunRequest,
     PlaceRequest,
     SimulationRequest,
+    SpeedRequest,
     UploadRequest,
 )
 from kurt2rt.channel.simulation import SIMULATION, SimulationView
@@ -119,6 +120,10 @@ class TeacherClient(Lessons, Goals, Charge, Moving):
         kept under another name.
         """
         return await self._asking.command(NextRunRequest, world=world, task=task, fresh=fresh)
+
+    async def set_speed(self, times: int) -> Answer:
+        """Let the time of a simulated robot pass `times` as fast as real time, 1 to 10, or as near as it comes."""
+        return await self._asking.command(SpeedRequest, times=times)
 
     async def load(self, content: bytes) -> Answer:
         """Begin the next run with this knowledge, an archive of `export` or a knowledge file; as `next_run`.

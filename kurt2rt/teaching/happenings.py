@@ -20,7 +20,14 @@ class SetDown:
     """Somebody has set the robot down elsewhere: how it came there says nothing now."""
 
 
-Happening = PressesForgotten | SetDown
+@dataclass(frozen=True, slots=True)
+class SpeedChanged:
+    """Robot time passes `times` as fast as real time from now on, in a simulation."""
+
+    times: int
+
+
+Happening = PressesForgotten | SetDown | SpeedChanged
 
 Input = Command | Happening
 """What a tick takes from the inbox."""

@@ -34,6 +34,7 @@ from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.tick import LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
+from kurt2rt.timing.simulated_clock import HeldWorld, SimulatedClock
 from tests.test_tick import CorridorRobot, Notebook
 
 ROBOT = load_robot()
@@ -140,6 +141,7 @@ class Desk:
         self.bus_trouble = ""
         self.exam = NO_EXAM
         self.simulation = Runs()
+        self.speed = SimulatedClock(LockstepClock(lambda: None), cast(HeldWorld, None))
         self.health: HealthReport | None = None
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
@@ -161,6 +163,7 @@ class Desk:
             health=lambda: self.health,
             why=explaining.tell,
             simulation=None if ground is None else self.simulation,
+            speed=None if ground is None else self.speed,
             exam=None if ground is None else lambda: self.exam,
         )
         safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)

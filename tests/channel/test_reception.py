@@ -44,6 +44,7 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     SimulationRequest,
     SituationsRequest,
+    SpeedRequest,
     StopRequest,
     StreamRequest,
     TakeRequest,
@@ -93,6 +94,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     PlaceRequest: (1.0, 1.0, 0.0),
     ExamRequest: (),
     NextRunRequest: (None, None, False),
+    SpeedRequest: (2,),
     LoadRequest: (bytes(8), bytes(32)),
     BackToStartRequest: (),
 }
@@ -557,6 +559,25 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     assert SIMULATION.read(decode_answer(encode_answer(told))) == await desk.simulation.view()
 
 
+async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_robot_time() -> None:
+    desk = Desk(ground=Yard())
+    assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
+    assert (await desk.ask(desk.command(SpeedRequest, 4))).verdict is Verdict.DONE
+    desk.run()
+    assert desk.speed.wanted == 4
+    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS))) == ""
+    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS + 1))) == "stale"
+    await desk.stream(desk.watch())
+    desk.run(4 * 24)
+    assert desk.runtime.school.authority.present(desk.tick)
+    desk.run(1)
+    assert not desk.runtime.school.authority.present(desk.tick)
+    told = SIMULATION.read((await desk.ask(SimulationRequest())).body["simulation"])
+    assert (told.speed, told.reached) == (4, 1.0)
+
+
 async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> None:
     yard = Yard()
     desk = Desk(ground=yard)
@@ -590,6 +611,7 @@ async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
         desk.command(NextRunRequest, None, None, True),
         desk.command(BackToStartRequest),
         desk.command(LoadRequest, bytes(8), bytes(32)),
+        desk.command(SpeedRequest, 2),
         UploadRequest(BOOT, bytes(8), 0, b"PK"),
         SimulationRequest(),
     )

@@ -154,6 +154,15 @@ async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> S
     raise AssertionError("the client ended")
 
 
+async def state_at(client: TeacherClient, tick: int) -> State:
+    """The first picture of a tick or later."""
+    with anyio.fail_after(30.0):
+        async for state in client.states():
+            if state.tick >= tick:
+                return state
+    raise AssertionError("the client ended")
+
+
 async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(tmp_path: Path) -> None:
     knowledge = tmp_path / "var" / "wall_following.knowledge"
     with running("run", "--port", "0", folder=tmp_path) as robot:
@@ -173,7 +182,13 @@ async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(t
             saved = (knowledge.parent / "wall_following.knowledge.1").read_bytes()
             answer = await client.load(saved)
             assert answer.accepted, answer.text
-            await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
+            third = await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
+            assert (await client.set_speed(3)).accepted
+            # Ticks of robot time go on one by one, none is missed; and again at the speed of real time.
+            faster = await state_at(client, third.tick + 100)
+            assert (await client.set_speed(1)).accepted
+            slower = await state_at(client, faster.tick + 100)
+            assert slower.boot == third.boot
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
     with Journal.read_only(knowledge.with_name("wall_following.knowledge.1")) as kept:
         assert len(list(kept.entries())) == 1

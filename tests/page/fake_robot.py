@@ -275,6 +275,9 @@ class FakeRobot:
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
         return await self._answer("next_run", world, task, fresh)
 
+    async def set_speed(self, times: int) -> Answer:
+        return await self._answer("set_speed", times)
+
     async def upload(self, upload: bytes, content: bytes) -> None:
         answer = await self._answer("upload", upload, content)
         if not answer.accepted:

@@ -492,6 +492,7 @@ ORDERS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("export", {}, ("export", "package")),
     ("examine", {}, ("examine",)),
     ("load", {"upload": bytes(8), "sha256": b"\xab" * 32}, ("load", bytes(8), b"\xab" * 32)),
+    ("speed", {"times": 5}, ("set_speed", 5)),
     ("put_back", {}, ("put_back",)),
     ("next_run", {"world": "b", "task": None, "fresh": False}, ("next_run", "b", None, False)),
     ("examine", {}, ("examine",)),

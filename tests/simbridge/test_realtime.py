@@ -126,3 +126,28 @@ def test_an_error_in_what_is_asked_ends_the_thread_and_comes_out_of_stop() -> No
         with pytest.raises(ValueError, match="a wall that is none"):
             simulation.stop()
         assert rig.robot.time_s == 0.0
+
+
+def test_while_it_is_held_only_its_holder_steps_it_and_what_is_asked_is_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Rig() as rig:
+        by_whom: list[threading.Thread] = []
+        again = threading.Event()
+
+        def step() -> None:
+            by_whom.append(threading.current_thread())
+            if len(by_whom) > 3:
+                again.set()
+
+        monkeypatch.setattr(rig.robot, "step", step)
+        with RealtimeSimulation(rig.robot, cycle_s=1e-6) as simulation:
+            simulation.hold()
+            by_whom.clear()
+            asked: list[int] = []
+            simulation.ask(lambda: asked.append(len(by_whom)))
+            for _ in range(3):
+                simulation.step()
+            assert by_whom == [threading.current_thread()] * 3
+            assert asked == [0]
+            simulation.go_on()
+            assert again.wait(30.0)
+        assert threading.current_thread() not in by_whom[3:]

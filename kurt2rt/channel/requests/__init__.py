@@ -53,7 +53,7 @@ from kurt2rt.channel.requests.reading import (
     WhyRequest,
 )
 from kurt2rt.channel.requests.request import CommandRequest, Request, StreamRequest
-from kurt2rt.channel.requests.simulation import BackToStartRequest, NextRunRequest, SimulationRequest
+from kurt2rt.channel.requests.simulation import BackToStartRequest, NextRunRequest, SimulationRequest, SpeedRequest
 from kurt2rt.channel.requests.uploads import LoadRequest, UploadRequest
 from kurt2rt.channel.requests.world import MoveWallRequest, PlaceRequest, WorldRequest
 from kurt2rt.channel.schema import Check
@@ -113,6 +113,7 @@ __all__ = [
     "SessionRequest",
     "SimulationRequest",
     "SituationsRequest",
+    "SpeedRequest",
     "StopRequest",
     "StreamRequest",
     "TakeRequest",
@@ -163,6 +164,7 @@ REQUESTS: tuple[type[Request], ...] = (
     BackToStartRequest,
     SimulationRequest,
     NextRunRequest,
+    SpeedRequest,
     UploadRequest,
     LoadRequest,
 )

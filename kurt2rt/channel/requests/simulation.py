@@ -5,7 +5,8 @@ from typing import Annotated, ClassVar
 
 from kurt2rt.channel.requests.field_types import NameOrNone
 from kurt2rt.channel.requests.request import CommandRequest, Request
-from kurt2rt.channel.schema import Flag
+from kurt2rt.channel.schema import Flag, Whole
+from kurt2rt.timing.simulated_clock import FASTEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +27,14 @@ class NextRunRequest(CommandRequest):
     """None: the present one."""
     fresh: Annotated[bool, Flag()]
     """With a knowledge file that holds nothing; the present one is set aside."""
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedRequest(CommandRequest):
+    """Let robot time pass faster than real time, or as fast."""
+
+    path: ClassVar[str] = "/simulation/speed"
+    times: Annotated[int, Whole(1, FASTEST)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,17 +6,22 @@ import { setText } from "./why.js";
 
 const $ = (id) => document.getElementById(id);
 const GENERATED = ["rooms", "streets"]; // worlds that are made for any whole number
+const FASTEST = 10;
 const HIGHEST_NUMBER = 999999999;
 
 export class Simulation {
   #tell;
   #simulation = null;
+  #run = ""; // world, task and what else could be, as it is shown
 
   // `tell` gives an order and resolves with its answer.
   constructor(tell) {
     this.#tell = tell;
     for (const id of ["sim-world", "sim-number", "sim-task"]) $(id).addEventListener("input", () => this.#look());
     $("sim-change").addEventListener("click", () => this.#change());
+    const speeds = Array.from({ length: FASTEST }, (_, i) => i + 1);
+    $("sim-speed").replaceChildren(...speeds.map((times) => option(String(times), times === 1 ? "Real time" : `${times} times as fast`)));
+    $("sim-speed").addEventListener("input", () => tell("speed", { times: Number($("sim-speed").value) }, "speed"));
     $("sim-back").addEventListener("click", () => tell("put_back", {}, "back to the start"));
     const fresh = () => tell("next_run", { world: null, task: null, fresh: true }, "a new knowledge file");
     twice($("sim-fresh"), "Sure? The old file is kept", fresh);
@@ -28,7 +33,13 @@ export class Simulation {
 
   see(simulation) {
     this.#simulation = simulation;
-    const { world, task } = simulation;
+    const { world, task, speed, reached } = simulation;
+    $("sim-speed").value = String(speed);
+    setText($("sim-reached"), speed === 1 ? "" : `now ${reached.toFixed(1)} times`);
+    // What is being chosen is not taken back by each second's news of the speed.
+    const run = JSON.stringify([world, task, simulation.worlds, simulation.tasks]);
+    if (run === this.#run) return;
+    this.#run = run;
     const [kind, number] = world.split("-");
     const generated = GENERATED.includes(kind) && /^\d+$/.test(number ?? "");
     const named = simulation.worlds.includes(world) || generated ? simulation.worlds : [world, ...simulation.worlds];
