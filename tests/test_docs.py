@@ -5,6 +5,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, load_settings
-from kurt2rt.experiments.curriculum import run_exams
+from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.perception.definition import SituationDefinition
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -29,7 +30,7 @@ from tests.replay.stored_runs import STORED
 from tests.replay.stories import slim
 
 ROOT = Path(__file__).parents[1]
-DOCUMENTS = sorted([ROOT / "README.md", *ROOT.glob("docs/*.md")])
+DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *ROOT.glob("docs/*.md")])
 
 SCHEMAS: dict[str, type[Settings]] = {
     "repertoire": RepertoireSettings,
@@ -220,19 +221,81 @@ def documented_policies(tmp_path_factory: pytest.TempPathFactory, monkeypatch: p
     monkeypatch.setattr(behaviors.policies, "__path__", [*behaviors.policies.__path__, str(folder)])
 
 
-@pytest.mark.usefixtures("documented_policies")
-def test_the_task_of_the_documentation_is_taught_and_examined(tmp_path: Path) -> None:
-    (block,) = (block for block in blocks("yaml") if block.text.startswith("# config/tasks/wandering.yaml"))
+def printed_task(beginning: str, folder: Path, **shorter: dict[str, object]) -> Path:
+    """Write the task whose text begins so to a file; `shorter` gives keys of its sections another value."""
+    (block,) = (block for block in blocks("yaml") if block.text.startswith(beginning))
     content = yaml.safe_load(block.text)
-    content["teaching"].update(supervised_s=6.0, corrections_s=6.0)
-    content["exam"].update(worlds=["a"], duration_s=6.0)
-    (tmp_path / "wandering.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-    task = load_task(str(tmp_path / "wandering.yaml"))
+    for section, values in shorter.items():
+        content[section].update(values)
+    path = folder / f"{content['name']}.yaml"
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    return path
+
+
+PRINTED_TASKS = ("# my_task.yaml", "# config/tasks/wandering.yaml")
+
+
+@pytest.mark.usefixtures("documented_policies")
+@pytest.mark.parametrize("beginning", PRINTED_TASKS)
+def test_printed_task_after_a_short_lesson_succeeds(beginning: str, tmp_path: Path) -> None:
+    world = yaml.safe_load(printed_task(beginning, tmp_path).read_text(encoding="utf-8"))["teaching"]["world"]
+    shorter = {"supervised_s": 5.0, "corrections_s": 25.0, "reposition_every_s": 0.0}
+    exam: dict[str, object] = {"worlds": [world], "duration_s": 8.0}
+    task = load_task(str(printed_task(beginning, tmp_path, teaching=shorter, exam=exam)))
     taught = teach(tmp_path / "knowledge", task)
-    assert {rla.action for rla in taught.result.rlas} == {"forward", "spin_right"}
-    (exam,) = anyio.run(lambda: run_exams(STAGE, ROBOT, task, taught.events, ("a",), seed=1, report=lambda *_: None))
-    assert exam.learned.unit == "m"
-    assert exam.learned.progress > 0.5
+    (result,) = anyio.run(
+        lambda: run_exams(STAGE, ROBOT, task, taught.events, (world,), seed=1, report=lambda *_: None)
+    )
+    assert result.learned.progress > 0.0
+    assert result.succeeded, (result.learned, result.teacher)
+
+
+@pytest.mark.deep
+@pytest.mark.usefixtures("documented_policies")
+@pytest.mark.parametrize("beginning", PRINTED_TASKS)
+def test_printed_task_on_the_default_seed_succeeds(beginning: str, tmp_path: Path) -> None:
+    task = load_task(str(printed_task(beginning, tmp_path)))
+    assert [exam.succeeded for exam in examined(task, 1, tmp_path)] == [True, True, True]
+
+
+@pytest.mark.deep
+def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
+    (words,) = {line for line in printed_demos() if "streets" in line}
+    assert [exam.succeeded for exam in examined(load_task("streets"), seed_of(words), tmp_path)] == [True]
+
+
+def test_printed_demos_of_streets_name_one_seed() -> None:
+    # 4 of 8 seeds get stuck there, seed 1 among them: docs/results-and-limits.md
+    assert {seed_of(line) for line in printed_demos() if "streets" in line} == {2}
+
+
+def test_my_task_differs_from_the_shipped_one_by_its_teacher(tmp_path: Path) -> None:
+    mine, shipped = load_task(str(printed_task(PRINTED_TASKS[0], tmp_path))), load_task("wall_following")
+    for section in ("what", "learning", "plain", "policy", "course", "exam", "paper"):
+        assert getattr(mine, section) == getattr(shipped, section)
+    quick = shipped.teaching.teacher
+    assert mine.teaching.teacher == quick.model_copy(update={"reaction_s": 2.0})
+    assert mine.teaching.model_copy(update={"teacher": quick}) == shipped.teaching
+
+
+def printed_demos() -> set[str]:
+    """Return every `kurt2rt demo ...` of the documents as it stands there, without its output folder."""
+    texts = (path.read_text(encoding="utf-8") for path in DOCUMENTS)
+    lines = (line for text in texts for line in re.findall(r"^(?:\$ )?kurt2rt (demo .*)$", text, re.MULTILINE))
+    return {line.partition(" --out")[0] for line in lines}
+
+
+def seed_of(line: str) -> int:
+    """Return the seed of a printed command; 1 if it names none."""
+    words = shlex.split(line)
+    return int(words[words.index("--seed") + 1]) if "--seed" in words else 1
+
+
+def examined(task: TaskSettings, seed: int, folder: Path) -> tuple[WorldResult, ...]:
+    """Teach and examine as `kurt2rt demo` does."""
+    taught = teach(folder / "knowledge", task, seed)
+    worlds = task.exam.worlds
+    return anyio.run(lambda: run_exams(STAGE, ROBOT, task, taught.events, worlds, seed=seed, report=lambda *_: None))
 
 
 @pytest.mark.usefixtures("documented_policies")
@@ -274,3 +337,23 @@ def test_a_link_to_a_heading_finds_it(path: Path) -> None:
         if "://" not in link and anchor not in headings(path.parent / name if name else path):
             missing.append(link)
     assert not missing, f"{path.name} links to headings that are not there: {', '.join(missing)}"
+
+
+def test_readme_links_every_document() -> None:
+    linked = set(re.findall(r"\]\(([^)\s#]+)\)", (ROOT / "README.md").read_text(encoding="utf-8")))
+    here = {str(path.relative_to(ROOT)) for path in DOCUMENTS} - {"README.md"} | {"CITATION.cff"}
+    assert here <= linked
+
+
+def test_citation_names_this_version() -> None:
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert citation.keys() >= {"cff-version", "message", "title", "authors"}
+    assert citation["version"] == project["version"]
+    assert all(reference.keys() >= {"type", "title", "authors"} for reference in citation["references"])
+
+
+def test_ten_minutes_are_short_enough() -> None:
+    # At 100 words a minute, for it is done as it is read.
+    words = (ROOT / "docs/teach-in-ten-minutes.md").read_text(encoding="utf-8").split()
+    assert len(words) <= 700
