@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -221,7 +221,7 @@ def documented_policies(tmp_path_factory: pytest.TempPathFactory, monkeypatch: p
     monkeypatch.setattr(behaviors.policies, "__path__", [*behaviors.policies.__path__, str(folder)])
 
 
-def printed_task(beginning: str, folder: Path, **shorter: dict[str, object]) -> Path:
+def printed_task(beginning: str, folder: Path, **shorter: Mapping[str, object]) -> Path:
     """Write the task whose text begins so to a file; `shorter` gives keys of its sections another value."""
     (block,) = (block for block in blocks("yaml") if block.text.startswith(beginning))
     content = yaml.safe_load(block.text)
