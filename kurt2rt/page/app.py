@@ -62,12 +62,24 @@ async def _serve_page(websocket: WebSocket, bridge: Bridge) -> None:
 async def _receive(websocket: WebSocket, bridge: Bridge, visitor: Visitor) -> None:
     try:
         while True:
-            bridge.hear(visitor, parse(await websocket.receive_text()))
+            bridge.hear(visitor, parse(await _text_of(websocket)))
     except WebSocketDisconnect:
         return
     except WireError as error:
         # A page of ours never says such a thing: it is another version of it, or somebody who tries things out.
         await _close(websocket, _POLICY_VIOLATION, str(error))
+
+
+async def _text_of(websocket: WebSocket) -> str:
+    """Return the next message. Raises WebSocketDisconnect; WireError for a binary one."""
+    message = await websocket.receive()
+    if message["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect(message["code"], message.get("reason"))
+    text = message.get("text")
+    if text is None:
+        raise WireError("this is no message of the page: it is binary")
+    told: str = text
+    return told
 
 
 async def _send(websocket: WebSocket, visitor: Visitor, scope: anyio.CancelScope) -> None:

@@ -1,4 +1,4 @@
-"""How often somebody may try a wrong token."""
+"""Limit on wrong tokens of an address. The right token is never limited."""
 
 from collections import OrderedDict
 

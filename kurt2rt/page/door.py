@@ -67,9 +67,11 @@ class Door:
 
     def _pair(self, request: HTTPConnection) -> Response:
         address = request.client.host if request.client else ""
-        if not self._attempts.allowed(address, self._now()):
-            return PlainTextResponse("too many wrong tokens from this address; wait a minute", 429)
+        # Before the tries are counted: others at this address, such as a proxy's, must not lock out the teacher. A
+        # token has 192 random bits, so it cannot be guessed however often a stranger tries.
         if not self._access.opens(request.query_params.get("token", "")):
+            if not self._attempts.allowed(address, self._now()):
+                return PlainTextResponse("too many wrong tokens from this address; the right one is taken", 429)
             self._attempts.failed(address, self._now())
             return self._scan_again(403)
         response = HTMLResponse(_WELCOME)

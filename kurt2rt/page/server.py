@@ -17,6 +17,7 @@ from kurt2rt.page.bridge import Bridge
 from kurt2rt.page.crowd import Crowd
 from kurt2rt.page.error import PageError
 from kurt2rt.page.guarded_http import REQUEST_WITHIN_S, guarded_http
+from kurt2rt.page.guarded_websocket import GuardedWebSocket
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.teaching.answer import NoAnswerError
 
@@ -143,13 +144,15 @@ async def _serve(
     config = uvicorn.Config(
         app,
         http=guarded_http(Crowd(), request_within_s),
-        ws="websockets-sansio",
+        ws=GuardedWebSocket,
         ws_max_size=4096,
         ws_per_message_deflate=False,
         ws_ping_interval=5.0,
         ws_ping_timeout=5.0,
         lifespan="off",
         log_config=None,
+        # Junk of strangers is a warning for each: a journal would fill with it.
+        log_level="error",
         access_log=False,
         proxy_headers=False,
         server_header=False,
