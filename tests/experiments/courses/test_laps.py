@@ -12,7 +12,7 @@ from kurt2rt.simulated import SimulatedArena
 from kurt2rt.tasks.settings import load_task
 from simbridge.pose import Pose as SimulatedPose
 from tests.experiments.courses.paths import Point, along
-from tests.experiments.helpers import STAGE
+from tests.experiments.helpers import STAGE, short_task, teachers_drive
 
 WANTED_M = 0.365
 # In world one_object, a room of 4.4 m by 4.4 m with its walls on the left of who goes round it clockwise.
@@ -84,5 +84,21 @@ def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None
         assert laps * arena.lap_m == pytest.approx(30.0)
         assert WaySettings(kind="way").least_progress(arena, 300.0) == pytest.approx(30.0)
         assert load_task("circle").course.least_progress(arena, 300.0) == 0.0
+    finally:
+        arena.close()
+
+
+@pytest.mark.parametrize(
+    ("world", "drive_s"),
+    [
+        ("maps/flat", 8.0),  # through a door of 0.6 m
+        ("rooms-9007", 50.0),  # into a dead end of 0.85 m and out of it again
+    ],
+)
+def test_laps_of_the_policy_in_narrow_places_are_its_way(world: str, drive_s: float) -> None:
+    drive = teachers_drive(short_task(exam_s=drive_s, worlds=(world,)))
+    arena = STAGE.open(world, 1, "test")
+    try:
+        assert drive.progress * arena.lap_m == pytest.approx(drive.way_m, rel=0.15)
     finally:
         arena.close()
