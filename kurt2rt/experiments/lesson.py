@@ -115,7 +115,18 @@ async def teach(
     plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics, saved=saved)
+    # The scripted teacher does not feel bumpers: asked there, it gives the answer that the robot has. A hand rescues it.
+    runtime = build_runtime(
+        arena.robot,
+        settings,
+        task,
+        events,
+        keeper,
+        clock,
+        statistics=statistics,
+        saved=saved,
+        asks_when_held=False,
+    )
     session = f"{plan.purpose}-{seed}-after-{len(events)}"
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     dispatcher = None

@@ -108,6 +108,13 @@ def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None
     assert rescued.rescues > 0
 
 
+def test_a_robot_that_is_held_at_a_bumper_is_set_down_elsewhere(tmp_path: Path) -> None:
+    # This robot's first answers lead it into a wall.
+    lesson = teach(tmp_path / "100.knowledge", short_task(supervised_s=26.0, corrections_s=1.0), seed=100).result
+    assert lesson.rescues == 1
+    assert lesson.asks == 1
+
+
 def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def on_a_dead_disk(self: Journal, entries: object) -> object:  # noqa: ARG001
         raise KnowledgeError(f"{self.path}: the disk is full; make room on it")

@@ -86,7 +86,18 @@ async def lead_about(
     period_s = settings.can.cycle_s
     walk = walk_in(arena.plan, task)
     clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, settings, task, events, keeper, clock, statistics=statistics, saved=saved)
+    # The scripted teacher does not feel bumpers: asked there, it gives the answer that the robot has. A hand rescues it.
+    runtime = build_runtime(
+        arena.robot,
+        settings,
+        task,
+        events,
+        keeper,
+        clock,
+        statistics=statistics,
+        saved=saved,
+        asks_when_held=False,
+    )
     session = f"errands-{seed}-after-{len(events)}"
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)
