@@ -115,7 +115,7 @@ async def teach(
     plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
     clock = LockstepClock(arena.step)
-    # The scripted teacher does not feel bumpers: asked there, it gives the answer that the robot has. A hand rescues it.
+    # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
     runtime = build_runtime(
         arena.robot,
         settings,

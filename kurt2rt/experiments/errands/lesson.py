@@ -86,7 +86,7 @@ async def lead_about(
     period_s = settings.can.cycle_s
     walk = walk_in(arena.plan, task)
     clock = LockstepClock(arena.step)
-    # The scripted teacher does not feel bumpers: asked there, it gives the answer that the robot has. A hand rescues it.
+    # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
     runtime = build_runtime(
         arena.robot,
         settings,
