@@ -15,7 +15,7 @@ PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 .PHONY: run demo test test-deep guard mutants kills hil bench lint types clean
 
 run: $(INSTALLED)
-	$(BIN)/kurt2rt run --page $(ARGS)
+	$(BIN)/kurt2rt run --phone $(ARGS)
 
 demo: $(INSTALLED)
 	$(BIN)/kurt2rt demo
@@ -74,6 +74,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 		|| { echo "kurt2rt needs Python 3.11 or newer; give one with: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' \
 		|| { echo "Python's venv is missing; on Debian: apt-get install python3-venv"; exit 1; }
+	@echo "Installing kurt2rt and its packages into $(VENV), once: one to five minutes, 0.6 GB of disk ..."
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[test]'
 	touch $@

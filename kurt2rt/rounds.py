@@ -46,6 +46,8 @@ class Screen:
     """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
     settled: Callable[[Acknowledgement], None]
     """A lesson is durable, or never can be, and why."""
+    taught: Callable[[str], None] = lambda _: None
+    """A lesson is durable; in words."""
 
 
 class Rounds:
@@ -75,6 +77,8 @@ class Rounds:
         self._words = words_for(runtime.robot.infrared)
         self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
         self._go_by(service)
+        self._unsettled: dict[str, str] = {}
+        """Lessons that are not durable yet, in words, by command id."""
         self._asking = False
         self._asked_at = -self._ticks_per_second
         self.last: Status | None = None
@@ -88,6 +92,9 @@ class Rounds:
             command = self._teacher(record)
             if command is not None:
                 runtime.inbox.put(command)
+        for result in record.results:
+            if result.lesson:
+                self._unsettled[result.command_id] = result.text
         if self._channel is not None:
             self._channel.after_tick(record)
         if self._health is not None:
@@ -130,6 +137,9 @@ class Rounds:
         if self._recorder is not None:
             self._recorder.acknowledged(acknowledgement)
         self._screen.settled(acknowledgement)
+        text = self._unsettled.pop(acknowledgement.command_id, "")
+        if text and acknowledgement.error is None:
+            self._screen.taught(text)
 
     def save_statistics(self) -> None:
         """Hand what was counted, and what the RLAs are worth, to the journal's thread."""

@@ -1,5 +1,6 @@
 """Programs that run beside the robot's: the teacher's page, the scripted teacher."""
 
+import os
 import subprocess
 import threading
 import time
@@ -15,6 +16,8 @@ LOOK_S = 1.0
 LONGEST_PAUSE_S = 30.0
 """That is twice as long each time, up to this, and as at first after one that lasted longer."""
 _ENDING_S = 5.0
+_LAST_LINES_S = 0.5
+"""For what one that ended had still printed."""
 
 
 @dataclass
@@ -28,6 +31,9 @@ class _Companion:
     process: "subprocess.Popen[bytes]"
     started_s: float
     pause_s: float
+    hear: Callable[[str], None]
+    """Takes each line that it prints; from a thread."""
+    reader: threading.Thread
     again_s: float | None = None
     """When to start it anew; None while it runs, or has ended for good."""
     trouble: str = ""
@@ -37,7 +43,8 @@ class Companions:
     """Starts kurt2rt commands as processes of their own, looks after them and ends them with this one.
 
     In sessions of their own, so that Ctrl-C reaches the robot first. Their standard input is a pipe from here: it ends
-    when this process is gone, however that came, and so do they.
+    when this process is gone, however that came, and so do they. What they print is a pipe to here, for the terminal
+    has lines that stay in place.
     """
 
     def __init__(
@@ -69,10 +76,16 @@ class Companions:
         """Who of them is not there, and what becomes of it, in a line; empty while all are."""
         return ", ".join(each.trouble for each in self._companions if each.trouble)
 
-    def start(self, name: str, *words: str, lasts: bool) -> None:
-        """Start `kurt2rt WORDS`. `lasts`: it has no end of its own, so it is started anew when it ended."""
+    def start(self, name: str, *words: str, lasts: bool, hear: Callable[[str], None] | None = None) -> None:
+        """Start `kurt2rt WORDS`. `lasts`: it has no end of its own, so it is started anew when it ended.
+
+        `hear` takes each line that it prints, from a thread; such a line is told unless that is given.
+        """
         command = (*self._program, *words, "--settings", self._settings, "--while-stdin")
-        self._companions.append(_Companion(name, command, lasts, _started(command), time.monotonic(), self._look_s))
+        process, heard = _started(command), hear or self._tell
+        reader = _read(process, heard)
+        companion = _Companion(name, command, lasts, process, time.monotonic(), self._look_s, heard, reader)
+        self._companions.append(companion)
 
     def __enter__(self) -> Self:
         self._looking.start()
@@ -108,6 +121,7 @@ class Companions:
         code = companion.process.poll()
         if code is None or companion.trouble or (code == 0 and not companion.lasts):
             return
+        companion.reader.join(_LAST_LINES_S)
         ended = f"{companion.name} ended ({_cause(code)})"
         if not companion.lasts:
             companion.trouble = f"{ended}; start it again by hand"
@@ -129,11 +143,31 @@ class Companions:
             companion.again_s = now_s + LONGEST_PAUSE_S
             self._tell(companion.trouble)
         else:
+            companion.reader = _read(companion.process, companion.hear)
             companion.started_s, companion.again_s, companion.trouble = now_s, None, ""
 
 
 def _started(command: tuple[str, ...]) -> "subprocess.Popen[bytes]":
-    return subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True)
+    return subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        start_new_session=True,
+    )
+
+
+def _read(process: "subprocess.Popen[bytes]", hear: Callable[[str], None]) -> threading.Thread:
+    def read() -> None:
+        assert process.stdout is not None
+        with process.stdout as lines:
+            for line in lines:
+                hear(line.decode(errors="replace").rstrip())
+
+    thread = threading.Thread(target=read, name="companion's lines", daemon=True)
+    thread.start()
+    return thread
 
 
 def _cause(code: int) -> str:

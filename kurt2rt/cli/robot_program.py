@@ -23,9 +23,11 @@ from kurt2rt.app import OpenedRobot, Opening, open_robot
 from kurt2rt.channel.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing, pairing_names
 from kurt2rt.channel.port import require_port
+from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.companions import Companions
+from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.cli.printer import Printer
-from kurt2rt.cli.status_line import doing, status_line, troubles
+from kurt2rt.cli.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
 from kurt2rt.ending import Ending, leave
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
@@ -34,6 +36,7 @@ from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.live_exam import LiveExam
 from kurt2rt.memory import give_back_large_pieces
+from kurt2rt.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
 from kurt2rt.recording.can_log import CanLog, open_can_log
 from kurt2rt.recording.recording import Recording
 from kurt2rt.recording.run_files import budget_of
@@ -72,6 +75,10 @@ class Orders:
     """It stands until its teacher says Go."""
     behaviour: str | None
     page: bool
+    phones: bool
+    """The page is for phones as well: open to the network while a device is paired."""
+    opens_browser: bool
+    """On a desktop, and at a terminal."""
     auto: bool
     page_port: int | None
     can_log: Path | None
@@ -120,6 +127,9 @@ class RobotProgram:
         self._opened: OpenedRobot | None = None
         self._knowledge: OpenedKnowledge | None = None
         self._told = ""
+        self._pages = NO_PAGES
+        live = self._console.is_terminal and not self._console.is_dumb_terminal and not orders.as_service
+        self._live = LiveScreen(self._console, for_phones=orders.phones) if live else None
         self._to_journal = "JOURNAL_STREAM" in os.environ
 
     def _read(self) -> ServiceSettings:
@@ -141,6 +151,8 @@ class RobotProgram:
             self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._guards, self._say)
             self._companions = around.enter_context(Companions(orders.settings, ending.patience_s, self._say))
             self._printer = around.enter_context(Printer(ending.patience_s))
+            if self._live is not None:
+                around.callback(self._printer.put, self._live.close)
             last = anyio.run(self._serve)
             service = self._service
             ending.waits_for = "the robot's bus and its logs"
@@ -215,7 +227,7 @@ class RobotProgram:
             self._robot,
             self._service,
             self._task,
-            Screen(status=self._show, question=self._question, settled=self._settled),
+            Screen(status=self._show, question=self._question, settled=self._settled, taught=self._taught),
             openness=openness if orders.attended else None,
             duration_s=left_s if math.isfinite(left_s) else None,
             stopped=orders.stopped or goes_on,
@@ -303,7 +315,9 @@ class RobotProgram:
         at = () if orders.page_port is None else ("--page-port", str(orders.page_port))
         self._say(f"teachers are listened to on UDP port {port}", "cyan")
         if orders.page:
-            self._companions.start("the teacher's page", "teach", "--port", port, *at, lasts=True)
+            phones = ("--phone",) if orders.phones else ()
+            words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
+            self._companions.start("the teacher's page", *words, lasts=True, hear=self._hear_page)
         if orders.auto:
             words = ("teach", "--auto", "--port", port, "--task", self._service.task)
             self._companions.start("the scripted teacher", *words, lasts=False)
@@ -361,12 +375,44 @@ class RobotProgram:
             self._say,
         )
 
+    def _hear_page(self, line: str) -> None:
+        """Take a line of the page's program; called from a thread."""
+        pages = of_line(line)
+        if pages is None:
+            self._say(line, "yellow")
+        else:
+            self._printer.put(lambda: self._pin(pages))
+
+    def _pin(self, pages: ServedPages) -> None:
+        before, self._pages = self._pages, pages
+        if self._live is not None:
+            self._live.pin(pages)
+            if self._orders.opens_browser and not before.addresses and has_desktop():
+                self._open_browser(pages.addresses[0])
+            return
+        for each in pages.addresses:
+            if each not in before.addresses:
+                self._tell(f"page for {each.device}:")
+                self._tell(each.link)
+        if pages.trouble and pages.trouble != before.trouble:
+            self._tell(pages.trouble, "yellow")
+
+    def _open_browser(self, page: PageAddress) -> None:
+        try:
+            open_link(page.link, Path(self._service.devices) / page.device)
+        except OSError as error:
+            self._tell(f"the browser was not opened ({error}); open {page.link}", "yellow")
+
     def _question(self, question: Question | WayQuestion) -> None:
         self._say(str(question), "yellow")
 
     def _settled(self, acknowledgement: Acknowledgement) -> None:
         if acknowledgement.error is not None:
             self._say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
+
+    def _taught(self, text: str) -> None:
+        if self._live is not None:
+            self._say(text, "green")
 
     def _show(self, status: Status) -> None:
         # The line is made by the printer as well: the percentiles in it cost more than a tick.
@@ -377,6 +423,13 @@ class RobotProgram:
         health = self._opened.robot.health
         trouble = "" if self._log is None else self._log.trouble
         line = " | ".join(part for part in (status_line(status, health), trouble) if part)
+        if self._live is not None:
+            wrong = [*alarms(status, health), *([trouble] if trouble else [])]
+            behind = " | ".join(each.strip() for each in (*numbers(status), *guarded(status)))
+            self._live.show(timed_doing(status), behind, wrong)
+            held = [doing(status)] if status.record.grant.latched else []
+            self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
+            return
         if not self._orders.as_service:
             self._tell(line)
             return
@@ -384,14 +437,21 @@ class RobotProgram:
         self._upkeep.notifier.status(line)
         stands = [doing(status)] if status.runtime.school.stopped_because else []
         told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
+        self._tell_alarm(told, None if stands else "red")
+
+    def _tell_alarm(self, told: str, style: str | None) -> None:
+        """Tell what is wrong when it changes, other than in its numbers; `style`: while something is."""
         if _without_numbers(told) != _without_numbers(self._told):
-            self._tell(told or "nothing is wrong any more", "red" if told and not stands else None)
+            self._tell(told or "nothing is wrong any more", style if told else None)
         self._told = told
 
     def _say(self, text: str, style: str | None = None) -> None:
         self._printer.put(lambda: self._tell(text, style))
 
     def _tell(self, text: str, style: str | None = None) -> None:
+        if self._live is not None:
+            self._live.print(text, style)
+            return
         level = _LEVELS.get(style or "", "") if self._to_journal else ""
         self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
 

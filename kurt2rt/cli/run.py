@@ -53,6 +53,17 @@ def run(
     page: Annotated[
         bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")
     ] = False,
+    phone: Annotated[
+        bool,
+        typer.Option(
+            "--phone",
+            help="Like --page, and for paired devices as well: the page is open to the network while one is paired "
+            "(kurt2rt pair phone), and the code to scan stays on screen.",
+        ),
+    ] = False,
+    no_open: Annotated[
+        bool, typer.Option("--no-open", help="Leave the browser alone; on a desktop the page is opened in it else.")
+    ] = False,
     auto: Annotated[
         bool,
         typer.Option(
@@ -116,6 +127,11 @@ def run(
         kurt2rt run --page
         kurt2rt teach --terminal
 
+    From a phone as well, once it is paired, which may be while this runs:
+
+        kurt2rt run --phone
+        kurt2rt pair phone
+
     Without a paired device (kurt2rt pair) only this machine is listened to. In
     phases 1 to 4 the robot drives only while its teacher is there.
 
@@ -154,7 +170,7 @@ def run(
         raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--auto")
     if wire != NO_WIRE and robot != SIMULATED:
         raise typer.BadParameter("only the simulated robot in this program has a simulated wire", param_hint="--wire")
-    if (page or auto) and teacher == "none":
+    if (page or phone or auto) and teacher == "none":
         raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
     if no_record and record is not None:
         raise typer.BadParameter("either a folder to record to, or nothing is recorded", param_hint="--no-record")
@@ -188,7 +204,9 @@ def run(
         attended=teacher == "channel",
         stopped=service or (robot != SIMULATED and teacher == "channel"),
         behaviour=behaviour,
-        page=page,
+        page=page or phone,
+        phones=phone,
+        opens_browser=not no_open,
         auto=auto,
         page_port=page_port,
         can_log=can_log,

@@ -8,16 +8,28 @@ from kurt2rt.standing_text import in_short
 
 def status_line(status: Status, health: Health) -> str:
     """One line: what drives the wheels and why, lessons, punctuality, and what is wrong."""
-    record, runtime = status.record, status.runtime
+    parts = [f"{_clock_s(status):8.1f} s", f"{doing(status):<48}", *numbers(status)]
+    return " | ".join([*parts, *troubles(status, health)])
+
+
+def numbers(status: Status) -> list[str]:
+    """Return how many RLAs there are, and how punctual the loop is, each in words."""
+    runtime = status.runtime
     lateness = runtime.ledger.lateness()
-    parts = [
-        f"{record.tick * runtime.robot.can.cycle_s:8.1f} s",
-        f"{doing(status):<48}",
+    return [
         f"{len(runtime.level.system):3d} RLAs",
         f"late {lateness.median_us / 1000:.2f} ms, p99 {lateness.p99_us / 1000:.2f} ms",
         f"missed {runtime.ledger.missed_ticks}",
     ]
-    return " | ".join([*parts, *troubles(status, health)])
+
+
+def timed_doing(status: Status) -> str:
+    """Return the time since the start, and what drives the wheels or why they stand."""
+    return f"{_clock_s(status):.1f} s  {doing(status)}"
+
+
+def _clock_s(status: Status) -> float:
+    return status.record.tick * status.runtime.robot.can.cycle_s
 
 
 def doing(status: Status) -> str:
@@ -44,10 +56,19 @@ def doing(status: Status) -> str:
 
 def troubles(status: Status, health: Health) -> list[str]:
     """What is wrong, each part in words; empty when nothing is."""
-    record, runtime = status.record, status.runtime
+    return [*guarded(status), *alarms(status, health)]
+
+
+def guarded(status: Status) -> list[str]:
+    """Return what the guard changed in this tick, in words; empty when it let through what was decided."""
+    reasons = status.record.grant.reasons
+    return ["guard: " + ", ".join(reasons)] if reasons else []
+
+
+def alarms(status: Status, health: Health) -> list[str]:
+    """Return what is wrong besides what the guard changes in passing, each part in words."""
+    runtime = status.runtime
     parts = []
-    if record.grant.reasons:
-        parts.append("guard: " + ", ".join(record.grant.reasons))
     if status.unsaved_lessons:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
     if status.trouble is not None:

@@ -168,6 +168,7 @@ def teach(
             further=further,
             while_stdin=while_stdin,
             public_address=public_address,
+            as_json=pages_as_json,
         )
 
 

@@ -1,8 +1,6 @@
 """`kurt2rt teach` without --terminal or --auto: the page of one device, or with --phone those of all."""
 
-import json
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 
 import anyio
@@ -10,12 +8,14 @@ from rich.console import Console
 
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, Device, local_pairing
 from kurt2rt.cli.end_of_teaching import end_of_teaching, told_to_end
+from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.page.access import Access
-from kurt2rt.page.device_server import PageAddress, Pairings, ServedPages, link_of, run_device_pages
+from kurt2rt.page.device_server import Pairings, link_of, run_device_pages
 from kurt2rt.page.error import PageError
 from kurt2rt.page.hosts import own_address, own_names
 from kurt2rt.page.public_address import public_address as read_public_address
+from kurt2rt.page.served_pages import PageAddress, ServedPages, to_line
 from kurt2rt.page.server import listen, run_page
 from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.teaching.client import TeacherClient
@@ -23,7 +23,6 @@ from kurt2rt.teaching.client import TeacherClient
 FURTHER_PORTS = 9
 """How many ports above that of the settings are tried where another page has it."""
 ROBOT_HERE = "127.0.0.1"
-PAIR_A_PHONE = "for a phone: kurt2rt pair phone, in another terminal"
 
 
 def serve_page(
@@ -36,11 +35,13 @@ def serve_page(
     further: int,
     while_stdin: bool,
     public_address: str | None = None,
+    as_json: bool = False,
 ) -> None:
     """Serve the page of a device until it is told to end; `host` and `port` are the robot's.
 
     `further`: as `kurt2rt.page.server.listen` has it.
-    `public_address` is where a TLS proxy serves it, such as https://robot.example. Raises PageError.
+    `public_address` is where a TLS proxy serves it, such as https://robot.example.
+    `as_json`: tell the address in a line of JSON, for `kurt2rt run`. Raises PageError.
     """
     public = None if public_address is None else read_public_address(public_address)
     everywhere = device.name not in OF_THIS_MACHINE
@@ -51,12 +52,10 @@ def serve_page(
     else:
         link = f"{public.origin}/pair?token={device.token}"
     access = Access(device.name, device.token, own_names() | {each.lower() for each in host_names}, public)
-    console = Console()
-    taken = f"; port {page_port} is in use, so it is at {served_port}" if page_port not in (0, served_port) else ""
-    _print(console, f"page for {device.name}, robot at {host}:{port}{taken}; Ctrl-C ends")
-    _print(console, link)
-    if (everywhere or public is not None) and console.is_terminal:
-        console.print(qr_code(link), soft_wrap=True)
+    if as_json:
+        _tell_json(ServedPages((PageAddress(device.name, link),), network=everywhere, trouble=""))
+    else:
+        _tell_link(link, device.name, f"{host}:{port}", (page_port, served_port), code=everywhere or public is not None)
     because = ""
 
     async def end() -> None:
@@ -107,15 +106,16 @@ def serve_pages(
     anyio.run(serve)
 
 
+def _tell_link(link: str, device: str, robot_place: str, ports: tuple[int, int], *, code: bool) -> None:
+    console, (wanted, served) = Console(), ports
+    taken = f"; port {wanted} is in use, so it is at {served}" if wanted not in (0, served) else ""
+    _print(console, f"page for {device}, robot at {robot_place}{taken}; Ctrl-C ends", link)
+    if code and console.is_terminal:
+        console.print(qr_code(link), soft_wrap=True)
+
+
 def _tell_json(served: ServedPages) -> None:
-    print(json.dumps(asdict(served)), flush=True)
-
-
-def served_pages_of(line: str) -> ServedPages:
-    """Read what `serve_pages` told as JSON. Raises ValueError, KeyError, TypeError for another text."""
-    told = json.loads(line)
-    addresses = tuple(PageAddress(**each) for each in told["addresses"])
-    return ServedPages(addresses, bool(told["network"]), str(told["trouble"]))
+    print(to_line(served), flush=True)
 
 
 def _telling(console: Console) -> Callable[[ServedPages], None]:

@@ -12,30 +12,10 @@ from kurt2rt.channel.error import CredentialsError
 from kurt2rt.page.device_pages import DevicePages, OpenLink
 from kurt2rt.page.error import PageError
 from kurt2rt.page.hosts import own_address
+from kurt2rt.page.served_pages import PageAddress, ServedPages
 from kurt2rt.page.server import Doorway
 
 _LOOK_AT_PAIRINGS_S = 1.0
-
-
-@dataclass(frozen=True, slots=True)
-class PageAddress:
-    """Where a device opens its page."""
-
-    device: str
-    link: str
-    """Carries the token: who opens it is that device."""
-
-
-@dataclass(frozen=True, slots=True)
-class ServedPages:
-    """What is served now."""
-
-    addresses: tuple[PageAddress, ...]
-    """This machine's own first, then the others, the one that was paired last before them."""
-    network: bool
-    """Whether the port is open to the network."""
-    trouble: str
-    """What is wrong with pairings or port, in a line; empty while nothing is."""
 
 
 @dataclass(frozen=True, slots=True)

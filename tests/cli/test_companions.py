@@ -96,6 +96,19 @@ def test_one_that_is_done_is_no_trouble(births: Births) -> None:
         assert "scripted teacher" not in beside.trouble
 
 
+def test_what_one_prints_is_told_or_heard_by_whom_it_is_for() -> None:
+    told, heard = Told(), Told()
+    says = "import sys; print('out', flush=True); print('err', file=sys.stderr, flush=True); sys.exit(3)"
+    with companions(told, says) as beside:
+        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        assert {told.next(), told.next()} == {"out", "err"}
+        assert told.next() == "the scripted teacher ended (exit code 3); start it again by hand"
+        beside.start("the page", "teach", lasts=False, hear=heard.put)
+        assert {heard.next(), heard.next()} == {"out", "err"}
+        assert told.next() == "the page ended (exit code 3); start it again by hand"
+    assert told.empty()
+
+
 def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "kurt2rt").mkdir()
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
@@ -103,4 +116,5 @@ def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkey
     told = Told()
     with Companions("default", tell=told.put, look_s=LOOK_S) as beside:
         beside.start("pairing", "pair", lasts=True)  # which does not know all these words, and starts soonest
+        assert told.next() == "kurt2rt: No such option: --while-stdin; see kurt2rt pair --help"
         assert told.next().startswith("pairing ended (exit code 2)")

@@ -19,8 +19,9 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from kurt2rt.channel.credentials import LOCAL, TERMINAL, Device, local_pairing, pair, renew, revoke
 from kurt2rt.channel.error import CredentialsError
 from kurt2rt.page.device_pages import DevicePages, is_within_this_machine
-from kurt2rt.page.device_server import Pairings, ServedPages, devices_here, run_device_pages
+from kurt2rt.page.device_server import Pairings, devices_here, run_device_pages
 from kurt2rt.page.robot_link import RobotLink
+from kurt2rt.page.served_pages import ServedPages
 from kurt2rt.page.server import listen
 from tests.page.fake_robot import FakeRobot
 

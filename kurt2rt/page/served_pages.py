@@ -1,0 +1,43 @@
+"""Addresses of the pages that a program serves, as it tells them to the program that started it."""
+
+import json
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class PageAddress:
+    """Where a device opens its page."""
+
+    device: str
+    link: str
+    """Carries the token: who opens it is that device."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServedPages:
+    """What is served now."""
+
+    addresses: tuple[PageAddress, ...]
+    """This machine's own first, then the others, the one that was paired last before them."""
+    network: bool
+    """Whether the port is open to the network."""
+    trouble: str
+    """What is wrong with pairings or port, in a line; empty while nothing is."""
+
+
+NO_PAGES = ServedPages((), network=False, trouble="")
+
+
+def to_line(served: ServedPages) -> str:
+    """Return it as a line of JSON."""
+    return json.dumps(asdict(served))
+
+
+def of_line(line: str) -> ServedPages | None:
+    """Return what `to_line` made a line of; None for any other line."""
+    try:
+        told = json.loads(line)
+        addresses = tuple(PageAddress(str(each["device"]), str(each["link"])) for each in told["addresses"])
+        return ServedPages(addresses, bool(told["network"]), str(told["trouble"]))
+    except (ValueError, KeyError, TypeError):
+        return None

@@ -1,0 +1,162 @@
+"""The terminal of `kurt2rt run`: what stays in place, and what is printed above it."""
+
+import io
+import json
+import os
+import signal
+import stat
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+from rich.console import Console
+from websockets.sync.client import connect
+
+from kurt2rt.channel.credentials import pair
+from kurt2rt.cli.browser import has_desktop, open_link
+from kurt2rt.cli.live_screen import LiveScreen
+from kurt2rt.page.served_pages import PageAddress, ServedPages
+from tests.cli.helpers import running
+from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal
+from tests.page.test_teach_command import cookie_of
+
+LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
+PHONE = PageAddress("phone", "http://192.168.100.100:8642/pair?token=" + 32 * "b")
+FULL_BLOCK = "█"
+
+
+class Shown:
+    """A live screen on a terminal of 80 columns."""
+
+    def __init__(self, height: int = 24, *, for_phones: bool = True) -> None:
+        self._sent = io.StringIO()
+        console = Console(file=self._sent, force_terminal=True, width=80, height=height, _environ={})
+        self.screen = LiveScreen(console, for_phones=for_phones)
+
+    def lines(self) -> list[str]:
+        terminal = Terminal()
+        terminal.feed(self._sent.getvalue())
+        return [line.rstrip() for line in terminal.lines]
+
+
+def test_the_status_is_rewritten_in_place_and_lines_go_above_it() -> None:
+    shown = Shown(for_phones=False)
+    shown.screen.print("first")
+    shown.screen.pin(ServedPages((LOCAL,), network=False, trouble=""))
+    for second in range(5):
+        shown.screen.show(f"{second}.0 s  forward", "1 RLAs", [])
+        shown.screen.print(f"question {second}")
+    address = f"page  {LOCAL.link}"
+    assert shown.lines() == ["first", *(f"question {n}" for n in range(5)), address, "4.0 s  forward", "1 RLAs"]
+    shown.screen.close()
+    shown.screen.print("the robot stands")
+    assert [line for line in shown.lines() if line][-2:] == ["question 4", "the robot stands"]
+    assert address not in shown.lines()
+
+
+def test_troubles_stand_below_and_never_beyond_80_columns() -> None:
+    shown = Shown(for_phones=False)
+    shown.screen.show("1.0 s  stands", "1 RLAs", ["the disk fails; " * 8, "the bus fails"])
+    lines = shown.lines()
+    assert lines[-1] == "! the bus fails"
+    assert all(len(line) <= 80 for line in lines)
+    assert " ".join(lines).count("the disk fails") == 8
+
+
+def test_the_code_of_the_newest_device_stays_whole_in_24_lines_whatever_there_is_to_say() -> None:
+    shown = Shown()
+    shown.screen.pin(ServedPages((LOCAL,), network=False, trouble=""))
+    assert shown.lines()[-1] == "for a phone: kurt2rt pair phone, in another terminal"
+    shown.screen.pin(ServedPages((LOCAL, PHONE), network=True, trouble=""))
+    for troubles in ([], ["the disk fails; " * 8, "the bus fails"]):
+        shown.screen.show("1.0 s  stands " * 9, "1 RLAs", troubles)
+        lines = shown.lines()
+        assert sum(line.startswith(2 * FULL_BLOCK) for line in lines) == 18
+        *_, page, phone, doing, more = lines
+        assert (page, phone) == (f"page   {LOCAL.link}", f"phone  {PHONE.link}")
+        assert (len(doing), doing[-1]) == (80, "…")
+        assert more.startswith("! the disk fails" if troubles else "1 RLAs")
+        assert len(lines) <= 24
+
+
+def test_a_low_window_says_how_high_it_has_to_be() -> None:
+    shown = Shown(height=20)
+    shown.screen.pin(ServedPages((LOCAL, PHONE), network=True, trouble=""))
+    assert "the code to scan needs a window of 24 lines" in shown.lines()
+    assert not any(FULL_BLOCK in line for line in shown.lines())
+
+
+def opener(folder: Path) -> dict[str, str]:
+    """A desktop whose browser notes what it opens in a file."""
+    script = folder / "bin" / "xdg-open"
+    script.parent.mkdir()
+    noted = folder / "opened"
+    script.write_text(f'#!/bin/sh\nprintf %s "$1" > "{noted}.part"\nmv "{noted}.part" "{noted}"\n', encoding="utf-8")
+    script.chmod(0o755)
+    return {"DISPLAY": ":9", "PATH": f"{script.parent}:{os.environ['PATH']}", "SSH_CONNECTION": "", "SSH_TTY": ""}
+
+
+def test_a_run_at_a_terminal_pins_page_and_code_and_opens_the_browser_once(tmp_path: Path) -> None:
+    pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
+    desktop = opener(tmp_path)
+    program = ProgramInTerminal(words, tmp_path, desktop, rows=40)
+    opened = tmp_path / "opened"
+    program.read_until(lambda sent: sent.count("0 RLAs |") > 2 and FULL_BLOCK in sent and opened.exists())
+    code, sent = program.end(), program.sent
+    terminal = Terminal()
+    terminal.feed(sent)
+    lines = [line.rstrip() for line in terminal.lines if line.strip()]
+    assert code == 0
+    assert sent.count("/pair?token=") > 2  # drawn again and again
+    assert FULL_BLOCK in sent
+    assert not any("pair?token=" in line or FULL_BLOCK in line for line in lines)  # and taken away at the end
+    assert "I know nothing yet, teach me" in lines
+    assert lines[-1] == "the robot stands; 0 RLAs are in var/wall_following.knowledge"
+    assert sum("RLAs |" in line for line in lines) == 0
+    page = tmp_path / "var" / "devices" / "local" / "open.html"
+    assert opened.read_text(encoding="utf-8") == page.as_uri()
+    assert "url=http://127.0.0.1:" in page.read_text(encoding="utf-8")
+    assert stat.S_IMODE(page.stat().st_mode) == 0o600
+
+
+def test_in_a_pipe_a_run_prints_lines_opens_nothing_and_takes_a_phone_in_meanwhile(tmp_path: Path) -> None:
+    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
+    with running(*words, folder=tmp_path, environment=opener(tmp_path)) as robot:
+        local = urlsplit(robot.wait_for("/pair?token=").strip())
+        pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+        robot.wait_for("page for phone:")
+        phone = urlsplit(robot.wait_for("/pair?token=").strip())
+        assert phone.port == local.port
+        # What listens on 127.0.0.1 alone is not at 127.0.0.2.
+        at = f"127.0.0.2:{phone.port}"
+        headers = {"Cookie": cookie_of(phone._replace(netloc=at).geturl()), "Origin": f"http://{at}"}
+        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None) as websocket:
+            websocket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
+            while json.loads(websocket.recv(timeout=30))["kind"] != "state":
+                continue
+        robot.wait_for("RLAs | ")
+        said = robot.end(signal.SIGTERM)
+    assert (said.exit_code, said.err) == (0, "")
+    assert "\x1b" not in said.out
+    assert not (tmp_path / "opened").exists()
+    assert not (tmp_path / "var" / "devices" / "local" / "open.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("environment", "there"),
+    [
+        ({}, False),
+        ({"DISPLAY": ":0"}, True),
+        ({"WAYLAND_DISPLAY": "wayland-0"}, True),
+        ({"DISPLAY": ":10", "SSH_CONNECTION": "192.168.0.9 1 192.168.0.7 22"}, False),
+    ],
+)
+def test_a_desktop_is_a_display_of_this_machine(environment: dict[str, str], *, there: bool) -> None:
+    assert has_desktop(environment) is there
+
+
+def test_without_a_program_that_opens_links_nothing_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert open_link(LOCAL.link, tmp_path) is False
+    assert list(tmp_path.iterdir()) == []
