@@ -60,6 +60,7 @@ def exams_as_data(exams: Sequence[WorldResult], task: TaskSettings) -> dict[str,
             {
                 "world": each.learned.world,
                 "succeeded": each.succeeded,
+                "verdict": each.verdict.value,
                 "learned": _exam_as_data(each.learned),
                 "teacher": _exam_as_data(each.teacher),
             }

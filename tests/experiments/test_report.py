@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from rich.console import Console, RenderableType
 
 from kurt2rt.experiments.report import (
+    exams_as_data,
     quartiles,
     render_curriculum,
     render_exams,
@@ -133,6 +134,8 @@ def test_render_exams_with_a_teacher_that_gets_nowhere_is_not_judged() -> None:
     assert ["Not judged: the policy itself gets nowhere here."] in rows
     assert ["Not judged: the policy itself gets nowhere here."] not in printed(render_exams(exams[:1], short_task()))
     assert verdict_of(exams[1]) == "not judged: the policy itself gets nowhere here (0.00 laps)"
+    told = [(each["succeeded"], each["verdict"]) for each in exams_as_data(exams, short_task())["exams"]]
+    assert told == [(True, "passed"), (False, "not_judged")]
 
 
 def test_render_seeds_counts_an_exam_that_is_not_judged_neither_way() -> None:
