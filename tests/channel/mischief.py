@@ -150,6 +150,7 @@ class Mischief:
             "world": None,
             "task": None,
             "fresh": False,
+            "times": 3,
             "upload": chance.randbytes(8),
             "part": b"part",
             "sha256": chance.randbytes(32),
