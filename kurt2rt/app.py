@@ -10,6 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from kurt2rt.bus_names import NO_WIRE, SIMULATED
 from kurt2rt.channel.ground import Ground
+from kurt2rt.experiments.arena import Arena
 from kurt2rt.timing.simulated_clock import HeldWorld
 
 
@@ -22,6 +23,8 @@ class OpenedRobot(NamedTuple):
     """Whether the simulator still runs; always so where there is none."""
     world: HeldWorld | None = None
     """Of a simulated robot whose time may pass faster than real time."""
+    arena: Arena | None = None
+    """The simulated robot seen from above, for measures."""
 
 
 class Opening(Protocol):
@@ -47,9 +50,10 @@ def open_robot(
         # Here, because a robot carries no simulator: the packages it needs are an extra.
         from kurt2rt.simulated import simulated_robot
 
-        with simulated_robot(settings, world, seed, wire, tap) as (simulated, ground):
+        with simulated_robot(settings, world, seed, wire, tap) as (arena, ground):
             # A wire has a time of its own, in real time.
-            yield OpenedRobot(simulated, ground, lambda: ground.lives, ground.held_world if wire == NO_WIRE else None)
+            held_world = ground.held_world if wire == NO_WIRE else None
+            yield OpenedRobot(arena.robot, ground, lambda: ground.lives, held_world, arena)
         return
     end = open_bus(bus)
     end.tap = tap

@@ -28,6 +28,7 @@ from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.live_exam import LiveExam
+from kurt2rt.live_measure import LiveMeasure
 from kurt2rt.recording.recording import Circumstances, Recording
 from kurt2rt.recording.run_recorder import RunRecorder
 from kurt2rt.rounds import Rounds, Screen, Status, Watcher
@@ -73,6 +74,8 @@ class Openness:
     """The same."""
     world: HeldWorld | None = None
     """The same, where robot time may pass faster than real time."""
+    measure: LiveMeasure | None = None
+    """The same: how far the robot came with its task."""
     begin_with: tuple[Command, ...] = ()
     """What the first tick takes: who teaches on after the run before."""
 
@@ -119,6 +122,7 @@ async def serve(
         opened = knowledge or go_on_teaching(path, settings, task)
         stamps = opened.stamps
         boot = secrets.token_bytes(BOOT_BYTES)
+        measure = None if openness is None else openness.measure
         begin_with = () if openness is None else openness.begin_with
         stopped_because = "" if not stopped else _NEXT_RUN if begin_with else _STARTED
         circumstances = Circumstances(
@@ -168,6 +172,8 @@ async def serve(
 
                 def after_tick(record: TickRecord) -> None:
                     rounds(record)
+                    if measure is not None:
+                        measure.follow(record)
                     heartbeat.beat(record.now_s)
 
                 tasks.start_soon(status.serve)
@@ -227,6 +233,7 @@ async def _channel(
         exam=None if exam is None else lambda: exam.standing,
         simulation=openness.simulation,
         speed=speed,
+        measure=openness.measure,
     )
     teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
     try:

@@ -193,8 +193,8 @@ def _plan(world: WorldSettings) -> Plan:
 @contextmanager
 def simulated_robot(
     settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
-) -> Iterator[tuple[Kurt2, SimulatedGround]]:
-    """The simulated robot in real time, its second guard awake, and the ground that it stands on.
+) -> Iterator[tuple[SimulatedArena, SimulatedGround]]:
+    """Yield the arena with the simulated robot in real time, its second guard awake, and the ground that it stands on.
 
     A stall of this program does not keep the robot stopped: its wheels stalled with it.
 
@@ -205,7 +205,7 @@ def simulated_robot(
     try:
         with arena.live() as simulation:
             yield (
-                arena.robot,
+                arena,
                 SimulatedGround(arena.simulation, load_world(world, settings), settings.geometry, simulation),
             )
             # While the simulation still runs, so that the last frame finds a listener.

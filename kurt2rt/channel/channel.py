@@ -14,7 +14,7 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.reception import Copies, Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
 from kurt2rt.channel.requests import BOOT_BYTES, VERSION
-from kurt2rt.channel.simulation import Simulation
+from kurt2rt.channel.simulation import Measure, Simulation
 from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
@@ -54,6 +54,8 @@ class Surroundings:
     """None where the simulator is not in this program."""
     speed: Speed | None = None
     """None where robot time is real time."""
+    measure: Measure | None = None
+    """None where nothing is measured."""
 
 
 class Channel:
@@ -155,6 +157,7 @@ async def open_channel(
         exam=surroundings.exam,
         simulation=surroundings.simulation,
         speed=surroundings.speed,
+        measure=surroundings.measure,
     )
     telling = Telling(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health

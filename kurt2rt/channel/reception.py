@@ -47,7 +47,7 @@ from kurt2rt.channel.requests import (
     WhyRequest,
     WorldRequest,
 )
-from kurt2rt.channel.simulation import SIMULATION, Simulation, TeacherNow
+from kurt2rt.channel.simulation import SIMULATION, Measure, Simulation, TeacherNow
 from kurt2rt.channel.upload import Upload
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
@@ -132,12 +132,14 @@ class Reception:
         exam: Callable[[], ExamStanding] | None = None,
         simulation: Simulation | None = None,
         speed: Speed | None = None,
+        measure: Measure | None = None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
         `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
         `exam`: how the exam stands; None where the robot is not examined. `simulation`: None where the simulator is not
         in this program. `speed`: None where robot time is real time.
+        `measure`: None where nothing is measured.
         """
         self._runtime = runtime
         self._boot = boot
@@ -151,6 +153,7 @@ class Reception:
         self._exam = exam
         self._simulation = simulation
         self._speed = speed
+        self._measure = measure
         self._upload = Upload()
         self._changing = False
         self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
@@ -200,6 +203,8 @@ class Reception:
                 view = await self._simulation.view()
                 if self._speed is not None:
                     view = replace(view, speed=self._speed.wanted, reached=self._speed.reached)
+                if self._measure is not None:
+                    view = replace(view, progress=self._measure.progress, unit=self._measure.unit)
                 return Reply(Verdict.DONE, {"simulation": SIMULATION.plain_of(view)})
             case ExamStandingRequest():
                 if self._exam is None:

@@ -33,6 +33,10 @@ class SimulationView:
     """Robot seconds in one second, as chosen."""
     reached: float = 1.0
     """The same as measured over the last second."""
+    progress: float = 0.0
+    """How far the robot came with its task since the run began."""
+    unit: str = ""
+    """What progress is counted in: laps, rounds, eights, m; empty where it is not measured."""
 
 
 SIMULATION = Form[SimulationView](
@@ -45,6 +49,8 @@ SIMULATION = Form[SimulationView](
         tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
         speed=Whole(1, FASTEST),
         reached=Real(1000.0),
+        progress=Real(1e9),
+        unit=NAME,
     ),
 )
 
@@ -55,6 +61,20 @@ class TeacherNow(NamedTuple):
     device: str
     phase: int
     session: str | None
+
+
+class Measure(Protocol):
+    """How far a simulated robot came with its task."""
+
+    @property
+    def progress(self) -> float:
+        """Since the run began, in `unit`."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """What progress is counted in."""
+        ...
 
 
 class Simulation(Protocol):

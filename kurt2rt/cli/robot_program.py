@@ -53,6 +53,8 @@ from kurt2rt.upkeep import Upkeep
 
 if TYPE_CHECKING:
     from kurt2rt.cli.simulated_runs import SimulatedRuns
+    from kurt2rt.experiments.arena import Arena
+    from kurt2rt.live_measure import LiveMeasure
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Of systemd's journal, by how the line looks on a screen."""
@@ -218,6 +220,7 @@ class RobotProgram:
             self._exam(opened),
             self._runs,
             opened.world,
+            None if opened.arena is None else self._measure(opened.arena),
             () if run is None else run.begin_with,
         )
         goes_on = run is not None and run.teacher is not None
@@ -353,6 +356,11 @@ class RobotProgram:
             return (sys.executable, "-P", "-m", "kurt2rt.cli.exam_process", str(knowledge), str(picture), *words)
 
         return self._of_run.enter_context(LiveExam(command))
+
+    def _measure(self, arena: "Arena") -> "LiveMeasure":
+        from kurt2rt.live_measure import LiveMeasure
+
+        return LiveMeasure(self._task, arena)
 
     def _simulated_runs(self) -> "SimulatedRuns":
         # Here, because a robot carries no simulator: the packages it needs are an extra.

@@ -40,8 +40,6 @@ class RarelyTold:
         self._carried_out = carried_out
         self._seeks = False
         self._exam_runs = False
-        self._faster = False
-        """Whether robot time passes faster than real time: then the speed that is reached is asked for again."""
         self.words = NO_WORDS
         """For the robot's sensors."""
         fetches = {
@@ -65,7 +63,7 @@ class RarelyTold:
         """A picture came; `watched`: somebody has a page open."""
         self._mirrors["hello"].want(state.boot)
         if state.place is not None:
-            measured = state.tick // _HEALTH_TICKS if self._faster else 0
+            measured = state.tick // _HEALTH_TICKS if watched else 0
             self._mirrors["simulation"].want((state.boot, self._carried_out(), measured))
             looks = state.tick // _EXAM_TICKS if self._exam_runs else 0
             self._mirrors["exam"].want((state.boot, self._carried_out(), looks))
@@ -117,7 +115,6 @@ class RarelyTold:
         simulation = await self._robot.simulation()
         if simulation is None:
             raise NoAnswerError("the robot says where it is in a world, and its simulation is elsewhere")
-        self._faster = simulation.speed > 1
         return simulation_view(simulation)
 
     async def _fetch_health(self) -> dict[str, Any]:

@@ -178,7 +178,7 @@ async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(t
             simulation, world = await client.simulation(), await client.world()
             assert simulation is not None
             assert world is not None
-            assert (simulation.world, world.name) == ("b", "B")
+            assert (simulation.world, world.name, simulation.unit) == ("b", "B", "laps")
             saved = (knowledge.parent / "wall_following.knowledge.1").read_bytes()
             answer = await client.load(saved)
             assert answer.accepted, answer.text

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from kurt2rt.teaching.progress import Progress
 from tests.page.fake_robot import A_SIMULATION, FakeRobot
 from tests.page.lesson import Lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
@@ -79,6 +80,16 @@ def test_the_speed_is_chosen_and_the_one_that_is_reached_is_shown(lesson: Lesson
     assert phone.run("return document.querySelector('#sim-task').value;") == "eight"
     phone.middle("#sim-speed")
     phone.show("25-speed")
+
+
+@pytest.mark.parametrize(("unit", "shown"), [("laps", "laps 2.3"), ("m", "way 2 m")])
+def test_what_it_did_of_its_task_stands_beside_the_progress(a_lesson: Lesson, unit: str, shown: str) -> None:
+    def prepare(robot: FakeRobot) -> None:
+        robot.simulated = replace(A_SIMULATION, progress=2.34, unit=unit)
+
+    a_lesson.begin(prepare, progress=Progress(60, 87, 3), rlas=12)
+    a_lesson.reads("#progress", f"by itself 87 % · asks 3 a minute · rules 12 · {shown}")
+    a_lesson.phone.show(f"26-measure-{unit}")
 
 
 def test_a_generated_world_that_is_driven_in_is_chosen_by_its_number(a_lesson: Lesson) -> None:

@@ -271,7 +271,7 @@ function show() {
   setText($("lesson-count"), String(state.lessons));
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inCharge();
   showLink(state);
-  showProgress(state);
+  showProgress(state, simulation.measure);
   why.show(state, hello);
   announce(state);
   pad.show(state);

@@ -2,6 +2,7 @@
 
 import { words } from "./actions.js";
 import { twice } from "./lessons.js";
+import { measured } from "./progress.js";
 import { setText } from "./why.js";
 
 const $ = (id) => document.getElementById(id);
@@ -12,6 +13,7 @@ const HIGHEST_NUMBER = 999999999;
 export class Simulation {
   #tell;
   #simulation = null;
+  measure = ""; // what the robot did of its task
   #run = ""; // world, task and what else could be, as it is shown
 
   // `tell` gives an order and resolves with its answer.
@@ -29,10 +31,12 @@ export class Simulation {
 
   build(hello) {
     $("simulation").hidden = !hello.simulated;
+    this.measure = "";
   }
 
   see(simulation) {
     this.#simulation = simulation;
+    this.measure = measured(simulation);
     const { world, task, speed, reached } = simulation;
     $("sim-speed").value = String(speed);
     setText($("sim-reached"), speed === 1 ? "" : `now ${reached.toFixed(1)} times`);

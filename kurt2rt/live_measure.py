@@ -1,0 +1,60 @@
+"""Measure of a task while its simulated robot is taught: laps, rounds, eights, or metres of way."""
+
+import random
+from typing import Final
+
+from hal.settings import SettingsError
+from kurt2rt.experiments.arena import Arena
+from kurt2rt.experiments.courses.course import Course, CourseSettings
+from kurt2rt.experiments.courses.eights import EightsSettings
+from kurt2rt.experiments.courses.laps import LapsSettings
+from kurt2rt.experiments.courses.rounds import RoundsSettings
+from kurt2rt.experiments.courses.way import WaySettings
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.happenings import SetDown
+from kurt2rt.tick import TickRecord
+
+_MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)
+"""Courses that only watch. Others say which behaviour is wanted next, and here the teacher says so."""
+_WAY: Final = WaySettings(kind="way")
+_FOLLOW_EVERY: Final = 5
+"""Ticks from one look at the pose to the next: 3 cm at 0.6 m/s."""
+
+
+class LiveMeasure:
+    """The course of the task on the robot that is taught, or metres of way where that course measures no such drive."""
+
+    def __init__(self, task: TaskSettings, arena: Arena) -> None:
+        self._task = task
+        self._arena = arena
+        self._course = self._begin()
+
+    @property
+    def progress(self) -> float:
+        """How far the robot came since its run began, in `unit`."""
+        return self._course.progress
+
+    @property
+    def unit(self) -> str:
+        """What progress is counted in: laps, rounds, eights, m."""
+        return self._course.unit
+
+    def follow(self, record: TickRecord) -> None:
+        """Look at the robot, once in a few ticks; call it after each tick."""
+        if any(isinstance(each, SetDown) for each in record.commands):
+            self._course.put(self._arena.pose)
+        # The simulation counts laps by itself, and the distance to the wall is not told.
+        elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
+            self._course.follow(self._arena.pose)
+
+    def _begin(self) -> Course:
+        course: CourseSettings = self._task.course
+        if not isinstance(course, _MEASURED_LIVE):
+            course = _WAY
+        try:
+            return self._built(course)
+        except SettingsError:  # such as an eight in a world without two posts
+            return self._built(_WAY)
+
+    def _built(self, course: CourseSettings) -> Course:
+        return course.build(self._arena, self._task.behaviours, random.Random(0))
