@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.layers.decision import blamed_in
 from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_recorder import RunRecorder
@@ -162,4 +163,6 @@ class Rounds:
             return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
         weights, names = runtime.level.system.weights, runtime.definition.names
         question = ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
-        return replace(question, touches=what_it_asks(record.standing))
+        blamed = blamed_in(record.decision)
+        worth = None if blamed is None else float(runtime.reinforcement.worth(blamed))
+        return replace(question, worth=worth, touches=what_it_asks(record.standing))

@@ -75,9 +75,16 @@ def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | WayQu
         came_by = tuple(word for word in mid.here if word)
         return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
-    touches = what_it_asks(state.stands)
     return Question(
-        state.nearest, state.nearest_action, state.distance, state.radius, differing, state.behaviour, words, touches
+        state.nearest,
+        state.nearest_action,
+        state.distance,
+        state.radius,
+        differing,
+        state.behaviour,
+        words,
+        state.nearest_value,
+        what_it_asks(state.stands),
     )
 
 

@@ -85,6 +85,14 @@ class Decision(NamedTuple):
         return self.cause in (Cause.UNKNOWN, Cause.TOUCHES)
 
 
+def blamed_in(decision: Decision) -> int | None:
+    """Return the basic level's RLA whose action was withdrawn, where the robot asks for another one; None elsewhere."""
+    match = decision.match
+    if decision.cause is not Cause.UNKNOWN or decision.asks_at != BASIC or match is None:
+        return None
+    return match.rla.rla_id if match.rla.asks and match.distance <= match.radius else None
+
+
 def standing(decision: Decision, cause: Cause | None) -> Decision:
     """The decision of a level that was told to stand: one that fails, and would drive all the same, stands.
 

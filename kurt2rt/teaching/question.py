@@ -37,6 +37,8 @@ class Question:
     """The taught behaviour that is wanted; empty where the task has only one."""
     words: SensorWords = field(default=NO_WORDS, compare=False, repr=False)
     """For the features that differ."""
+    worth: float | None = None
+    """Of the nearest RLA where its action was withdrawn; None where that is not known."""
     touches: str = ""
     """The question of a robot that is held at a bumper; empty where it asks what it does not know."""
 
@@ -52,6 +54,9 @@ class Question:
         nearest = rla_title(self.nearest_rla, self.behaviour)
         if self.touches:
             return f"{self.touches} {nearest} says {self.action}"
+        if self.action == ASK and self.distance <= self.radius:
+            worth = "" if self.worth is None else f": worth {self.worth:.2f} now"
+            return f"{nearest} was blamed{worth}, teach me again"
         if self.action != ASK and self.distance <= self.radius:
             # It was chosen, and is a taught system itself, in which no RLA is near enough.
             return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"

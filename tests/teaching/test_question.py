@@ -1,6 +1,7 @@
 """The robot's question."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -85,8 +86,11 @@ def test_a_withdrawn_action_is_told_in_words() -> None:
         system.apply(event)
     here = np.zeros(7)
     question = ask(system.match(here), here, system.weights, NAMES)
-    assert str(question).startswith(
-        "I don't know this situation, teach me: nearest is RLA 1 (its action was withdrawn) at 0 of 300"
+    assert str(question) == "RLA 1 was blamed, teach me again"
+    assert str(replace(question, worth=-0.3)) == "RLA 1 was blamed: worth -0.30 now, teach me again"
+    beyond = ask(system.match(here + 200), here + 200, system.weights, NAMES)
+    assert str(beyond).startswith(
+        "I don't know this situation, teach me: nearest is RLA 1 (its action was withdrawn) at 529 of 300"
     )
 
 
