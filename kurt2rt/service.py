@@ -154,7 +154,14 @@ async def serve(
                 runtime.school.stop(stopped_because)
             for command in begin_with:
                 runtime.inbox.put(command)
-            watch = HealthWatch(runtime, writer, instruments or Instruments(), boot=boot.hex(), knowledge=path)
+            watch = HealthWatch(
+                runtime,
+                writer,
+                instruments or Instruments(),
+                boot=boot.hex(),
+                knowledge=path,
+                tolerates_stalls=tolerates_stalls,
+            )
             status = StatusSocket(watch, socket_of(path))
             watch.include(says={"status": lambda: status.trouble})
             if recorder is not None:

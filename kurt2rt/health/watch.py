@@ -38,6 +38,7 @@ class HealthWatch:
         boot: str,
         knowledge: Path,
         now: Callable[[], float] = time.monotonic,
+        tolerates_stalls: bool = False,
     ) -> None:
         """`boot`: random letters of this start; `knowledge`: where lessons are kept; `now`: a clock in s."""
         self._runtime = runtime
@@ -59,7 +60,7 @@ class HealthWatch:
         self._disks = DiskLook(self._instruments.folders)
         self._machine = MachineWatch()
         self._counted = Counted()
-        self._troubles = TroubleBook(runtime.robot)
+        self._troubles = TroubleBook(runtime.robot, tolerates_stalls=tolerates_stalls)
         self._waiting: queue.SimpleQueue[Snapshot | None] = queue.SimpleQueue()
         self._made: HealthReport | None = None
         self._thread = threading.Thread(target=self._run, name="health", daemon=True)

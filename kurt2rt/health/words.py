@@ -89,16 +89,33 @@ def progress_in(progress: Progress) -> str:
     return f"{progress.driven_percent} % driven by itself, {asks} in {over}"
 
 
+_NAMES = {
+    "sensors": "sensors silent",
+    "bus": "CAN bus",
+    "lessons": "saving lessons",
+    "disk": "disk",
+    "ticks": "ticks missed",
+    "lateness": "ticks late",
+    "queues": "queues full",
+    "machine": "this machine",
+    "program": "the program",
+}
+"""What is wrong, in one or two words, by the subject of a trouble."""
+
+
+def name_of(trouble: Trouble) -> str:
+    """Return what is wrong in one or two words, where there is room for no more."""
+    return _NAMES.get(trouble.about, trouble.about)
+
+
 def headline(report: HealthReport) -> str:
-    """All of it in a few words."""
+    """Return how the program is in a few words: each trouble by its name, or that it is well."""
     late = report.punctuality
     punctual = f"late {late.p99_ms:.2f} ms (p99), missed {late.missed}"
-    if not report.troubles:
-        return f"well; {punctual}"
-    urgent = sum(each.urgent for each in report.troubles)
-    count = "1 trouble" if len(report.troubles) == 1 else f"{len(report.troubles)} troubles"
-    which = "" if not urgent else ", urgent" if urgent == len(report.troubles) else f", {urgent} of them urgent"
-    return f"{count}{which}; {punctual}"
+    urgent = {name_of(each) for each in report.troubles if each.urgent}
+    names = dict.fromkeys(name_of(each) for each in report.troubles)
+    named = ", ".join(f"{name} (urgent)" if name in urgent else name for name in names)
+    return f"{named or 'well'}; {punctual}"
 
 
 def lasting(seconds: float) -> str:

@@ -9,7 +9,7 @@ from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
-from kurt2rt.health.words import headline, rows_of, trouble_in
+from kurt2rt.health.words import headline, name_of, rows_of, trouble_in
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.standing_text import GO_ON_PAGE, headline_of
 from kurt2rt.teaching.answer import Answer
@@ -138,7 +138,10 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
     """How the robot's program is, in words: nothing in its first second."""
     if report is None:
         return {"kind": "health", "tick": None, "says": "", "rows": [], "troubles": []}
-    troubles = [{"what": each.what, "text": trouble_in(each), "urgent": each.urgent} for each in report.troubles]
+    troubles = [
+        {"name": name_of(each), "what": each.what, "text": trouble_in(each), "urgent": each.urgent}
+        for each in report.troubles
+    ]
     return {
         "kind": "health",
         "tick": report.tick,

@@ -144,7 +144,7 @@ async def test_health_shows_how_the_robots_program_is_and_what_to_do_about_it(
     async with desk_at(pairing, robot.port) as desk:
         await desk.reads("/take is done")
         desk.type("health")
-        await desk.reads("2 troubles, 1 of them urgent; late 2.90 ms (p99), missed 7")
+        await desk.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
         await desk.reads("disk      knowledge: 412 MB free, recordings: no answer")
         await desk.reads("!! the infra-red sensors are silent, the newest is 2.5 s old (for 2 s): look whether")
         await desk.reads("! 3 ticks missed in the last minute")

@@ -77,11 +77,11 @@ def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
 def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: Lesson) -> None:
     phone = lesson.phone
     falls_ill(lesson)
-    lesson.reads("#health", "2 troubles")
+    lesson.reads("#health", "sensors silent, …")
     assert phone.run(CLASS, "#health") == "warns urgent"
     lesson.reads("#warnings", SILENT.what)
     phone.touch("#link")
-    lesson.reads("#health-says", "2 troubles, 1 of them urgent; late 2.90 ms (p99), missed 7")
+    lesson.reads("#health-says", "sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
     lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
     lesson.reads("#health-troubles", "3 ticks missed in the last minute, 7 in all (for 3 min 5 s)")
     for size in SIZES:

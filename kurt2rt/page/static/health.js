@@ -22,7 +22,7 @@ export class Health {
     if ($("health-table").open) this.#fill();
   }
 
-  // The line in the bar: how late the loop is, or how much is wrong.
+  // The line in the bar: how late the loop is, or what is wrong, the worst by its name.
   show(state) {
     const troubles = this.#report?.troubles ?? [];
     const old = Boolean(this.#report?.tick) && state.tick - this.#report.tick > OLD_TICKS;
@@ -30,7 +30,7 @@ export class Health {
     line.classList.toggle("warns", troubles.length > 0 || old);
     line.classList.toggle("urgent", troubles.some(({ urgent }) => urgent));
     const late = `late ${state.late_p99_ms?.toFixed(state.late_p99_ms < 1 ? 2 : 1) ?? "–"} ms`;
-    setText($("late"), old ? "no report" : troubles.length === 0 ? late : troubles.length === 1 ? "1 trouble" : `${troubles.length} troubles`);
+    setText($("late"), old ? "no report" : named(troubles) || late);
     setText(missed, troubles.length || old ? "" : `, missed ${state.missed_ticks}`);
   }
 
@@ -70,4 +70,11 @@ export class Health {
       }),
     );
   }
+}
+
+// The first trouble, which is the worst; dots for more that are not of its kind.
+function named(troubles) {
+  const names = new Set(troubles.map(({ name }) => name));
+  const [worst] = names;
+  return names.size > 1 ? `${worst}, …` : worst;
 }
