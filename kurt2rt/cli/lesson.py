@@ -46,6 +46,7 @@ if TYPE_CHECKING:
 
 _TASK = "wall_following"
 _FOLDER = Path("results/lesson")
+_MOST_SEEDS = 100_000
 _OLDER_SPELLING = typer.Argument(hidden=True, metavar=" ", help="The task, as --task names it.")
 
 
@@ -247,6 +248,8 @@ def parse_seeds(text: str) -> list[int]:
             seeds.extend(_seeds_of(part))
     except ValueError as error:
         raise typer.BadParameter(f"{text!r} is no list of seeds; give e.g. 100-119 or 1,5,7-9") from error
+    if len(seeds) > _MOST_SEEDS:
+        raise typer.BadParameter(f"{text!r} names too many seeds, allowed are {_MOST_SEEDS} at most")
     if len(set(seeds)) != len(seeds):
         raise typer.BadParameter(f"{text!r} names a seed twice; give e.g. 100-119 or 1,5,7-9")
     return seeds
@@ -257,4 +260,4 @@ def _seeds_of(part: str) -> range:
     seeds = range(int(first), int(last or first) + 1)
     if not seeds:
         raise ValueError(f"{part} ends before it begins")
-    return seeds
+    return seeds[: _MOST_SEEDS + 1]

@@ -111,6 +111,8 @@ def _in_one_line(error: BaseException) -> str | None:
         return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:
         return f"{whose}{error}; give a path that can be written, on a disk with room"
+    if isinstance(error, OSError) and error.errno == errno.EIO:
+        return f"{whose}{error}; see whether the disk or device is well, or give another file"
     return None
 
 

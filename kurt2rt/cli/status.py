@@ -79,10 +79,16 @@ def status(
         beside = Path(service.knowledge)
         if task is not None:
             beside = beside.with_name(f"{load_task(task).name}.knowledge")
+        _require_name(knowledge)
         reports = reports_at(socket_of(knowledge or beside), _PATIENCE_S)
     newest = _show(reports, watch=watch, json=json)
     if newest.urgent:
         raise typer.Exit(1)
+
+
+def _require_name(knowledge: Path | None) -> None:
+    if knowledge is not None and not knowledge.name:
+        raise typer.BadParameter("is a folder; give the knowledge file that the robot program was started with")
 
 
 def _show(reports: Iterator[HealthReport], *, watch: bool, json: bool) -> HealthReport:

@@ -26,6 +26,8 @@ def make_key(path: Path) -> Path:
 
     Raises KnowledgeError, also where one of both is there already, and leaves nothing: a lost key cannot be made again.
     """
+    if not path.name:
+        raise KnowledgeError(f"{path}: is a folder; give the key file to make")
     key, public = Ed25519PrivateKey.generate(), path.with_name(path.name + ".pub")
     secret = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
     open_half = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)

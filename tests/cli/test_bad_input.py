@@ -130,6 +130,8 @@ def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
             "cave.png: is an image, not a world; give the YAML file of its map, ",
         ),
         (("run", "--world", "maps/cave.PGM"), "such as maps/cave.yaml (ROS map_server: image, resolution, origin,"),
+        (("knowledge", "key", ""), "is a folder; give the key file to make"),
+        (("replay", "/proc/self/mem"), "[Errno 5] Input/output error; see whether the disk or device is well, or give"),
         (("run", "--robot", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
@@ -152,6 +154,8 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
         (("lesson", "--seeds", "'5-3' is no list of seeds"), "'5-3' is no list of seeds"),
         (("lesson", "--seeds", "'1,5-3' is no list of seeds"), "'1,5-3' is no list of seeds"),
         (("lesson", "--seeds", "1,1"), "names a seed twice"),
+        (("lesson", "--seeds", "1-99999999999"), "names too many seeds, allowed are 100000 at most"),
+        (("status", ""), "is a folder; give the knowledge file that the robot program was started with"),
         (("lesson", "--seeds", "1,2", "--knowledge", "mine"), "each seed needs a file of its own: give --out instead"),
         (("lesson", "--seed", "-1"), "--seed"),
         (("knowledge", "show", "mine", "--limit", "0"), "--limit"),
@@ -272,3 +276,10 @@ def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tm
     said = kurt2rt("knowledge", "check", mine)
     assert said.exit_code == 1
     assert len(said.out.splitlines()) == image.count(b'"teacher":"scripted teacher"')
+
+
+def test_file_name_that_is_no_text_is_drawn_with_signs_in_its_place(
+    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
+) -> None:
+    mine = copied(lessons, tmp_path / "taught-\udcff.knowledge")
+    assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0

@@ -7,6 +7,7 @@ import typer
 
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.shown import plain
 from kurt2rt.network.file import FORMATS, write_network
 from kurt2rt.network.network import read_network, without_rare
 from kurt2rt.rla.rla import BASIC
@@ -30,7 +31,7 @@ def graph(
         whole = read_network(journal, level=level, behaviour=behaviour)
     shown = without_rare(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
-    title = f"{file.stem}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
+    title = f"{plain(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
     write_network(shown, title, out)
     edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
     say(f"network  {out}: {len(shown)} of {len(whole)} RLAs, {edges}")
