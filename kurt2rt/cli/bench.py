@@ -45,6 +45,11 @@ def bench(
     The ratio says how many times longer the reference took in the same run.
     The goals are meant for an idle machine; a benchmark informs, and ends with
     code 0 whether they are met or not.
+
+    For example:
+
+        kurt2rt bench --quick
+        kurt2rt bench --only match,lesson --json
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage

@@ -14,11 +14,11 @@ _PANELS = {
         "run": "Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.",
         "teach": "Teach a robot that runs: from a browser, from a terminal, or by a script.",
         "pair": "Pair a teacher's device with this robot, and show the code that opens its page.",
-        "demo": "Teach a simulated robot from nothing, examine it without its teacher, show what came of it.",
+        "demo": "Teach a simulated robot from nothing, examine it without its teacher, draw the drives.",
         "lesson": "Teach the simulated robot with a scripted teacher, in simulated time.",
     },
     "Examine": {
-        "exam": "Let the simulated robot drive without its teacher, and its teacher's policy for comparison.",
+        "exam": "Examine knowledge: the simulated robot drives without its teacher, who drives for comparison.",
         "why": "Explain what the robot did, and why: at a moment of a run, in a whole run, or now.",
         "replay": "Replay a recorded run, and compare every decision and all that is known, bit for bit.",
         "recover": "Copy what is whole of a recorded run to files that Foxglove opens.",
@@ -28,18 +28,17 @@ _PANELS = {
         "read also while one does.",
     },
     "Robot and service": {
-        "status": "Tell how a robot program that runs is: from another terminal, or another machine.",
-        "doctor": "Look at this machine: what it offers the robot, what is missing, what to do.",
-        "sim": "Be a KURT2: its micro-controllers, sensors and wheels in a simulated world, on a CAN bus, in real "
-        "time.",
-        "commission": "Switch a real robot on for the first time: a checklist that walks you through.",
+        "status": "Tell how a running robot program is: from another terminal, or another machine.",
+        "doctor": "Check this machine: what it offers the robot, what is missing, what to do.",
+        "sim": "Simulate a KURT2 on a CAN bus, in real time: controllers, sensors and wheels in a world.",
+        "commission": "Commission a real robot: a checklist that walks you through its first day.",
         "service": "Run the robot's program as a unit of systemd, which starts it with the machine and again "
         "whenever it fell.",
     },
     "Studies": {
-        "paper": "Teach and examine every basic task of the paper, and set its results beside ours.",
+        "paper": "Teach and examine every basic task of the paper, and compare with its results.",
         "phases": "Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.",
-        "surprise": "Measure how surprised taught robots are: on known ground, and where something is different.",
+        "surprise": "Measure how surprised taught robots are: on known ground, and after something changed.",
         "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
         "soak": "Let a day of the robot pass in simulated time in which everything fails.",
         "bench": "Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.",

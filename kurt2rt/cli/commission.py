@@ -62,7 +62,7 @@ def commission(
         str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
     ] = None,
 ) -> None:
-    """Switch a real robot on for the first time: a checklist that walks you through.
+    """Commission a real robot: a checklist that walks you through its first day.
 
     It listens for the controller's identity and every frame, tries which speed
     mode answers, each wheel's side and direction, the emergency stop and the

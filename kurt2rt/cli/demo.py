@@ -28,7 +28,7 @@ def demo(
     wire: WireName = "none",
     as_json: AsJson = False,
 ) -> None:
-    """Teach a simulated robot from nothing, examine it without its teacher, show what came of it.
+    """Teach a simulated robot from nothing, examine it without its teacher, draw the drives.
 
     A scripted teacher teaches over the same commands that a person uses, in
     simulated time and as fast as this machine allows: the robot asks where it
@@ -38,6 +38,11 @@ def demo(
 
     Leaves a picture and the knowledge file in the output folder. Look at the
     file with kurt2rt knowledge show.
+
+    For example:
+
+        kurt2rt demo
+        kurt2rt demo --task circle --seed 7
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.drawing import draw_curriculum

@@ -19,7 +19,7 @@ def doctor(
         int, typer.Option(min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness.")
     ] = 100,
 ) -> None:
-    """Look at this machine: what it offers the robot, what is missing, what to do.
+    """Check this machine: what it offers the robot, what is missing, what to do.
 
     Measures how late the timer is beside asyncio.sleep, and how long the disk
     takes to keep a lesson; looks at clock, real-time priority, memory lock,
@@ -29,6 +29,10 @@ def doctor(
     Ends with code 1 only if something is missing that kurt2rt run cannot do
     without: Python, the timer, or a disk to keep knowledge on. CAN is not among
     them, for the simulated robot needs none.
+
+    For example:
+
+        kurt2rt doctor
     """
     with Console(stderr=True).status("looking at this machine ..."):
         findings = examine(folder, ticks)

@@ -36,11 +36,18 @@ def exam(
     wire: WireName = "none",
     as_json: AsJson = False,
 ) -> None:
-    """Let the simulated robot drive without its teacher, and its teacher's policy for comparison.
+    """Examine knowledge: the simulated robot drives without its teacher, who drives for comparison.
 
     Where the robot does not know a situation it stands, as it would in
     earnest; a robot that makes no way for long is stuck, and the exam of that
     world ends.
+
+    The task is that of the knowledge file.
+
+    For example:
+
+        kurt2rt exam results/demo/wall_following-1.knowledge
+        kurt2rt exam mine.knowledge --world b --world rooms-200
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage

@@ -45,6 +45,11 @@ def faults(
     no code with the guard.
 
     Ends with code 1 when a case is not as the table says. Known gaps are said.
+
+    For example:
+
+        kurt2rt faults
+        kurt2rt faults --target tick --kind stuck --seeds 5
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it, and without the drills.
     from kurt2rt.faults.report import as_json, print_report

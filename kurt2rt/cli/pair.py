@@ -62,6 +62,12 @@ def pair(
     only if a device is paired when it is started.
 
     Nobody needs to be paired to teach at the robot's own machine.
+
+    For example:
+
+        kurt2rt pair anna-phone
+        kurt2rt pair --list
+        kurt2rt pair anna-phone --revoke
     """
     service = load_service(settings)
     teachers, devices = Path(service.teachers), Path(service.devices)

@@ -35,7 +35,7 @@ def paper(
     ] = True,
     as_json: AsJson = False,
 ) -> None:
-    """Teach and examine every basic task of the paper, and set its results beside ours.
+    """Teach and examine every basic task of the paper, and compare with its results.
 
     Leaves report.html, which holds everything, the figures as PNG, and each
     robot's result and knowledge file in the output folder.
@@ -50,6 +50,11 @@ def paper(
     robots and worlds are others. With one of those, or with fewer than 20
     robots, nothing is judged. Which generated worlds a robot drives in follows
     from its seed; 20 seeds that follow each other share all of them.
+
+    For example:
+
+        kurt2rt paper --quick
+        kurt2rt paper --task circle --task eight
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.kept.results import Results

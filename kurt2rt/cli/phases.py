@@ -42,6 +42,11 @@ def phases(
     of what made them; when that has changed, they are refused and not mixed in.
     Settings were searched on seeds 0 to 79; with one of those, or with fewer
     than 20 robots, nothing is judged.
+
+    For example:
+
+        kurt2rt phases --quick
+        kurt2rt phases --task wall_following --seeds 100-119
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.kept.results import Results

@@ -35,7 +35,12 @@ WithPage = Annotated[bool, typer.Option("--page", help="Let the unit serve the t
 def show(
     robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
 ) -> None:
-    """Print the unit as install would write it."""
+    """Print the unit as `install` would write it.
+
+    For example:
+
+        kurt2rt service show --robot can0
+    """
     unit, _ = _unit(robot, settings, name, page=page)
     typer.echo(unit.service, nl=False)
 
@@ -48,12 +53,16 @@ def check(
     page: WithPage = False,
     as_json: AsJson = False,
 ) -> None:
-    """Let systemd's own tools look at the unit: does it load, what may it do.
+    """Check the unit by systemd's own tools: whether it loads, and what it may do.
 
     Changes nothing. Ends with code 1 if it does not load, its user could not
     read this installation or the settings, or write where they say, or its
     exposure (systemd-analyze security, 0 to 10, less is safer) is above 2;
     with 2 if its name is another program's.
+
+    For example:
+
+        kurt2rt service check --robot can0 --settings my-runtime.yaml
     """
     require_free(name)
     unit, wanted = _unit(robot, settings, name, page=page)
@@ -87,10 +96,15 @@ def check(
 def install(
     robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
 ) -> None:
-    """Write the unit and make its user; starts nothing yet.
+    """Write the unit and make its user; start nothing yet.
 
     Needs root. The unit keeps what it is taught in /var/lib/NAME. After any
     start the robot stands until its teacher says Go.
+
+    For example:
+
+        sudo .venv/bin/kurt2rt service install --robot can0
+        sudo systemctl enable --now kurt2rt
     """
     unit, wanted = _unit(robot, settings, name, page=page)
     for line in closed_to_others(wanted):
@@ -104,7 +118,12 @@ def install(
 
 @service.command()
 def uninstall(name: UnitName = "kurt2rt") -> None:
-    """End the unit and remove it; what was taught in /var/lib/NAME stays."""
+    """End the unit and remove it; keep what was taught in /var/lib/NAME.
+
+    For example:
+
+        sudo .venv/bin/kurt2rt service uninstall
+    """
     for path in uninstall_unit(name):
         typer.echo(f"{path} is removed")
     typer.echo(f"what was taught stays in {STATE / name}")

@@ -45,7 +45,7 @@ def sim(
         bool, typer.Option("--while-stdin", help="Switch off when the standard input ends, for use in scripts.")
     ] = False,
 ) -> None:
-    """Be a KURT2: its micro-controllers, sensors and wheels in a simulated world, on a CAN bus, in real time.
+    """Simulate a KURT2 on a CAN bus, in real time: controllers, sensors and wheels in a world.
 
     For all that talks to it this is the robot: it obeys CONTROL, sends telemetry
     100 times a second, and brakes by itself when CONTROL ceases for 0.2 s. What

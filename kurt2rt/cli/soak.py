@@ -66,6 +66,11 @@ def soak(
     24 hours take 30 to 60 minutes. Ctrl-C ends it sooner, with a report of what
     was seen until then; a second one ends it at once. Ends with code 1 when
     something did not hold.
+
+    For example:
+
+        kurt2rt soak --hours 0.1
+        kurt2rt soak --hours 24 --out var/soak
     """
     # Not at the top: simulator and plots are extras, and `kurt2rt run` on the robot does without them.
     from kurt2rt.soak.day import Day

@@ -55,7 +55,7 @@ def status(
         typer.Option(min=1, max=65535, help="With --as, UDP port of the robot. Default: as noted with the pairing."),
     ] = None,
 ) -> None:
-    """Tell how a robot program that runs is: from another terminal, or another machine.
+    """Tell how a running robot program is: from another terminal, or another machine.
 
     How late its ticks begin, what it missed, how old what it senses is, its bus,
     its disk, what its queues threw away, and what is wrong, since when, and what

@@ -35,7 +35,16 @@ def surprise(
     robot_settings: RobotName = "kurt2",
     as_json: AsJson = False,
 ) -> None:
-    """Measure how surprised taught robots are: on known ground, and where something is different."""
+    """Measure how surprised taught robots are: on known ground, and after something changed.
+
+    The folder holds one knowledge file per robot; each learns to expect what
+    follows, then something in its world is made different.
+
+    For example:
+
+        kurt2rt lesson --task streets --seeds 0-9
+        kurt2rt surprise results/lesson
+    """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.simulated import SimulatedStage
 

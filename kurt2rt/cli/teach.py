@@ -83,7 +83,8 @@ def teach(
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",
     while_stdin: Annotated[
-        bool, typer.Option("--while-stdin", help="End when the standard input ends, as kurt2rt run needs it.")
+        bool,
+        typer.Option("--while-stdin", hidden=True, help="End when the standard input ends, as kurt2rt run needs it."),
     ] = False,
     pages_as_json: Annotated[bool, typer.Option("--pages-as-json", hidden=True)] = False,
 ) -> None:

@@ -177,3 +177,16 @@ def test_the_list_of_commands_says_what_each_says_of_itself() -> None:
 def test_errors_that_are_said_in_one_line_are_there() -> None:
     for module, name in _ONE_LINERS:
         assert issubclass(getattr(import_module(module), name), Exception)
+
+
+def test_help_of_each_command_gives_an_example() -> None:
+    for words, command in _found():
+        told = getattr(command, "help") or ""  # noqa: B009
+        if not getattr(command, "commands", None):
+            assert (
+                f"\n    kurt2rt {' '.join(words)}" in told or f"\n    sudo .venv/bin/kurt2rt {' '.join(words)}" in told
+            )
+
+
+def test_help_hides_what_programs_alone_use(kurt2rt: CommandLine) -> None:
+    assert "--while-stdin" not in kurt2rt("teach", "--help").out

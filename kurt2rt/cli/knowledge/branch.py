@@ -18,7 +18,13 @@ def branch(
         typer.Option(help="Last lesson that comes with it, by its id, or a time (ISO 8601, UTC as +00:00); else all."),
     ] = None,
 ) -> None:
-    """Make a new file that begins as this one was; what is taught there can be merged in again."""
+    """Make a new file that begins as FILE was; its lessons can be merged back.
+
+    For example:
+
+        kurt2rt knowledge branch var/streets.knowledge try.knowledge
+        kurt2rt knowledge branch mine.knowledge try.knowledge --at LESSON-ID
+    """
     made = make_branch(file, new, at, stamp=utc_now())
     say(f"branch  {new}: the first {made.whence.rows} rows of {made.whence.file}")
     if made.left_earlier:

@@ -9,7 +9,12 @@ from kurt2rt.knowledge.journal import Journal
 
 
 def check(file: KnowledgeFile, as_json: AsJson = False) -> None:
-    """Check that every lesson in the file can be read and fits; exit code 1 when something does not."""
+    """Check that every lesson in the file can be read and fits; exit code 1 if one does not.
+
+    For example:
+
+        kurt2rt knowledge check var/wall_following.knowledge
+    """
     with Journal.read_only(file) as journal:
         faults = check_knowledge(journal)
     if as_json:

@@ -23,6 +23,10 @@ def compact(
     was driven there, no more: an RLA for a place where the robot has not driven
     since recording began looks as if nobody needed it. Deletions are lessons that
     can be undone.
+
+    For example:
+
+        kurt2rt knowledge compact var/wall_following.knowledge --dry-run
     """
     with replaying() as report:
         done = delete_unneeded(file, recordings, stamp=utc_now(), dry_run=dry_run, report=report)

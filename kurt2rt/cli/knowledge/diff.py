@@ -22,7 +22,12 @@ def diff(
     other: Annotated[Path, typer.Argument(help="Another knowledge file of the same features.")],
     as_json: AsJson = False,
 ) -> None:
-    """Tell lessons and RLAs that only one of two files has, and RLAs with another action."""
+    """Compare two files: lessons and RLAs that only one has, RLAs with another action.
+
+    For example:
+
+        kurt2rt knowledge diff mine.knowledge yours.knowledge
+    """
     with Journal.read_only(file) as a, Journal.read_only(other) as b:
         require_same(b.binding, a.binding, other, b.has_lessons_at)
         found = difference(read_taught(a), read_taught(b))

@@ -24,7 +24,13 @@ def export(
     task_name: TaskOfTheFile = None,
     robot_name: RobotName = "kurt2",
 ) -> None:
-    """Write one file to give away: all lessons and counts, and the settings they were taught with."""
+    """Write one file to give away: all lessons and counts, and the settings of their task.
+
+    For example:
+
+        kurt2rt knowledge export var/wall_following.knowledge walls.zip
+        kurt2rt knowledge export var/wall_following.knowledge walls.zip --sign ann
+    """
     key = None if sign is None else read_private_key(sign)
     robot, task = load_robot(robot_name), load_task(task_of_file(file, task_name))
     size = export_knowledge(file, out, robot, task, key, stamp=utc_now())
@@ -41,7 +47,13 @@ def import_(
         Path | None, typer.Option(help="Take it only if the owner of this public key (.pub) has signed it.")
     ] = None,
 ) -> None:
-    """Make a knowledge file of an exported one; refuses what was changed, or taught with other features."""
+    """Make a knowledge file of an exported one; refuse what was changed, or has other features.
+
+    For example:
+
+        kurt2rt knowledge import walls.zip --into var/walls.knowledge
+        kurt2rt knowledge import walls.zip --into walls.knowledge --trusted ann.pub
+    """
     public = None if trusted is None else read_public_key(trusted)
     robot, task = load_robot(robot_name), load_task(task_name or read_given(file).task)
     taken = import_knowledge(file, into, robot, task, public, stamp=utc_now())
@@ -56,7 +68,12 @@ def import_(
 def key(
     file: Annotated[Path, typer.Argument(help="Where the private key goes; nothing may be there yet.")],
 ) -> None:
-    """Make a key to sign exports with; its public half (.pub) is for those who are to trust it."""
+    """Make a key to sign exports with, and its public half (.pub) for those who are to trust it.
+
+    For example:
+
+        kurt2rt knowledge key ann
+    """
     public = make_key(file)
     say(f"key  {file}: keep it to yourself")
     say(f"public key  {public}: {fingerprint(read_public_key(public))}")

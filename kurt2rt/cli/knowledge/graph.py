@@ -24,7 +24,13 @@ def graph(
         float, typer.Option(min=0, max=100, metavar="PERCENT", help="Leave out what followed less often.")
     ] = 5.0,
 ) -> None:
-    """Draw the RLA network: which RLA followed which, with percentages; or write it as GraphML."""
+    """Draw the RLA network: which RLA followed which, in percent; or write it as GraphML.
+
+    For example:
+
+        kurt2rt knowledge graph var/wall_following.knowledge
+        kurt2rt knowledge graph var/streets.knowledge --level mid --out net.graphml
+    """
     if out.suffix not in FORMATS:
         raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")
     with Journal.read_only(file) as journal:

@@ -18,7 +18,13 @@ def lessons(
     of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """List the lessons, newest first, with their ids and who undid them."""
+    """List the lessons, newest first, with their ids and who undid them.
+
+    For example:
+
+        kurt2rt knowledge lessons var/wall_following.knowledge
+        kurt2rt knowledge lessons var/wall_following.knowledge --of critic
+    """
     with Journal.read_only(file) as journal:
         if as_json:
             print_json(lessons_as_data(journal, limit, of))

@@ -21,7 +21,13 @@ def list_files(
     place: Annotated[Path, typer.Argument(help="Folder to look in, and in those below it; or one file.")] = Path("var"),
     as_json: AsJson = False,
 ) -> None:
-    """List the knowledge files of a folder: task, how much they know, and where it came from."""
+    """List the knowledge files of a folder: task, how much they know, and their origin.
+
+    For example:
+
+        kurt2rt knowledge list
+        kurt2rt knowledge list results
+    """
     if not place.exists():
         raise KnowledgeError(f"{place}: is not there; give the folder that your knowledge files are in, or one of them")
     paths = sorted(place.rglob("*.knowledge")) if place.is_dir() else [place]

@@ -26,10 +26,15 @@ def merge(
     robot_name: RobotName = "kurt2",
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would come of it.")] = False,
 ) -> None:
-    """Bring in what was taught in another file since both were one; twice is as once.
+    """Merge the lessons of OTHER since the files were one; merging again adds nothing.
 
     Conflicts are listed, and unless --prefer says who is right nothing is
     changed, with exit code 1.
+
+    For example:
+
+        kurt2rt knowledge merge mine.knowledge yours.knowledge --dry-run
+        kurt2rt knowledge merge mine.knowledge yours.knowledge --prefer mine
     """
     borders = borders_of(load_task(task_of_file(file, task_name)), load_robot(robot_name))
     merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)

@@ -21,7 +21,13 @@ def show(
     rla: Annotated[int | None, typer.Option(help="Show this RLA whole, with what is expected to follow it.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """List each RLA: its action, who taught it and when, instead of what, and how it is used."""
+    """List each RLA: its action, who taught it and when, instead of what, and its use.
+
+    For example:
+
+        kurt2rt knowledge show var/wall_following.knowledge
+        kurt2rt knowledge show var/wall_following.knowledge --rla 3
+    """
     with Journal.read_only(file) as journal:
         if as_json:
             print_json(_as_data(journal, rla, limit))

@@ -17,7 +17,15 @@ def table(
     out: Annotated[Path, typer.Option(help="Folder for the table; made where it is missing.")] = Path("results/export"),
     as_json: AsJson = False,
 ) -> None:
-    """Write the RLAs as a table (CSV): one row each, with its condition, who taught it and how it was used."""
+    """Write the RLAs as a table (CSV): one row each, with condition, teacher and use.
+
+    Numbers are exact. A text that a spreadsheet would run as a formula gets an
+    apostrophe before it.
+
+    For example:
+
+        kurt2rt knowledge table var/wall_following.knowledge --out results/export
+    """
     journal_file.require_ours(file)
     saved = export_table(file, out, utc_now())
     if as_json:

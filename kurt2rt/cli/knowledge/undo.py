@@ -25,11 +25,16 @@ def undo(
     dry_run: DryRun = False,
     yes: Yes = False,
 ) -> None:
-    """Take a lesson back, or all of one teacher: what it made, changed, ended or rewarded is as it was before.
+    """Undo a lesson, or all of one teacher: what it changed is as it was before.
 
     First it replays the newest recorded run of this knowledge, and shows what
     the robot would have decided otherwise without the lesson. At a terminal it
     then asks.
+
+    For example:
+
+        kurt2rt knowledge undo var/wall_following.knowledge
+        kurt2rt knowledge undo var/wall_following.knowledge --of anna-phone --dry-run
     """
     _require_one_of(lesson, of)
     planned = plan_undo(file, lesson, of, teacher=TEACHER)
@@ -56,9 +61,14 @@ def redo(
     dry_run: DryRun = False,
     yes: Yes = False,
 ) -> None:
-    """Let a lesson stand again that was undone, or all of one teacher, where its RLA is as the lesson found it.
+    """Redo a lesson that was undone, or all of one teacher, if its RLA is as the lesson found it.
 
     It shows first what the robot would have decided otherwise, and asks, as undo.
+
+    For example:
+
+        kurt2rt knowledge redo var/wall_following.knowledge
+        kurt2rt knowledge redo var/wall_following.knowledge --of anna-phone
     """
     _require_one_of(lesson, of)
     planned = plan_redo(file, lesson, of, teacher=TEACHER)
