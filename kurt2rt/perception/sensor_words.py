@@ -70,7 +70,12 @@ class SensorWords:
         return place if recent == feature else f"{place}{AVERAGED}"
 
     def reading(self, feature: str, value: float) -> str:
-        """Return the feature's value: centimetres for a reading, otherwise the number."""
+        """Return the feature's value: centimetres for a reading, otherwise the number.
+
+        How much nearer one sensor is than another is told in counts: it is no distance.
+        """
+        if self._labels and _ORIENTATION.fullmatch(feature.removesuffix(AVERAGED)):
+            return f"by {value:.0f} counts" if round(value) else "not"
         if self._law is None or not self.is_reading(feature):
             return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")
         if not self._law.sees(value):

@@ -11,8 +11,8 @@ from tests.page.lesson import Lesson
 from tests.page.phone import Phone
 
 QUESTION = (
-    FeatureDifference("s9", 441.0, 108.0),
     FeatureDifference("maximum front", 441.0, 108.0),
+    FeatureDifference("s9", 441.0, 108.0),
     FeatureDifference("s14", 70.0, 400.0),
     FeatureDifference("s17", 160.0, 160.4),
 )

@@ -45,7 +45,7 @@ def test_question_with_words_tells_places_and_centimetres() -> None:
     assert str(question).split("; ")[1:] == [
         "front left: 13 cm, was 46 cm",
         "rear centre: nothing within 60 cm, was 15 cm",
-        "left front nearer than left back: 42, was 0",
+        "left front nearer than left back: by 42 counts, was not",
     ]  # the average and the nearest in front differ by less than a centimetre
 
 

@@ -72,6 +72,7 @@ export class Organising {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.phase = number;
+    button.title = PHASES_SAY[number - 1] ?? "";
     const digit = document.createElement("b");
     digit.textContent = `${number} `;
     const label = document.createElement("small");

@@ -17,13 +17,9 @@ export function farthest({ law }) {
 // The features of a question whose texts tell a difference: [name, here, there, place, its text here, and there].
 // The nearest or farthest of some sensors says nothing new beside the sensor that it is.
 function told(question) {
-  const lines = [];
-  for (const line of question) {
-    const [name, , , , here, there] = line;
-    const again = /^(maximum|minimum) /.test(name) && lines.some((other) => other[4] === here);
-    if (here !== there && !again && lines.length < MOST_LINES) lines.push(line);
-  }
-  return lines;
+  const ofSome = ([name]) => /^(maximum|minimum) /.test(name);
+  const again = (line) => ofSome(line) && question.some((other) => !ofSome(other) && other[4] === line[4]);
+  return question.filter((line) => line[4] !== line[5] && !again(line)).slice(0, MOST_LINES);
 }
 
 // Sensors that make the difference while the robot asks, by name, with what they read; empty while it does not ask.

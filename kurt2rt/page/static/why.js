@@ -7,6 +7,7 @@ import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const VALUES_FROM_PHASE = 3;
+const CALM_MS = 500; // readings flicker by a centimetre with every picture; nobody can read that
 const GAUGE_SHARE = 0.7; // where R stands on the gauge
 
 export function when(stamp) {
@@ -77,6 +78,7 @@ export class Why {
   #text = document.getElementById("gauge-text");
   #differences = document.getElementById("differences");
   #shown = "";
+  #shownMs = -Infinity;
 
   show(state, hello) {
     const asks = state.stands.asks && !state.stands.needs_go;
@@ -100,6 +102,7 @@ export class Why {
     setText(this.#text, off);
     this.#surprise(state);
     this.#trace.see(state.tick, known && !which ? share : null);
+    if (!asks) this.#shownMs = -Infinity; // the next question is shown at once
     if (which) this.#compare(state.mid, hello.mid);
     else if (asks) this.#show(state.question);
     else this.#trace.draw();
@@ -124,9 +127,11 @@ export class Why {
 
   // Each sensor that makes a difference, by its place: what it reads here and what it read when that was taught.
   #show(question) {
-    const key = JSON.stringify(question);
-    if (key === this.#shown) return;
+    const key = JSON.stringify(question.map((line) => line.slice(3)));
+    const nowMs = performance.now();
+    if (key === this.#shown || nowMs - this.#shownMs < CALM_MS) return;
     this.#shown = key;
+    this.#shownMs = nowMs;
     this.#differences.replaceChildren(differenceList(question));
   }
 }
