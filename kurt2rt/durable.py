@@ -13,11 +13,22 @@ def sync_folder(folder: Path) -> None:
         os.close(descriptor)
 
 
-def make_folder(folder: Path) -> None:
-    """A folder that outlives a power cut, with those above it; it may be there already. Raises OSError."""
+def make_private_folder(folder: Path) -> list[Path]:
+    """Make a folder, and those above it that are missing, for this user alone: what was taught and keys go there.
+
+    Returns those that were made, the innermost first; one that was there keeps its mode. Raises OSError.
+    """
     missing = [each for each in (folder, *folder.parents) if not each.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    for each in missing:
+    for each in reversed(missing):
+        each.mkdir(mode=0o700, exist_ok=True)
+    if not missing:
+        folder.mkdir(mode=0o700, exist_ok=True)  # raises where a file has its name
+    return missing
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder that outlives a power cut, as `make_private_folder` does. Raises OSError."""
+    for each in make_private_folder(folder):
         sync_folder(each.parent)
 
 

@@ -10,6 +10,7 @@ import anyio.to_thread
 
 from hal.bus import BusError
 from kurt2rt.channel.error import ChannelError
+from kurt2rt.durable import make_private_folder
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.recording.error import RecordingError
 from kurt2rt.systemd.notifier import Notifier
@@ -120,6 +121,6 @@ def require_folder(folder: Path) -> None:
     To begin anew on the place where a disk is going to be mounted would hide all that was taught.
     """
     if not folder.is_absolute():
-        folder.mkdir(parents=True, exist_ok=True)
+        make_private_folder(folder)
     elif not folder.is_dir():
         raise StartError(f"{folder} is not there; it comes with its disk, or make it")

@@ -36,3 +36,14 @@ def test_a_file_is_there_whole_or_as_it_was(tmp_path: Path, synced: list[Path]) 
     assert path.read_text(encoding="utf-8") == "second\n"
     assert [each.name for each in path.parent.iterdir()] == ["report.txt"]
     assert synced == [tmp_path, path.parent, path.parent]
+
+
+def test_folders_that_are_made_are_this_users_alone(tmp_path: Path) -> None:
+    (tmp_path / "open").mkdir(mode=0o755)
+    made = tmp_path / "open" / "var" / "runs"
+    durable.make_private_folder(made)
+    modes = [each.stat().st_mode & 0o777 for each in (made, made.parent, made.parent.parent)]
+    assert modes == [0o700, 0o700, 0o755]
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(FileExistsError):
+        durable.make_private_folder(tmp_path / "file")

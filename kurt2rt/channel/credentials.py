@@ -20,7 +20,7 @@ from typing import Any
 
 from kurt2rt.channel.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN
 from kurt2rt.channel.error import CredentialsError
-from kurt2rt.durable import sync_folder
+from kurt2rt.durable import make_private_folder, sync_folder
 from kurt2rt.rla.rla import CRITIC
 
 LOCAL = "local"
@@ -199,8 +199,7 @@ def _changing(teachers: Path, devices: Path) -> Iterator[None]:
     try:
         with ExitStack() as locks:
             for folder in (teachers, devices):
-                folder.parent.mkdir(parents=True, exist_ok=True)
-                folder.mkdir(mode=0o700, exist_ok=True)
+                make_private_folder(folder)
             if teachers.samefile(devices):
                 raise CredentialsError(
                     f"{teachers}: holds one side of each pairing; give the other a folder of its own"

@@ -18,8 +18,10 @@ from typing import TYPE_CHECKING
 import anyio
 from rich.console import Console
 
+from hal.health import Health
 from hal.robot_settings import RobotSettings
 from kurt2rt.app import OpenedRobot, Opening, open_robot
+from kurt2rt.bus_names import SHARED
 from kurt2rt.channel.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing, pairing_names
 from kurt2rt.channel.port import require_port
@@ -59,6 +61,8 @@ if TYPE_CHECKING:
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Of systemd's journal, by how the line looks on a screen."""
 _KNOWLEDGE = "knowledge"
+_SIMULATOR_S = 0.5
+"""A simulator that is there sends within 10 ms."""
 _WAITS = "the robot program waits for what it needs"
 
 
@@ -429,7 +433,8 @@ class RobotProgram:
     def _show_now(self, status: Status) -> None:
         assert self._opened is not None
         health = self._opened.robot.health
-        trouble = "" if self._log is None else self._log.trouble
+        log_trouble = "" if self._log is None else self._log.trouble
+        trouble = " | ".join(filter(None, (self._no_simulator(health, status.record.tick), log_trouble)))
         line = " | ".join(part for part in (status_line(status, health), trouble) if part)
         if self._live is not None:
             wrong = [*alarms(status, health), *([trouble] if trouble else [])]
@@ -446,6 +451,13 @@ class RobotProgram:
         stands = [doing(status)] if status.runtime.school.stopped_because else []
         told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
         self._tell_alarm(told, None if stands else "red")
+
+    def _no_simulator(self, health: Health, tick: int) -> str:
+        """Return which command is missing on a shared bus on which nothing was ever heard; empty where it is there."""
+        bus = self._orders.bus
+        if not bus.startswith(SHARED) or health.frames or tick * self._robot.can.cycle_s < _SIMULATOR_S:
+            return ""
+        return f"no simulator on {bus}; start one in another terminal: kurt2rt sim --bus {bus}"
 
     def _tell_alarm(self, told: str, style: str | None) -> None:
         """Tell what is wrong when it changes, other than in its numbers; `style`: while something is."""

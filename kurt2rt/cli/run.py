@@ -67,7 +67,9 @@ def run(
     auto: Annotated[
         bool,
         typer.Option(
-            "--auto", help="Let the scripted teacher of the task teach, over the channel; simulated robot only."
+            "--auto",
+            help="Let the scripted teacher of the task teach, over the channel; simulated robot only. Without "
+            "--knowledge into a file of its own, TASK.auto.knowledge, never into that of a person.",
         ),
     ] = False,
     port: Annotated[
@@ -158,6 +160,7 @@ def run(
     with end_at_interrupt():
         from hal.robot_settings import load_robot
         from kurt2rt.cli.robot_program import Orders, RobotProgram
+        from kurt2rt.cli.scripted_file import own_file, require_agreement
         from kurt2rt.layers.wanted import Wanted
         from kurt2rt.recording.live_view import parse_address
         from kurt2rt.service_settings import load_service
@@ -185,8 +188,14 @@ def run(
     if knowledge is not None and not service and knowledge.exists():
         task = _task_of(knowledge, task, load_service(settings).task)
 
+    if auto and knowledge is not None:
+        require_agreement(knowledge)
+
     def read() -> "ServiceSettings":
-        return _changed(load_service(settings), task, knowledge, world, port, record)
+        changed = _changed(load_service(settings), task, knowledge, world, port, record)
+        if auto and knowledge is None:
+            changed = changed.model_copy(update={"knowledge": str(own_file(Path(changed.knowledge)))})
+        return changed
 
     loaded = read()
     robot_settings, taught = load_robot(loaded.robot), load_task(loaded.task)

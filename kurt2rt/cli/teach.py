@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, NamedTuple
 
 import anyio
+import anyio.to_thread
 import typer
 from rich.console import Console
 
@@ -20,12 +21,18 @@ from kurt2rt.channel.credentials import (
     read_device,
 )
 from kurt2rt.cli.end_of_teaching import end_of_teaching
+from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import task_option
+from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.terminal import TerminalTeacher
+from kurt2rt.knowledge.people import NOT_PEOPLE
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.scripted_lesson import teach_by_script
+
+_NEWEST_LESSONS = 20
 
 
 class _Way(NamedTuple):
@@ -150,7 +157,7 @@ def teach(
     elif auto:
         _teach(
             way,
-            lambda client, say: _by_script(client, say, service.robot, task or service.task, seed),
+            lambda client, say: _by_script(client, say, way, service.robot, task or service.task, seed, while_stdin),
             while_stdin=while_stdin,
         )
     else:
@@ -210,5 +217,17 @@ async def _by_typing(client: TeacherClient, say: Callable[[str], None], where: s
     await TerminalTeacher(client, sys.stdin, say, where).teach()
 
 
-async def _by_script(client: TeacherClient, say: Callable[[str], None], robot: str, task: str, seed: int) -> None:
+async def _by_script(
+    client: TeacherClient, say: Callable[[str], None], way: _Way, robot: str, task: str, seed: int, agreed: bool
+) -> None:
+    """`agreed`: kurt2rt run started this, and has looked whose file it is."""
+    try:
+        await client.hello()
+        lessons = () if agreed else await client.lessons(_NEWEST_LESSONS)
+    except NoAnswerError as error:
+        raise no_robot(way.host, way.port, way.device.name) from error
+    people = dict.fromkeys(each.teacher for each in reversed(lessons) if each.teacher not in NOT_PEOPLE)
+    instead = "run the robot on another file, or let kurt2rt run --auto do so"
+    if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):
+        return
     await teach_by_script(client, load_robot(robot), load_task(task), say, seed=seed)

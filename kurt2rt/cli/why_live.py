@@ -7,6 +7,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.channel.credentials import Device
+from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.tipping import Tip, tips
 from kurt2rt.perception.definition import load_situation
@@ -40,9 +41,7 @@ def ask_why(
     try:
         facts = anyio.run(ask)
     except NoAnswerError as error:
-        raise NoAnswerError(
-            f"no robot answers at {host}:{port} as {device.name}; is kurt2rt run running? ({error})"
-        ) from error
+        raise no_robot(host, port, device.name) from error
     return Asked(facts, _tips_of(facts, robot))
 
 

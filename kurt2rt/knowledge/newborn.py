@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
+from kurt2rt.durable import make_private_folder
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
@@ -34,7 +35,7 @@ def bear(
         raise KnowledgeError(f"{path}: a log {log.name} of another file is beside it; give another path")
     image = _image_of(source, binding, tuple(entries), statistics, notes)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
     with journal_file.lock_for_writing(path):  # a robot may begin a file there at this very moment

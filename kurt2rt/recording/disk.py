@@ -7,6 +7,8 @@ import os
 from pathlib import Path
 from typing import Protocol
 
+from kurt2rt.durable import make_private_folder
+
 _NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS})
 """What a disk answers that knows no locks: of a folder, NFS says EBADF."""
 
@@ -71,7 +73,7 @@ class RealDisk:
 
     def make_folder(self, path: Path) -> None:
         """Make a folder, with those above it. Raises OSError; then it is not there."""
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_private_folder(path.parent)
         path.mkdir()
         try:
             _keep_names_in(path.parent)

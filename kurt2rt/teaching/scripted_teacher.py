@@ -13,7 +13,7 @@ from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
 
-_NAME = "scripted teacher"
+SCRIPTED = "scripted teacher"
 
 
 class Picture(NamedTuple):
@@ -112,15 +112,15 @@ class ScriptedTeacher:
     def enter(self, phase: Phase) -> Command:
         """Begin a phase: what to tell the robot."""
         self.phase = phase
-        return SetPhase(self._next_id(), _NAME, phase)
+        return SetPhase(self._next_id(), SCRIPTED, phase)
 
     def pursue(self, behaviour: str) -> Command:
         """Another taught behaviour is wanted: what to tell the robot."""
-        return Pursue(self._next_id(), _NAME, behaviour)
+        return Pursue(self._next_id(), SCRIPTED, behaviour)
 
     def go(self) -> Command:
         """The robot shall drive again after an alarm: what to tell it."""
-        return Resume(self._next_id(), _NAME)
+        return Resume(self._next_id(), SCRIPTED)
 
     def watch(self, picture: Picture, ticks: int = 1) -> Command | None:
         """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""
@@ -136,7 +136,7 @@ class ScriptedTeacher:
             if self._ticks_asked < self._reaction_ticks:
                 return None
             self._ticks_asked = 0
-            return Teach(self._next_id(), _NAME, self._choose(picture))
+            return Teach(self._next_id(), SCRIPTED, self._choose(picture))
         if self.phase is Phase.SUPERVISED or not picture.driving:
             return None
         return self._correct(picture, ticks)
@@ -154,8 +154,8 @@ class ScriptedTeacher:
             return None
         self._ticks_otherwise = 0
         if picture.rla_id is not None and self._is_to_go(picture.rla_id, picture.share_of_radius):
-            return DeleteRla(self._next_id(), _NAME, picture.rla_id)
-        return Correct(self._next_id(), _NAME, self._choose(picture))
+            return DeleteRla(self._next_id(), SCRIPTED, picture.rla_id)
+        return Correct(self._next_id(), SCRIPTED, self._choose(picture))
 
     def _is_to_go(self, rla_id: int, distance_share: float) -> bool:
         """Whether an RLA that is wrong has been replaced often enough; farther off a correction leaves it as it is."""

@@ -1,0 +1,38 @@
+"""The knowledge file that a scripted teacher teaches into: its own, never a person's unless that person agrees."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.people import people_in
+
+_SUFFIX = ".auto"
+
+
+def own_file(knowledge: Path) -> Path:
+    """Return the scripted teacher's own file, next to that of the settings."""
+    return knowledge.with_name(f"{knowledge.stem}{_SUFFIX}{knowledge.suffix}")
+
+
+def require_agreement(knowledge: Path) -> None:
+    """Ask before a scripted teacher teaches into a file in which people taught. Raises KnowledgeError, typer.Exit."""
+    instead = "leave out --knowledge, then the scripted teacher has a file of its own"
+    if knowledge.exists() and not people_agree(str(knowledge), people_in(knowledge), instead):
+        raise typer.Exit(1)
+
+
+def people_agree(where: str, people: Sequence[str], instead: str) -> bool:
+    """Return whether a scripted teacher may teach where `people` taught; the user is asked where there are some.
+
+    Raises KnowledgeError where there is no terminal to ask at; `instead` is what to do then.
+    """
+    if not people:
+        return True
+    taught = f"{where}: {' and '.join(people)} taught in it"
+    # Python has no standard input where it was closed.
+    if sys.stdin is None or not sys.stdin.isatty():
+        raise KnowledgeError(f"{taught}, and a scripted teacher would change it; {instead}")
+    return typer.confirm(f"{taught}. Let the scripted teacher change it?", err=True)

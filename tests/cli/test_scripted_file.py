@@ -1,0 +1,86 @@
+"""`--auto` teaches into a file of its own, never unasked into that of a person."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.channel.credentials import AUTO
+from kurt2rt.cli.scripted_file import own_file, people_agree
+from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.knowledge.people import people_in
+from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.rla.rla import Origin, Phase, SessionBegun
+from kurt2rt.tasks.settings import load_task
+from tests.cli.helpers import CommandLine
+
+INSTEAD = "give another"
+
+
+def taught_by(path: Path, *teachers: str) -> Path:
+    with open_knowledge(path, load_robot("kurt2"), load_task("wall_following")) as journal:
+        events = [
+            SessionBegun("monday", Origin(f"c{number}", teacher, Phase.SUPERVISED, number))
+            for number, teacher in enumerate(teachers)
+        ]
+        journal.append([JournalEntry(event, utc_now()) for event in events])
+    return path
+
+
+def test_own_file_stands_next_to_that_of_the_settings() -> None:
+    assert own_file(Path("var/wall_following.knowledge")) == Path("var/wall_following.auto.knowledge")
+
+
+def test_run_auto_leaves_the_usual_file_alone(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    said = kurt2rt("run", "--auto", "--seconds", "0.1", "--port", "0", "--no-record")
+    assert said.exit_code == 0, said.err
+    assert "knowledge var/wall_following.auto.knowledge" in said.out
+    assert not (tmp_path / "var" / "wall_following.knowledge").exists()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", "--seconds", "0.1", "--teacher", "none", "--no-record"),
+        ("run", "--seconds", "0.1", "--teacher", "none"),
+        ("pair", "phone"),
+    ],
+    ids=" ".join,
+)
+def test_var_is_made_for_this_user_alone(kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...]) -> None:
+    assert kurt2rt(*words).exit_code == 0
+    assert (tmp_path / "var").stat().st_mode & 0o777 == 0o700
+
+
+def test_run_auto_on_a_persons_file_is_refused_where_nobody_can_be_asked(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    mine = taught_by(tmp_path / "mine.knowledge", AUTO, "anna", "local", "anna")
+    before = mine.read_bytes()
+    line = kurt2rt.refused("run", "--auto", "--seconds", "0.1", "--port", "0", "--knowledge", "mine.knowledge")
+    assert "mine.knowledge: anna and local taught in it, and a scripted teacher would change it" in line
+    assert "leave out --knowledge" in line
+    assert mine.read_bytes() == before
+
+
+def test_people_are_those_who_are_no_program(tmp_path: Path) -> None:
+    file = taught_by(tmp_path / "a.knowledge", "critic", "scripted teacher", AUTO)
+    assert people_in(file) == ()
+    assert people_agree(str(file), people_in(file), INSTEAD)
+
+
+@pytest.mark.parametrize("answer", [True, False])
+def test_a_person_at_a_terminal_is_asked(monkeypatch: pytest.MonkeyPatch, *, answer: bool) -> None:
+    asked: list[str] = []
+
+    class Keyboard:
+        def isatty(self) -> bool:
+            return True
+
+    def confirm(question: str, **_: object) -> bool:
+        asked.append(question)
+        return answer
+
+    monkeypatch.setattr("sys.stdin", Keyboard())
+    monkeypatch.setattr("typer.confirm", confirm)
+    assert people_agree("mine.knowledge", ["anna"], INSTEAD) is answer
+    assert asked == ["mine.knowledge: anna taught in it. Let the scripted teacher change it?"]

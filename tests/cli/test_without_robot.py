@@ -1,0 +1,34 @@
+"""Commands that need a robot that is not there say so in one line, and which command starts it."""
+
+import os
+import signal
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine, running
+from tests.page.test_teach_command import free_udp_port
+
+
+def test_why_live_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
+    port = free_udp_port()
+    line = kurt2rt.refused("why", "--live", "--port", str(port))
+    assert line.endswith(
+        f": no robot answers at 127.0.0.1:{port} as onlooker; start one in another terminal: kurt2rt run"
+    )
+
+
+def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
+    port = free_udp_port()
+    line = kurt2rt.refused("teach", "--auto", "--port", str(port))
+    assert line.endswith(f": no robot answers at 127.0.0.1:{port} as auto; start one in another terminal: kurt2rt run")
+
+
+def test_run_on_a_shared_bus_without_a_simulator_names_what_starts_one(tmp_path: Path) -> None:
+    bus = f"shared:nobody-is-here-{os.getpid()}"
+    words = ("run", "--robot", bus, "--port", "0", "--no-record")
+    with running(*words, folder=tmp_path) as robot:
+        line = robot.wait_for(f"no simulator on {bus}; ")
+        assert f"start one in another terminal: kurt2rt sim --bus {bus}" in line
+        with running("sim", "--bus", bus, folder=tmp_path):
+            while "no simulator" in line:
+                line = robot.wait_for("RLAs |")
+        assert robot.end(signal.SIGINT).err == ""
