@@ -107,7 +107,7 @@ def test_a_robot_that_runs_is_asked_over_the_channel_by_an_onlooker(
 
 def test_where_no_robot_runs_that_is_said(tmp_path: Path) -> None:
     device = local_pairing(tmp_path / "teachers", tmp_path / "devices", ONLOOKER).device
-    with pytest.raises(NoAnswerError, match=r"no robot answers at 127\.0\.0\.1:9 as onlooker; is"):
+    with pytest.raises(NoAnswerError, match=r"no robot answers at 127\.0\.0\.1:9 as onlooker; start one"):
         ask_why(device, "127.0.0.1", 9, load_robot(), patience_s=0.1)
 
 
