@@ -59,7 +59,7 @@ export class ActionPad {
   // Which one drives, and which one the nearest RLA would choose.
   show(state) {
     for (const [name, button] of this.#buttons) {
-      button.classList.toggle("current", name === state.action);
+      button.classList.toggle("current", name === state.action && state.stands.reason === "drives");
       button.classList.toggle("nearest", state.stands.asks && name === state.nearest_action);
     }
   }
