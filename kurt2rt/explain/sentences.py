@@ -47,7 +47,7 @@ def still_kept(facts: DecisionFacts) -> str:
 
 def guarded(facts: DecisionFacts) -> str:
     """What the guard made of the decision; empty where it let it through."""
-    if not facts.reasons or facts.latched:
+    if not facts.reasons or facts.latched or facts.cause == Cause.TOUCHES:  # said already
         return ""
     return (
         f"The guard let {_speeds(facts.granted)} through instead of {_speeds(facts.decided)}: "

@@ -221,5 +221,6 @@ def test_a_robot_that_touches_something_tells_which_rla_goes_on_toward_it() -> N
     (line,) = because(touches)
     assert line.startswith("It touches something in front, and RLA ")
     assert line.endswith(" goes on toward it: the guard lets no wheel turn that way, so the robot asks.")
+    assert guarded(touches) == ""
     pushes = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("rear bumper",))
     assert headline(pushes) == "stands: it touches something behind"
