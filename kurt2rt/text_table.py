@@ -145,15 +145,15 @@ def print_whole(console: Console, *parts: RenderableType) -> None:
 
     Raises TypeError for a part that is neither a table nor a text.
     """
-    below_table, at_top = False, True
+    below_table, parted = False, True
     for part in _flattened(parts):
         is_table = isinstance(part, TextTable)
         lines = list(part.lines(console.width)) if isinstance(part, TextTable) else wrapped(part, console.width)
-        if not at_top and (is_table or below_table) and lines and lines[0].plain:
+        if not parted and (is_table or below_table) and lines and lines[0].plain:
             console.print()
         for line in lines:
             console.print(line, soft_wrap=True, highlight=False)
-        below_table, at_top = is_table, bool(lines) and not lines[-1].plain
+        below_table, parted = is_table, bool(lines) and not lines[-1].plain
 
 
 def _flattened(parts: Iterable[RenderableType]) -> Iterator[TextTable | Text]:

@@ -9,6 +9,8 @@ import typer
 
 from config import CONFIG_DIR
 
+_NAME_OR_PATH = "NAME|PATH"
+
 
 def _names_in(kind: str) -> Callable[[str], list[str]]:
     """Return what completes the names of shipped settings of a kind, for a shell."""
@@ -20,7 +22,6 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
     return complete
 
 
-_NAME_OR_PATH = "NAME|PATH"
 _TASK = "Task: a name in config/tasks, or the path of a YAML file."
 _WORLD = (
     "World: a name in config/worlds, rooms-N or streets-N for a generated one, or the path of a YAML file (a world, or "
@@ -54,22 +55,29 @@ Plain = Annotated[
     ),
 ]
 RobotName = Annotated[
-    str, typer.Option("--robot-settings", help="Robot by name (config/robots) or a path to its YAML file.")
+    str,
+    typer.Option(
+        "--robot-settings", metavar=_NAME_OR_PATH, help="Robot: a name in config/robots, or the path of a YAML file."
+    ),
 ]
 Seed = Annotated[
-    int, typer.Option(min=0, help="Decides start poses and all chance; the same seed gives the same run, bit for bit.")
+    int,
+    typer.Option(
+        min=0, metavar="N", help="Seed of start poses and noise; the same seed gives the same run, bit for bit."
+    ),
 ]
 WireName = Annotated[
     str,
     typer.Option(
         "--wire",
-        help="CAN wire between robot and notebook, by name (config/wires) or a path to a YAML file: what a frame takes "
-        "of time, and what goes wrong. none: no time, and nothing.",
+        metavar=_NAME_OR_PATH,
+        help="Simulated CAN wire: a name in config/wires, or the path of a YAML file; it delays, loses and corrupts "
+        "frames. none: frames arrive at once.",
     ),
 ]
-OutFolder = Annotated[Path, typer.Option("--out", help="Folder for what is made; created when absent.")]
+OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; made if it is missing.")]
 Jobs = Annotated[
-    int, typer.Option("--jobs", min=1, help="Processes to use where there are many robots; 1: this one alone.")
+    int, typer.Option("--jobs", min=1, metavar="N", help="Number of processes for many robots; 1: this process alone.")
 ]
 ALL_PROCESSORS = os.cpu_count() or 1
 Changes = Annotated[
@@ -77,8 +85,8 @@ Changes = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Another value for one key of the task's file, dots between its levels, e.g. learning.past_weight=1; "
-        "repeat for several. Teach and examine with the same ones.",
+        help="Change one key of the task's file, with dots between its levels, such as learning.past_weight=1; repeat "
+        "for several keys. Teach and examine with the same values.",
     ),
 ]
 
