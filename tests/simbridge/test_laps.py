@@ -229,6 +229,25 @@ def test_wall_progress_counts_no_jump_between_wall_and_island() -> None:
     assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.2, abs=0.5)
 
 
+def test_wall_progress_in_the_step_from_one_ring_to_another_is_none() -> None:
+    steps = 0
+    for y_m in (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0):
+        corners = ((0.9, y_m), (1.5, y_m), (1.5, y_m + 0.6), (0.9, y_m + 0.6))
+        world = room(boxes=[PolygonObstacleSettings(name="island", corners=corners)])
+        rings, progress = WallRings(world, MIDDLE), WallProgress(World(world))
+        # Through the gap of 0.9 m: turned about half-way, the robot has the other wall on its left.
+        poses = [(0.4, y_m + 0.1 * i, math.pi / 2) for i in range(4)] + [(0.5, y_m + 0.3, -math.pi / 2)]
+        progress.reset(Pose(*poses[0]))
+        place = rings.place(*poses[0], None)
+        for pose in poses[1:]:
+            before, last, place = progress.laps, place, rings.place(*pose, place)
+            progress.update(*pose)
+            if last is not None and place is not None and last.ring != place.ring:
+                steps += 1
+                assert progress.laps == before
+    assert steps == 7
+
+
 @pytest.mark.parametrize("width_m", [0.8, 1.0, 1.2, 1.6])
 def test_wall_progress_of_turning_back_in_a_corridor_ends(width_m: float) -> None:
     wall = WallSettings(name="wall", from_m=(width_m + 0.01, 0.0), to_m=(width_m + 0.01, 3.2), thickness_m=0.02)
