@@ -74,18 +74,25 @@ class LiveExam:
     def _read(self, process: "subprocess.Popen[bytes]", knowledge: Path, picture: Path) -> None:
         assert process.stdout is not None
         assert process.stdin is not None
+        verdict: ExamStanding | None = None
         try:
             for line in process.stdout:
                 with suppress(WireError, ValueError):  # what a library prints between is no news of the exam
-                    self.standing = EXAM.read(json.loads(line))
+                    told = EXAM.read(json.loads(line))
+                    if told.running:
+                        self.standing = told
+                    else:
+                        verdict = told
             code = process.wait()
         finally:
             process.stdin.close()
             process.stdout.close()
             knowledge.unlink(missing_ok=True)
-        told = self.standing
-        if told.running:
+        # At once with its picture: nobody asks again once the exam is over.
+        if verdict is None:
             trouble = f"the exam ended without a verdict (code {code}); examine again"
-            self.standing = replace(told, running=False, trouble=trouble)
-        elif not told.trouble:
-            self.standing = replace(told, picture=picture.name if picture.is_file() else "")
+            self.standing = replace(self.standing, running=False, trouble=trouble)
+        elif verdict.trouble:
+            self.standing = verdict
+        else:
+            self.standing = replace(verdict, picture=picture.name if picture.is_file() else "")

@@ -134,7 +134,7 @@ class SimulatedRuns:
                 opened = go_on_teaching(loaded, self._robot, present.task)
             except KnowledgeError as error:
                 text = str(error)
-                for path in (brought, loaded):
+                for path in (brought.resolve(), loaded.resolve(), brought, loaded):
                     text = text.replace(str(path), "the uploaded file")
                 raise KnowledgeError(text) from error
             opened.journal.close()

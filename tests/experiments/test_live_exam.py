@@ -47,6 +47,22 @@ def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tm
     assert not copy.exists()
 
 
+def test_an_exam_is_over_only_with_its_picture(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = "open(sys.argv[1], 'wb').close()"
+    exam = saying(json.dumps(EXAM.plain_of(OVER)), "a last word", after=drawn)
+    standings: list[ExamStanding] = []
+
+    def note(each: LiveExam, name: str, value: object) -> None:
+        object.__setattr__(each, name, value)
+        if isinstance(value, ExamStanding):
+            standings.append(value)
+
+    monkeypatch.setattr(LiveExam, "__setattr__", note)
+    exam.begin(copy, tmp_path / "exam.png")
+    ended(exam)
+    assert [(each.running, each.picture) for each in standings] == [(True, ""), (False, "exam.png")]
+
+
 def test_a_process_that_dies_is_told_as_trouble(copy: Path, tmp_path: Path) -> None:
     with saying("[1", after="sys.exit(3)") as exam:
         exam.begin(copy, tmp_path / "exam.png")
