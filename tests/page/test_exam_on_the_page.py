@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from kurt2rt.channel.exam_standing import ExamStanding, WorldVerdict
+from tests.page.axe import violations
 from tests.page.fake_robot import FakeRobot
 from tests.page.lesson import Lesson
 from tests.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
@@ -62,6 +63,7 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(lesson: Lesson) -> None:
     lesson.reads("#exam-worlds", "World B: failed")
     lesson.reads("#exam-worlds", "World cave: not judged")
     phone.wait(lambda: phone.run(LOADED), "the picture is there")
+    assert violations(phone) == []
     for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
         phone.turn(size)
         phone.wait(lambda: phone.run("return innerWidth") == size[0], "the screen is turned")  # noqa: B023
