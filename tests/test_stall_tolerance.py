@@ -91,6 +91,21 @@ def test_a_stop_that_was_asked_for_outlasts_a_stall() -> None:
         assert robot.tick().latched
 
 
+def test_a_stop_that_comes_just_before_the_release_is_not_lifted(monkeypatch: pytest.MonkeyPatch) -> None:
+    release = Kurt2.release
+
+    def overtaken(robot: Kurt2) -> None:
+        monkeypatch.setattr(Kurt2, "release", release)
+        robot.emergency_stop("a signal came")  # from another thread
+        release(robot)
+
+    with scene(StallTolerantKurt2) as robot:
+        robot.tick()
+        monkeypatch.setattr(Kurt2, "release", overtaken)
+        assert robot.stall().latched
+        assert robot.tick().reasons == ("a signal came",)
+
+
 def test_only_the_robot_in_this_program_tolerates_stalls() -> None:
     with open_robot(ROBOT, SIMULATED, "a", 1) as opened:
         assert type(opened.robot) is StallTolerantKurt2

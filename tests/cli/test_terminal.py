@@ -39,6 +39,7 @@ from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, q
 from kurt2rt.health.plain import plain_of
 from kurt2rt.perception.sensor_words import law_of
 from kurt2rt.rla.rla import Phase
+from kurt2rt.standing import Standing, StandReason
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.hello import AppraisalName
 from kurt2rt.teaching.lesson_line import LessonLine
@@ -461,3 +462,13 @@ def test_of_surprises_of_the_basic_level_only_the_great_ones_are_told() -> None:
     assert is_worth_saying(SURPRISED)
     assert not is_worth_saying(replace(SURPRISED, level="basic"))
     assert is_worth_saying(replace(SURPRISED, level="basic", times=5.0))
+
+
+async def test_a_robot_that_stands_tells_why_also_where_it_would_ask(pairing: Pairing, robot: StandInRobot) -> None:
+    async with desk_at(pairing, robot.port) as desk:
+        await desk.reads("/take is done")
+        robot.show(cause="unknown", standing=Standing(StandReason.COMPUTER_TOO_SLOW, True, asks=True, stall_s=0.12))
+        await desk.reads("Stands: the computer was too slow for 0.1 s. Type go to let it drive on")
+        touches = {"cause": "touches", "nearest": 3, "nearest_action": "forward", "distance": 90.0, "radius": 600.0}
+        robot.show(standing=Standing(StandReason.REAR_BUMPER, asks=True), **touches)
+        await desk.reads("I touch something behind me; what now? RLA 3 says forward")
