@@ -162,7 +162,7 @@ async def serve(
                 knowledge=path,
                 tolerates_stalls=tolerates_stalls,
             )
-            status = StatusSocket(watch, socket_of(path))
+            status = StatusSocket(watch, socket_of(path), (instruments or Instruments()).pages)
             watch.include(says={"status": lambda: status.trouble})
             if recorder is not None:
                 watch.include(

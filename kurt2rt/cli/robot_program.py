@@ -348,7 +348,7 @@ class RobotProgram:
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}
-        return Instruments(lambda: opened.robot.health, drops, says, folders)
+        return Instruments(lambda: opened.robot.health, drops, says, folders, self._links)
 
     def _exam(self, opened: OpenedRobot) -> LiveExam | None:
         if opened.ground is None:
@@ -408,6 +408,9 @@ class RobotProgram:
                 self._tell(each.link)
         if pages.trouble and pages.trouble != before.trouble:
             self._tell(pages.trouble, "yellow")
+
+    def _links(self) -> tuple[str, ...]:
+        return tuple(each.link for each in self._pages.addresses)
 
     def _open_browser(self, page: PageAddress) -> None:
         try:

@@ -121,6 +121,8 @@ def as_rich(report: HealthReport) -> Group:
     for row in rows_of(report):
         style = _STYLES.get(row.level, "")
         table.add_row(Text(row.name, style=style or "bold"), Text(row.text, style=style))
+    for link in report.pages:
+        table.add_row(Text("page", style="bold"), Text(link))
     told = [Text(f"! {trouble_in(each)}", style=_STYLES[URGENT if each.urgent else WARNS]) for each in report.troubles]
     return Group(Text(headline(report), style=_style_of(report)), table, *told)
 

@@ -39,6 +39,8 @@ class Instruments:
     """By part, what is wrong with it and what to do, in a line; empty when nothing is."""
     folders: Mapping[str, Path] = field(default_factory=dict)
     """What is kept, and in which folder there has to be room for it."""
+    pages: Callable[[], tuple[str, ...]] = tuple
+    """Links to the teacher's page, with their tokens; none where this program serves no page."""
 
     def with_more(
         self,

@@ -145,6 +145,8 @@ class HealthReport:
     drops: tuple[Drops, ...]
     troubles: tuple[Trouble, ...]
     """The urgent ones first, then those that have lasted longest."""
+    pages: tuple[str, ...] = ()
+    """Links to the teacher's page, with their tokens: told to this machine's own user alone, never over the channel."""
     progress: Progress = NO_PROGRESS
     """Of teaching, in the last minute."""
 

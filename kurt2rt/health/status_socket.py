@@ -4,8 +4,9 @@ import json
 import os
 import socket
 import threading
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
 from contextlib import asynccontextmanager, contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -22,6 +23,7 @@ _TAKEN_WITHIN_S = 2.0
 _REMOVED_WITHIN_S = 0.2
 _LONGEST_LINE = 65_536
 _WAITS_FOR = "waits_for"
+_PAGES = "pages"
 
 
 def socket_of(knowledge: Path) -> Path:
@@ -32,8 +34,9 @@ def socket_of(knowledge: Path) -> Path:
 class StatusSocket:
     """Tells every reader each report. One that does not read is left."""
 
-    def __init__(self, watch: HealthWatch, path: Path) -> None:
-        """`path`: of the socket; whoever may write it may read the status."""
+    def __init__(self, watch: HealthWatch, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
+        """`path`: of the socket; whoever may write it may read the status, and the links of `pages` with it."""
+        self._pages = pages
         self._watch = watch
         self._path = path
         self._news = anyio.Event()
@@ -65,7 +68,7 @@ class StatusSocket:
                     report, news = self._watch.newest, self._news
                     if report is not None:
                         with anyio.fail_after(_TAKEN_WITHIN_S):
-                            await reader.send(json.dumps(plain_of(report)).encode() + b"\n")
+                            await reader.send(json.dumps({**plain_of(report), _PAGES: self._pages()}).encode() + b"\n")
                     await news.wait()
         except (anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):
             return  # gone, or too slow
@@ -126,11 +129,16 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
                 told = json.loads(line)
                 if isinstance(told, dict) and _WAITS_FOR in told:
                     raise StatusError(f"the robot program stands and waits for {told[_WAITS_FOR]}")
-                yield report_of(told)
+                yield replace(report_of(told), pages=_links_in(told))
             except (ValueError, WireError) as error:
                 raise StatusError(
                     f"{path}: is not understood ({error}); use the kurt2rt that the robot runs"
                 ) from error
+
+
+def _links_in(told: Mapping[str, object]) -> tuple[str, ...]:
+    links = told.get(_PAGES, ())
+    return tuple(map(str, links)) if isinstance(links, list) else ()
 
 
 @asynccontextmanager

@@ -23,11 +23,20 @@ def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with running("run", "--port", "0", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
+    words = ("run", "--page", "--page-port", "0", "--port", "0", "--knowledge", "mine.knowledge")
+    with running(*words, folder=tmp_path) as robot:
         port = int(robot.wait_for("UDP port").split()[-1])
+        link = robot.wait_for("/pair?token=").strip()
         robot.wait_for("stands and asks")
+        robot.wait_for("RLAs |")
+        monkeypatch.setenv("COLUMNS", "200")
+        assert f"page      {link}" in kurt2rt("status", "mine.knowledge").out
+        for elsewhere in (("mine.knowledge", "--json"), ("--as", "terminal", "--port", str(port))):
+            assert "token" not in kurt2rt("status", *elsewhere).out  # the address of a page is for this user alone
         beside = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
-        over_the_channel = report_of(json.loads(kurt2rt("status", "--as", "local", "--port", str(port), "--json").out))
+        over_the_channel = report_of(
+            json.loads(kurt2rt("status", "--as", "terminal", "--port", str(port), "--json").out)
+        )
         assert beside.boot == over_the_channel.boot
         assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
 
