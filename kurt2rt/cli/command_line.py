@@ -51,7 +51,7 @@ _PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
 
 _HELP = (
     "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
-    "Begin with `kurt2rt run --page`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
+    "Begin with `kurt2rt run --phone`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
     "scripted teacher teach it wall following and examines it, in a minute. "
     "`kurt2rt doctor` says what this machine offers for the real one."
 )

@@ -52,14 +52,13 @@ def pair(
     Makes two folders with a common secret: the robot's side, which stays here,
     and the device's side, which kurt2rt teach uses. What to do next:
 
-        kurt2rt run                    the robot; a running one knows the new device within a second
-        kurt2rt teach --as NAME        the page for the device
-        then scan the code with the phone, or open the address
+        kurt2rt run --phone            robot and page; one that runs takes the device in within a second
+        then scan the code that it shows, or open the address
 
     To run kurt2rt teach on another machine than the robot, move the device's
-    folder there (do not copy it: its message numbers count once), and give it
-    --robot and the robot's address. The robot listens beyond its own machine
-    only if a device is paired when it is started.
+    folder there (do not copy it: its message numbers count once), and start there
+    kurt2rt teach --as NAME --robot ADDRESS. The robot itself listens beyond its
+    own machine only if a device is paired when it is started.
 
     Nobody needs to be paired to teach at the robot's own machine.
 
@@ -96,7 +95,7 @@ def pair(
         f"{name} is paired",
         f"robot's side   {pairing.teacher}",
         f"device's side  {pairing.device.folder}",
-        f"next           kurt2rt run, and kurt2rt teach --as {name}",
+        "next           kurt2rt run --phone, unless it runs already; then scan the code that it shows",
         f"its page       {address}",
     )
     # White on black whatever the terminal's colours are: cameras dislike negatives.

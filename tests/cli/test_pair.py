@@ -33,7 +33,7 @@ def test_a_paired_device_is_told_where_its_page_is_as_text_and_as_a_code(kurt2rt
     assert code_of(address) in said.out
     assert str(TEACHERS / "anna-phone") in said.out
     assert str(DEVICES / "anna-phone") in said.out
-    assert "kurt2rt teach --as anna-phone" in said.out
+    assert "kurt2rt run --phone" in said.out
 
 
 def test_the_robot_accepts_it_from_now_on(kurt2rt: CommandLine) -> None:
