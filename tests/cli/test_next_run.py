@@ -8,6 +8,7 @@ from pathlib import Path
 import anyio
 import pytest
 
+from hal.robot import STANDSTILL
 from hal.robot_settings import load_robot
 from kurt2rt.channel.simulation import TeacherNow
 from kurt2rt.channel.state import State
@@ -20,6 +21,7 @@ from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.commands import BeginSession, SetPhase, Take
+from tests.channel.desk import Desk
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
 
@@ -52,6 +54,20 @@ async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first
     assert isinstance(phase, SetPhase)
     assert isinstance(session, BeginSession)
     assert (take.teacher, phase.phase, session.name) == ("phone", Phase.CORRECTIONS, "noon")
+
+
+async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_path: Path) -> None:
+    runs = runs_in(tmp_path)
+    await runs.prepare("b", None, False, TeacherNow("ann", 5, "noon"))
+    runs.advance()
+    desk = Desk()
+    school = desk.runtime.school
+    school.stop("a new run was begun")
+    for command in runs.present.begin_with:
+        desk.runtime.inbox.put(command)
+    record = desk.run(10, counts=300)
+    assert (school.phase, school.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")
+    assert (school.stopped_because, record.grant.wheel_speeds) == ("a new run was begun", STANDSTILL)
 
 
 @pytest.mark.parametrize(
