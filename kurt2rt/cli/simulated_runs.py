@@ -13,6 +13,7 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
 from kurt2rt.exchange.given import import_knowledge
+from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.set_aside import set_aside
@@ -148,9 +149,12 @@ class SimulatedRuns:
         where = world or (present.world if name == present.task_name else settings.teaching.world)
         load_world(where, self._robot)
         knowledge = self._files.get(name, present.knowledge.with_name(f"{settings.name}.knowledge"))
-        if knowledge != present.knowledge and knowledge.exists() and not fresh:
-            # Opened as the next run opens it: damage, another task's lessons or another program that writes it.
-            go_on_teaching(knowledge, self._robot, settings).journal.close()
+        if knowledge != present.knowledge and knowledge.exists():
+            # Looked at as the next run opens it, so that another program that writes it is found out now.
+            if fresh:
+                journal_file.lock_for_writing(knowledge).close()
+            else:
+                go_on_teaching(knowledge, self._robot, settings).journal.close()
         return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
 
     def _look(self) -> SimulationView:

@@ -95,6 +95,16 @@ async def test_knowledge_that_the_next_run_cannot_open_is_refused_before_this_on
     assert runs.next is None
 
 
+@pytest.mark.parametrize("fresh", [False, True])
+async def test_a_knowledge_file_that_another_program_writes_is_refused(tmp_path: Path, *, fresh: bool) -> None:
+    runs = runs_in(tmp_path)
+    with (
+        open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("eight")),
+        pytest.raises(ValueError, match="another kurt2rt is writing it"),
+    ):
+        await runs.prepare(None, "eight", fresh, TEACHER)
+
+
 async def test_the_run_of_a_scripted_teacher_stays(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="start kurt2rt run without --auto"):
         await runs_in(tmp_path, taught_by_script=True).prepare("b", None, False, TEACHER)
