@@ -12,7 +12,8 @@ import anyio.abc
 from kurt2rt.channel.state import State
 from kurt2rt.page.attention import Attention
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow, Why
-from kurt2rt.page.orders import carry_out, lets_drive, oldest_picture_s
+from kurt2rt.page.orders import carry_out, ends_run, lets_drive, oldest_picture_s
+from kurt2rt.page.pictures import SentPicture
 from kurt2rt.page.rarely_told import RarelyTold
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.page.seat import Seat
@@ -20,7 +21,7 @@ from kurt2rt.page.views import answer_view, refusal_view, state_view
 from kurt2rt.page.visitor import Visitor
 from kurt2rt.page.why_view import why_view
 from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teaching.answer import Answer, NoAnswerError
 
 _LOOK_EACH_S = 0.01
 """How late a silent page is noticed at most."""
@@ -60,6 +61,8 @@ class Bridge:
         self._newest: State | None = None
         self._stopped_s = float("-inf")
         self._unseen_stop_due = False
+        self._ended_boot: bytes | None = None
+        """Start of the robot that ended because a page wanted the next run: it is silent, and stands."""
         self._ending = 0
         self._said_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
@@ -190,7 +193,13 @@ class Bridge:
         elif order.name == "take" and self._take_pad(visitor):
             visitor.tell({**refusal_view(order.number, "", "this page has the pad"), "accepted": True})
         else:
-            self._start(visitor, order.number, partial(carry_out, order, self._robot, picture.tick))
+            self._start(visitor, order.number, partial(self._carry_out, order, picture))
+
+    async def _carry_out(self, order: Order, picture: SentPicture) -> Answer:
+        answer = await carry_out(order, self._robot, picture.tick)
+        if answer.accepted and ends_run(order):
+            self._ended_boot = picture.boot
+        return answer
 
     def _take_pad(self, visitor: Visitor) -> bool:
         """Give a page the pad; whether this device is the robot's teacher already."""
@@ -291,6 +300,7 @@ class Bridge:
         state = self._newest
         return (
             state is not None
+            and state.boot != self._ended_boot
             and state.teacher == self._device
             and state.phase < Phase.AUTONOMOUS
             and state.action is not None

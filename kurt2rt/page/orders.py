@@ -21,6 +21,11 @@ def lets_drive(order: Order) -> bool:
     return order.name == "resume" or (order.name == "phase" and order.arguments["phase"] == Phase.AUTONOMOUS)
 
 
+def ends_run(order: Order) -> bool:
+    """Whether the robot's run ends by it: no more pictures come of that one, and its wheels stand."""
+    return order.name in ("next_run", "load")
+
+
 async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
     """Tell the robot, `of` being the tick of the picture that the page showed. Raises NoAnswerError."""
     given = order.arguments

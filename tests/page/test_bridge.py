@@ -313,6 +313,19 @@ async def test_hiding_or_closing_the_page_stops_a_robot_that_drives(how: Callabl
         assert hall.told("stop") == [("stop",)]
 
 
+@pytest.mark.parametrize("refuses", ["", "world: 'x' is not known"])
+async def test_a_run_that_ends_for_the_next_one_is_not_taken_for_one_that_drives_unseen(refuses: str) -> None:
+    async with opened() as hall:
+        page = Page(hall)
+        await page.see(**DRIVING)
+        hall.robot.refuses = refuses
+        await page.order("next_run", world="b", task=None, fresh=False)
+        hall.robot.refuses = ""
+        page.say(Hidden())
+        await settled()
+        assert hall.told("stop") == ([("stop",)] if refuses else [])
+
+
 async def test_a_robot_that_begins_to_drive_just_after_is_stopped_too() -> None:
     async with opened() as hall:
         page = Page(hall)
