@@ -57,6 +57,7 @@ export function gamepad({ drive, mayDrive, say }) {
   addEventListener("gamepadconnected", ({ gamepad: pad }) => {
     if (pad.mapping !== "standard") return say("refused", "gamepad: its buttons are not known; use another one");
     say("saved", "gamepad: hold a shoulder button, then the left stick drives");
+    if (driving === pad.index) end();
     // A button that is held already was not pressed to drive.
     spent.add(pad.index);
     timer ??= setInterval(poll, POLL_MS);
