@@ -91,12 +91,13 @@ def test_who_only_looks_goes_on_as_long_as_it_confirms(
     async def story() -> None:
         async with the_robot_and_its_device(tmp_path) as (at_work, device):
             looking = await device.look()
-            while at_work.tick < 1000:  # ten seconds
+            while at_work.tick < 1200:  # given up after 7.8 s at most, and asked for anew a second later
                 await looking.picture()
-            assert device.confirmed > 5
-            # One registration and its challenge; without confirmations it was given up, and begun anew after a second.
+            # One registration and its challenge; without confirmations there are more.
             assert (looking.begun > 2) is not confirms
-            assert at_work.channel.observers == 1
+            if confirms:
+                assert device.confirmed > 5
+                assert at_work.channel.observers == 1
 
     run_jumping(story)
 
