@@ -16,7 +16,8 @@ def doctor(
     folder: Annotated[Path, typer.Option(help="The folder where knowledge is kept.")] = Path("var"),
     json: AsJson = False,
     ticks: Annotated[
-        int, typer.Option(min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness.")
+        int,
+        typer.Option(metavar="N", min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness."),
     ] = 100,
 ) -> None:
     """Check this machine: what it offers the robot, what is missing, what to do.

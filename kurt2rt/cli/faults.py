@@ -29,7 +29,9 @@ def faults(
     ] = None,
     seeds: Annotated[
         int,
-        typer.Option(min=1, help="Try each case with so many seeds: noise, and the moment in a cycle when it fails."),
+        typer.Option(
+            metavar="N", min=1, help="Try each case with so many seeds: noise, and the moment in a cycle when it fails."
+        ),
     ] = 1,
     json: AsJson = False,
     table: Annotated[str, typer.Option(help="What must come of what, by name (config/faults) or a path.")] = "kurt2",

@@ -43,7 +43,9 @@ def replay(
         ),
     ] = None,
     runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
-    limit: Annotated[int, typer.Option(min=1, help="With --with: list so many stretches, the longest.")] = 30,
+    limit: Annotated[
+        int, typer.Option(metavar="N", min=1, help="With --with: list so many stretches, the longest.")
+    ] = 30,
     as_json: AsJson = False,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")

@@ -74,11 +74,15 @@ def run(
     ] = False,
     port: Annotated[
         int | None,
-        typer.Option(min=0, max=65535, help="UDP port of the channel; 0: any. Default: as the settings say."),
+        typer.Option(
+            metavar="PORT", min=0, max=65535, help="UDP port of the channel; 0: any. Default: as the settings say."
+        ),
     ] = None,
     page_port: Annotated[
         int | None,
-        typer.Option(min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."),
+        typer.Option(
+            metavar="PORT", min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."
+        ),
     ] = None,
     can_log: Annotated[
         Path | None,
@@ -112,9 +116,9 @@ def run(
         ),
     ] = False,
     seconds: Annotated[
-        float | None, typer.Option(min=0.1, help="End after so long; default: run until Ctrl-C.")
+        float | None, typer.Option(metavar="SECONDS", min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Decides the simulated robot's start and noise.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the simulated robot's start and noise.")] = 1,
     wire: WireName = NO_WIRE,
 ) -> None:
     """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.

@@ -34,12 +34,15 @@ def sim(
     ] = "shared:kurt2",
     world: Annotated[str, world_option("Default: a.")] = "a",
     start: Annotated[
-        int | None, typer.Option(min=1, help="Start pose of the world, 1, 2, ...; default: the seed decides.")
+        int | None,
+        typer.Option(metavar="N", min=1, help="Start pose of the world, 1, 2, ...; default: the seed decides."),
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Decides the robot's sensors, its noise and where it starts.")] = 1,
+    seed: Annotated[
+        int, typer.Option(metavar="N", min=0, help="Decides the robot's sensors, its noise and where it starts.")
+    ] = 1,
     robot: RobotName = "kurt2",
     seconds: Annotated[
-        float | None, typer.Option(min=0.1, help="Switch off after so long; default: on Ctrl-C.")
+        float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after so long; default: on Ctrl-C.")
     ] = None,
     while_stdin: Annotated[
         bool, typer.Option("--while-stdin", help="Switch off when the standard input ends, for use in scripts.")

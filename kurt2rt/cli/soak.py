@@ -28,9 +28,9 @@ _KNOWLEDGE, _RUNS = "soak.knowledge", "runs"
 
 
 def soak(
-    hours: Annotated[float, typer.Option(min=0.002, max=1000.0, help="Simulated hours.")] = 24.0,
+    hours: Annotated[float, typer.Option(metavar="HOURS", min=0.002, max=1000.0, help="Simulated hours.")] = 24.0,
     seed: Annotated[
-        int, typer.Option(min=0, help="Decides the robot, the noise, the faults, and the teacher's moods.")
+        int, typer.Option(metavar="N", min=0, help="Decides the robot, the noise, the faults, and the teacher's moods.")
     ] = 1,
     out: Annotated[
         Path,

@@ -52,7 +52,12 @@ def status(
     ] = None,
     port: Annotated[
         int | None,
-        typer.Option(min=1, max=65535, help="With --as, UDP port of the robot. Default: as noted with the pairing."),
+        typer.Option(
+            metavar="PORT",
+            min=1,
+            max=65535,
+            help="With --as, UDP port of the robot. Default: as noted with the pairing.",
+        ),
     ] = None,
 ) -> None:
     """Tell how a running robot program is: from another terminal, or another machine.

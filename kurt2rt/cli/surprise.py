@@ -26,10 +26,12 @@ def surprise(
     task: Annotated[str, task_option("Default: streets.")] = "streets",
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-9.")] = "0-9",
     learns_s: Annotated[
-        float, typer.Option("--learns", min=1.0, help="Seconds that a robot gets to know what to expect.")
+        float,
+        typer.Option("--learns", metavar="SECONDS", min=1.0, help="Seconds that a robot gets to know what to expect."),
     ] = LEARNS_S,
     different_s: Annotated[
-        float, typer.Option("--different", min=1.0, help="Seconds that it drives with each difference.")
+        float,
+        typer.Option("--different", metavar="SECONDS", min=1.0, help="Seconds that it drives with each difference."),
     ] = DIFFERENT_S,
     jobs: Jobs = ALL_PROCESSORS,
     robot_settings: RobotName = "kurt2",

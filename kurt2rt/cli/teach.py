@@ -64,11 +64,15 @@ def teach(
         str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
     ] = None,
     port: Annotated[
-        int | None, typer.Option(min=1, max=65535, help="UDP port of the robot. Default: as noted with the pairing.")
+        int | None,
+        typer.Option(
+            metavar="PORT", min=1, max=65535, help="UDP port of the robot. Default: as noted with the pairing."
+        ),
     ] = None,
     page_port: Annotated[
         int | None,
         typer.Option(
+            metavar="PORT",
             min=0,
             max=65535,
             help="TCP port of the page; 0: any. Default: as the settings say, or one of the next nine where another "
@@ -85,7 +89,7 @@ def teach(
     task: Annotated[
         str | None, task_option("Taught by the scripted teacher. Default: the task of the settings.")
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help="Decides the scripted teacher's chance.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the scripted teacher's chance.")] = 1,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default",

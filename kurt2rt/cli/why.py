@@ -40,15 +40,24 @@ def why(
         Path | None,
         typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
     ] = None,
-    at: Annotated[float | None, typer.Option(min=0.0, help="Explain the decision at this second of the run.")] = None,
-    from_s: Annotated[float, typer.Option("--from", min=0.0, help="Without --at: the run from this second.")] = 0.0,
-    to_s: Annotated[float | None, typer.Option("--to", min=0.0, help="Without --at: up to this second.")] = None,
+    at: Annotated[
+        float | None, typer.Option(metavar="SECONDS", min=0.0, help="Explain the decision at this second of the run.")
+    ] = None,
+    from_s: Annotated[
+        float, typer.Option("--from", metavar="SECONDS", min=0.0, help="Without --at: the run from this second.")
+    ] = 0.0,
+    to_s: Annotated[
+        float | None, typer.Option("--to", metavar="SECONDS", min=0.0, help="Without --at: up to this second.")
+    ] = None,
     picture: Annotated[
         Path | None, typer.Option(help="Draw it, too: a file that ends with .png, .svg or .pdf.")
     ] = None,
     runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
     limit: Annotated[
-        int, typer.Option(min=1, help="Of a run with more stretches show those in which it did not drive by itself.")
+        int,
+        typer.Option(
+            metavar="N", min=1, help="Of a run with more stretches show those in which it did not drive by itself."
+        ),
     ] = _STRETCHES,
     live: Annotated[
         bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
@@ -62,7 +71,12 @@ def why(
     ] = None,
     port: Annotated[
         int | None,
-        typer.Option(min=1, max=65535, help="With --live, UDP port of the robot. Default: as noted with the pairing."),
+        typer.Option(
+            metavar="PORT",
+            min=1,
+            max=65535,
+            help="With --live, UDP port of the robot. Default: as noted with the pairing.",
+        ),
     ] = None,
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")

@@ -14,7 +14,7 @@ from kurt2rt.text_table import print_whole
 
 def lessons(
     file: KnowledgeFile,
-    limit: Annotated[int, typer.Option(min=1, help="Show only the newest so many lessons.")] = 20,
+    limit: Annotated[int, typer.Option(metavar="N", min=1, help="Show only the newest so many lessons.")] = 20,
     of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
     as_json: AsJson = False,
 ) -> None:

@@ -16,9 +16,12 @@ from kurt2rt.text_table import print_whole
 def show(
     file: KnowledgeFile,
     limit: Annotated[
-        int | None, typer.Option(min=1, help="Show only the oldest so many RLAs; with --rla so many features.")
+        int | None,
+        typer.Option(metavar="N", min=1, help="Show only the oldest so many RLAs; with --rla so many features."),
     ] = None,
-    rla: Annotated[int | None, typer.Option(help="Show this RLA whole, with what is expected to follow it.")] = None,
+    rla: Annotated[
+        int | None, typer.Option(metavar="N", help="Show this RLA whole, with what is expected to follow it.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """List each RLA: its action, who taught it and when, instead of what, and its use.
