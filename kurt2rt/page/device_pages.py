@@ -94,6 +94,7 @@ class _DevicePage:
                 with anyio.move_on_after(_ENDING_S), contextlib.suppress(NoAnswerError):
                     await bridge.end()
                 tasks.cancel_scope.cancel()
+        bridge.dismiss()  # a browser whose request was under way meanwhile comes again, to the next link
 
     async def _until_idle(self, bridge: Bridge) -> None:
         shown_s = anyio.current_time()
