@@ -9,6 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tests.hil.machine.cache import cache_folder
 from tests.hil.machine.packages import need
 from tests.hil.machine.trouble import MachineError
 
@@ -36,8 +37,7 @@ def small_kernel(*, install: bool = False) -> Path:
 
     Raises MachineError that names missing packages or says why it cannot be built; OSError.
     """
-    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "kurt2rt"
-    cache.mkdir(parents=True, exist_ok=True)
+    cache = cache_folder()
     with (cache / "small_kernel.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)  # who comes second finds what the first has built
         kernel = _cached(cache)

@@ -20,6 +20,7 @@ from tests.hil.machine.packages import SEARCH_PATH, need, program
 from tests.hil.machine.processor import least_busy
 from tests.hil.machine.task import INSIDE, INTERPRETER, TIME_LIMIT, write_task
 from tests.hil.machine.trouble import MachineError
+from tests.hil.machine.whole_xstate import whole_xstate
 
 _INIT = Path(__file__).with_name("init.sh")
 _DEBIAN_KERNEL = "linux.uml"
@@ -53,6 +54,7 @@ class Uml:
         if found is None:
             raise MachineError(f"{order.kernel}: no such kernel, or it cannot be executed")
         self._kernel = found
+        self._preloaded = whole_xstate(install=install)
         self._order = order
 
     def __str__(self) -> str:
@@ -119,6 +121,8 @@ class Uml:
             *(f"init={control}/init", *(["vcan.echo=1"] if self._order.echo else []), *self._order.kernel_arguments),
         ]
         environment = {**os.environ, "PATH": SEARCH_PATH, "TMPDIR": str(self._memory_folder(control))}
+        if self._preloaded is not None:
+            environment["LD_PRELOAD"] = str(self._preloaded)
         resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
         with log.open("wb") as console:
             machine = subprocess.Popen(
