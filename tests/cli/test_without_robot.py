@@ -4,10 +4,13 @@ import os
 import signal
 from pathlib import Path
 
+import pytest
+
 from tests.cli.helpers import CommandLine, running
 from tests.page.test_teach_command import free_udp_port
 
 
+@pytest.mark.deep  # waits as long as the one below
 def test_why_live_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
     port = free_udp_port()
     line = kurt2rt.refused("why", "--live", "--port", str(port))

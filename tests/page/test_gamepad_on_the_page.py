@@ -76,7 +76,7 @@ def test_gamepad_drives_while_its_shoulder_button_is_held(driving: Lesson) -> No
     [
         "pad.connected = false; pads[0] = null; tellPad('gamepaddisconnected')",
         pytest.param("pads[0] = null", marks=pytest.mark.deep),
-        "window.away = true; dispatchEvent(new Event('blur'))",
+        pytest.param("window.away = true; dispatchEvent(new Event('blur'))", marks=pytest.mark.deep),
         "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
         "document.dispatchEvent(new Event('visibilitychange'))",
         pytest.param("document.querySelector('#stop').click()", marks=pytest.mark.deep),
@@ -110,6 +110,7 @@ def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> 
     assert presses(driving) == []  # it was held before
 
 
+@pytest.mark.deep
 def test_second_gamepad_that_is_held_does_not_go_on_for_the_first(driving: Lesson) -> None:
     hold(driving)
     phone = driving.phone
