@@ -11,7 +11,8 @@ import anyio
 from kurt2rt.channel.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.exam_standing import ExamStanding
 from kurt2rt.channel.ground import Ground
-from kurt2rt.channel.reception import Copies, Reception
+from kurt2rt.channel.off_tick_requests import Copies
+from kurt2rt.channel.reception import Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
 from kurt2rt.channel.requests import BOOT_BYTES, VERSION
 from kurt2rt.channel.simulation import Measure, Simulation

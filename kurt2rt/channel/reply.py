@@ -31,6 +31,11 @@ def refusal(why: str, text: str, tick: int) -> Reply:
     return Reply(Verdict.CONFLICT, {"t": tick, "why": why, "text": text})
 
 
+def restarted(tick: int) -> Reply:
+    """Refuse a request that was made for an earlier start of the robot program."""
+    return refusal("boot", "the robot program was started anew; look at the robot, then say it again", tick)
+
+
 def malformed(text: str) -> Reply:
     """Not understood."""
     return Reply(Verdict.MALFORMED, {"why": "malformed", "text": text})

@@ -13,20 +13,19 @@ from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.fitting import route_of
 from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
+from kurt2rt.experiments.lesson_runtime import build_lesson_runtime
 from kurt2rt.experiments.load import Load, Minute
 from kurt2rt.experiments.primitives import primitives
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import MID, Phase, Rla, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import Command, DeleteRla, Resume, Reward
 from kurt2rt.teaching.scripted_appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
 from kurt2rt.teaching.scripted_dispatcher import ScriptedDispatcher
 from kurt2rt.teaching.scripted_teacher import teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
-from kurt2rt.timing.clock import LockstepClock
 from kurt2rt.timing.ledger import Ledger
 
 TRAIL_STRIDE = 10
@@ -114,19 +113,7 @@ async def teach(
     """
     plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
-    clock = LockstepClock(arena.step)
-    # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
-    runtime = build_runtime(
-        arena.robot,
-        settings,
-        task,
-        events,
-        keeper,
-        clock,
-        statistics=statistics,
-        saved=saved,
-        asks_when_held=False,
-    )
+    runtime = build_lesson_runtime(arena, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"{plan.purpose}-{seed}-after-{len(events)}"
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     dispatcher = None

@@ -7,19 +7,20 @@ import sqlite3
 import stat
 from collections.abc import Mapping
 from contextlib import closing
-from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO
 
 from kurt2rt.durable import sync_file, sync_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.error import KnowledgeError, explained
+from kurt2rt.knowledge.journal_schema import (
+    APPLICATION_ID,
+    new_database,
+    require_known_version,
+    require_our_mark,
+    require_our_schema,
+)
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES, has_table
-
-APPLICATION_ID = 0x4B525432
-"""'KRT2' in SQLite's header: tells a knowledge file from every other SQLite file."""
-
-FORMAT_VERSION = 1
 
 BUSY_TIMEOUT_S = 0.2
 """How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""
@@ -29,25 +30,6 @@ _MAGIC = b"SQLite format 3\x00"
 _HEADER_BYTES = 100
 _APPLICATION_ID_AT = 68
 _LOG_VERSIONS_AT = slice(18, 20)
-
-_SCHEMA = f"""
-PRAGMA application_id = {APPLICATION_ID};
-PRAGMA user_version = {FORMAT_VERSION};
-CREATE TABLE binding (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
-CREATE TABLE lesson (
-    sequence INTEGER PRIMARY KEY,
-    command_id TEXT NOT NULL UNIQUE,
-    stamped_at TEXT NOT NULL,
-    event TEXT NOT NULL,
-    checksum INTEGER NOT NULL
-) STRICT;
-CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never deleted'); END;
-CREATE TRIGGER lesson_stands BEFORE UPDATE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never changed'); END;
-CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;
-CREATE TABLE transition (
-    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
-) STRICT, WITHOUT ROWID;
-"""
 
 _LEVEL = "level "
 _LEVEL_KEYS = ("feature_hash", "feature_names")
@@ -104,7 +86,7 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
             f"{path}: is gone, but its log {orphan.name} is still there and may hold lessons; "
             "put the file back beside it, or move the log away"
         )
-    with closing(_new_database()) as connection:
+    with closing(new_database()) as connection:
         meaning = {
             "feature_hash": binding.feature_hash,
             "feature_names": json.dumps(binding.feature_names),
@@ -163,70 +145,6 @@ def require_ours(path: Path) -> None:
         raise KnowledgeError(f"{path}: is an SQLite file of another program; {what_to_do}")
 
 
-def _require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
-    """Ask SQLite whose file it is. Raises KnowledgeError if it is no knowledge file."""
-    try:
-        (application_id,) = connection.execute("PRAGMA application_id").fetchone()
-    except sqlite3.Error as error:
-        raise explained(error, path) from error
-    if application_id != APPLICATION_ID:
-        raise KnowledgeError(f"{path}: is an SQLite file of another program; give the path of a kurt2rt knowledge file")
-
-
-def _require_known_version(version: int, path: Path) -> None:
-    if version > FORMAT_VERSION:
-        raise KnowledgeError(
-            f"{path}: has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}; update kurt2rt"
-        )
-
-
-def _require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
-    """Compare the file's schema with ours before any table is read. Raises KnowledgeError.
-
-    A view in the place of a table may have endless rows, and a foreign trigger may change what a lesson does. Tables
-    that a newer kurt2rt has added are left alone.
-    """
-    try:
-        found = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
-    except sqlite3.Error as error:
-        raise explained(error, path) from error
-    ours = _our_schema()
-    for kind, name, sql in found:
-        text = _one_line(sql)
-        if name in ours:
-            foreign = ours[name] != (kind, text)
-        elif kind == "index":
-            foreign = bool(text)  # SQLite makes the index of a key by itself, without a text
-        else:
-            foreign = kind != "table" or not text.upper().startswith("CREATE TABLE ")
-        if foreign:
-            raise KnowledgeError(
-                f"{path}: holds a {kind} {name!r} that kurt2rt did not make; "
-                "it may be damaged or meant to harm: go on with a backup copy"
-            )
-
-
-@lru_cache(maxsize=1)
-def _our_schema() -> Mapping[str, tuple[str, str]]:
-    """Kind and SQL text of each table and trigger that kurt2rt makes, by name."""
-    with closing(_new_database()) as connection:
-        rows = connection.execute("SELECT type, name, sql FROM sqlite_schema WHERE sql IS NOT NULL").fetchall()
-    return {name: (kind, _one_line(sql)) for kind, name, sql in rows}
-
-
-def _one_line(sql: str | None) -> str:
-    return " ".join((sql or "").split())
-
-
-def _new_database() -> sqlite3.Connection:
-    """Make an empty knowledge file in memory."""
-    connection = sqlite3.connect(":memory:", isolation_level=None)
-    connection.executescript(_SCHEMA)
-    for statement in LATER_TABLES.values():
-        connection.execute(statement)
-    return connection
-
-
 def without_log(image: bytes) -> bytes:
     """The same database, marked as one that has no write-ahead log beside it (SQLite's file format, offset 18)."""
     header = bytearray(image[:_HEADER_BYTES])
@@ -260,9 +178,9 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
             connection.close()
         raise explained(error, path) from error
     try:
-        _require_our_mark(connection, path)
-        _require_known_version(version, path)
-        _require_our_schema(connection, path)
+        require_our_mark(connection, path)
+        require_known_version(version, path)
+        require_our_schema(connection, path)
     except BaseException:
         connection.close()
         raise

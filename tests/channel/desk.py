@@ -10,7 +10,8 @@ from kurt2rt.channel.channel import Channel, describe
 from kurt2rt.channel.endpoint import Endpoint
 from kurt2rt.channel.exam_standing import NO_EXAM
 from kurt2rt.channel.ground import Ground
-from kurt2rt.channel.reception import LONGEST_WAIT_S, Copies, Reception, Sender
+from kurt2rt.channel.off_tick_requests import Copies
+from kurt2rt.channel.reception import LONGEST_WAIT_S, Reception, Sender
 from kurt2rt.channel.reply import Reply
 from kurt2rt.channel.requests import (
     AnswerRequest,
@@ -61,7 +62,7 @@ class WideRobot(CorridorRobot):
 
 
 class Shelf:
-    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.reception.Copies)."""
+    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.off_tick_requests.Copies)."""
 
     def __init__(self) -> None:
         self.labels: list[str | None] = []

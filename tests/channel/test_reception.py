@@ -540,7 +540,7 @@ async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
 
 
 async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kurt2rt.channel.reception.LAST_ANSWER_S", 0.0)
+    monkeypatch.setattr("kurt2rt.channel.off_tick_requests.LAST_ANSWER_S", 0.0)
     desk = Desk(ground=Yard())
     ended: list[bool] = []
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
@@ -590,7 +590,7 @@ async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> No
 
 
 async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kurt2rt.channel.reception.LAST_ANSWER_S", 0.0)
+    monkeypatch.setattr("kurt2rt.channel.off_tick_requests.LAST_ANSWER_S", 0.0)
     desk, content, upload = Desk(ground=Yard()), b"PK" + bytes(1000), b"12345678"
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
     parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]

@@ -10,17 +10,16 @@ from kurt2rt.experiments.courses.errands import Errands, ErrandsSettings
 from kurt2rt.experiments.courses.town import Street
 from kurt2rt.experiments.errands.guide import Guide
 from kurt2rt.experiments.errands.outcome import Place
+from kurt2rt.experiments.lesson_runtime import build_lesson_runtime
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.experiments.refusals import require_carried_out
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import MID, Phase, TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.teaching.commands import Correct
 from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import LessonKeeper, TickRecord
-from kurt2rt.timing.clock import LockstepClock
 
 TRAIL_STRIDE = 20
 """Ticks between two points of a trail."""
@@ -85,19 +84,7 @@ async def lead_about(
     """
     period_s = settings.can.cycle_s
     walk = walk_in(arena.plan, task)
-    clock = LockstepClock(arena.step)
-    # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
-    runtime = build_runtime(
-        arena.robot,
-        settings,
-        task,
-        events,
-        keeper,
-        clock,
-        statistics=statistics,
-        saved=saved,
-        asks_when_held=False,
-    )
+    runtime = build_lesson_runtime(arena, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"errands-{seed}-after-{len(events)}"
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)

@@ -1,0 +1,41 @@
+"""Runtime of a simulated robot that a scripted teacher teaches, in lockstep with its world."""
+
+from collections.abc import Sequence
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.experiments.arena import Arena
+from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.rla import TeachingEvent
+from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tick import LessonKeeper
+from kurt2rt.timing.clock import LockstepClock
+
+
+def build_lesson_runtime(
+    arena: Arena,
+    settings: RobotSettings,
+    task: TaskSettings,
+    keeper: LessonKeeper,
+    events: Sequence[TeachingEvent],
+    *,
+    statistics: StatisticsCounter | None = None,
+    saved: Statistics | None = None,
+) -> Runtime:
+    """Build the runtime for a lesson; `events`, `statistics` and `saved` are those of `build_runtime`.
+
+    Raises as `build_runtime` does.
+    """
+    # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
+    return build_runtime(
+        arena.robot,
+        settings,
+        task,
+        events,
+        keeper,
+        LockstepClock(arena.step),
+        statistics=statistics,
+        saved=saved,
+        asks_when_held=False,
+    )
