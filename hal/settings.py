@@ -86,12 +86,20 @@ _MOST_VALUES = 100_000
 """Most values that a file with aliases may stand for: nine levels of nine aliases each are a billion."""
 
 
+_CHARACTERS_AS_ONE_VALUE = 100
+
+
 def _values_in(content: Any, known: dict[int, int]) -> int:
-    """Count the values that `content` stands for, each shared part once for each place; `known`: counts by id."""
+    """Count the values that `content` stands for, each shared part once for each place; `known`: counts by id.
+
+    A long text counts as many values: repeated, it fills the memory just as well.
+    """
+    if isinstance(content, str):
+        return 1 + len(content) // _CHARACTERS_AS_ONE_VALUE
     if not isinstance(content, dict | list):
         return 1
     if id(content) not in known:
-        within = content.values() if isinstance(content, dict) else content
+        within = (*content, *content.values()) if isinstance(content, dict) else content
         known[id(content)] = 1 + sum(_values_in(each, known) for each in within)
     return known[id(content)]
 

@@ -514,6 +514,13 @@ def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> N
     assert "its aliases repeat values more than 100000 times; write the values out" in refusal(bomb, RobotSettings)
 
 
+@pytest.mark.parametrize("long", ["x" * 10_000, "{" + "k" * 1000 + ": 1}"], ids=["text", "key"])
+def test_a_long_text_that_aliases_repeat_is_refused_before_it_is_expanded(tmp_path: Path, long: str) -> None:
+    bomb = tmp_path / "bomb.yaml"
+    bomb.write_text(f"a0: &a0 {long}\na1: &a1 [{'*a0,' * 100}]\na2: [{'*a1,' * 100}]\n", encoding="utf-8")
+    assert "its aliases repeat values more than 100000 times" in refusal(bomb, RobotSettings)
+
+
 def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
     path = tmp_path / "my_repertoire.yaml"
     whole = yaml.safe_dump({"name": "x", "actions": [action := {"kind": "motor"}, action]})
