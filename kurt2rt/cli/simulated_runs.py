@@ -2,6 +2,7 @@
 
 import re
 import secrets
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,13 +13,21 @@ from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
+from kurt2rt.critic.settings import load_critic
 from kurt2rt.exchange.given import import_knowledge
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.knowledge.opening import go_on_teaching
+from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.rla import Phase
+from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
+from kurt2rt.layers.mid_level import MidLevel
+from kurt2rt.layers.wanted import Wanted
+from kurt2rt.mid.settings import load_mid
+from kurt2rt.perception.definition import load_situation
+from kurt2rt.repertoire.of_task import repertoire_of
+from kurt2rt.rla.rla import Phase, TeachingEvent
+from kurt2rt.runtime import empty_system
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import BeginSession, Command, SetPhase, Take
 from simbridge.world_settings import load_world
@@ -132,15 +141,14 @@ class SimulatedRuns:
                 else:
                     brought.rename(loaded)
                 # Opened as the next run opens it: damage, another task's lessons.
-                opened = go_on_teaching(loaded, self._robot, present.task)
-            except KnowledgeError as error:
+                lessons = self._look_at_knowledge(loaded, present.task)
+            except (KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
                 text = str(error)
                 for path in (brought.resolve(), loaded.resolve(), brought, loaded):
                     text = text.replace(str(path), "the uploaded file")
                 raise KnowledgeError(text) from error
-            opened.journal.close()
             loaded.rename(kept)
-        return replace(present, fresh=True, loaded=kept, teacher=teacher), len(opened.entries)
+        return replace(present, fresh=True, loaded=kept, teacher=teacher), lessons
 
     def _prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> SimulatedRun:
         present = self.present
@@ -154,11 +162,36 @@ class SimulatedRuns:
             if fresh:
                 journal_file.lock_for_writing(knowledge).close()
             else:
-                go_on_teaching(knowledge, self._robot, settings).journal.close()
+                self._look_at_knowledge(knowledge, settings)
+        if knowledge == present.knowledge and name != present.task_name and not fresh:
+            # This very program writes it, for the present task.
+            _require_able(read_lessons(knowledge, self._robot, settings, beside_its_writer=True), self._robot, settings)
         return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
+
+    def _look_at_knowledge(self, path: Path, task: TaskSettings) -> int:
+        """Open it as the next run does; how many lessons it holds.
+
+        Raises KnowledgeError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
+        """
+        opened = go_on_teaching(path, self._robot, task)
+        opened.journal.close()
+        _require_able(opened.events, self._robot, task)
+        return len(opened.entries)
 
     def _look(self) -> SimulationView:
         names = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
         tasks = tuple(TaskName(name, load_task(name).sentence) for name in names)
         worlds = tuple(sorted(path.stem for path in (CONFIG_DIR / "worlds").glob("*.yaml")))
         return SimulationView(self.present.world, self.present.task_name, worlds, tasks)
+
+
+def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: TaskSettings) -> None:
+    """Raises UnknownActionError or UnknownBehaviourError, as the next run would, and that one ends the program."""
+    mid = None if task.mid is None else load_mid(task.mid)
+    definition = load_situation(task.situation, robot.infrared.names)
+    system = empty_system(task, definition, load_critic(task.critic), mid)
+    system.apply_all(events)
+    wanted = Wanted(task.behaviours)
+    BasicLevel(system, repertoire_of(task, robot), 1, wanted)
+    if mid is not None:
+        MidLevel(system, mid.build(robot), mid, wanted)

@@ -164,6 +164,45 @@ async def test_knowledge_of_another_task_is_not_loaded(tmp_path: Path) -> None:
         await runs_in(tmp_path).load(other.read_bytes(), TEACHER)
 
 
+def unable(path: Path) -> Path:
+    """Make a knowledge file that fits, with an action that no repertoire here has."""
+    with open_knowledge(path, ROBOT, TASK) as journal:
+        rla = replace(created(1, action="fly").rla, condition=(100.0,) * len(journal.binding.feature_names))
+        journal.append([JournalEntry(replace(created(1), rla=rla), "2026-11-22T10:00:00.000+00:00")])
+    return path
+
+
+async def test_knowledge_that_cannot_act_here_is_not_loaded(tmp_path: Path) -> None:
+    content = unable(tmp_path / "given.knowledge").read_bytes()
+    runs = runs_in(tmp_path)
+    with pytest.raises(ValueError, match="RLA 1 has the action fly, which the repertoire lacks"):
+        await runs.load(content, TEACHER)
+    assert runs.next is None
+    assert not [name for name in names_in(tmp_path) if name.startswith(".")]
+
+
+async def test_a_task_whose_knowledge_cannot_act_here_is_refused(tmp_path: Path) -> None:
+    runs = runs_in(tmp_path)
+    await runs.prepare(None, "eight", False, TEACHER)
+    runs.advance()
+    unable(tmp_path / "walls.knowledge")
+    with pytest.raises(ValueError, match="RLA 1 has the action fly, which the repertoire lacks"):
+        await runs.prepare(None, "wall_following", False, TEACHER)
+    assert runs.next is None
+
+
+async def test_the_present_knowledge_under_another_tasks_name_is_not_opened_for_that_task(tmp_path: Path) -> None:
+    first = SimulatedRun("a", TASK, "wall_following", tmp_path / "eight.knowledge")
+    runs = SimulatedRuns(ROBOT, first, taught_by_script=False)
+    with open_knowledge(first.knowledge, ROBOT, TASK):
+        with pytest.raises(ValueError, match="taught for the task 'wall_following'"):
+            await runs.prepare(None, "eight", False, TEACHER)
+        assert runs.next is None
+        assert "task eight" in await runs.prepare(None, "eight", True, TEACHER)  # set aside, then
+    runs.advance()
+    assert (tmp_path / "eight.knowledge.1").exists()
+
+
 @asynccontextmanager
 async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClient]:
     port = int(robot.wait_for("UDP port").split()[-1])
