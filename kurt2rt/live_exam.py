@@ -88,7 +88,7 @@ class LiveExam:
             process.stdin.close()
             process.stdout.close()
             knowledge.unlink(missing_ok=True)
-        # At once with its picture: nobody asks again once the exam is over.
+        # At once with its picture: pages do not ask again once the exam is over.
         if verdict is None:
             trouble = f"the exam ended without a verdict (code {code}); examine again"
             self.standing = replace(self.standing, running=False, trouble=trouble)

@@ -31,12 +31,12 @@ class LiveMeasure:
 
     @property
     def progress(self) -> float:
-        """How far the robot came since its run began, in `unit`."""
+        """Progress of the robot since its run began, in `unit`."""
         return self._course.progress
 
     @property
     def unit(self) -> str:
-        """What progress is counted in: laps, rounds, eights, m."""
+        """Unit of `progress`: laps, rounds, eights, m."""
         return self._course.unit
 
     def follow(self, record: TickRecord) -> None:

@@ -77,7 +77,7 @@ class Openness:
     measure: LiveMeasure | None = None
     """The same: how far the robot came with its task."""
     begin_with: tuple[Command, ...] = ()
-    """What the first tick takes: who teaches on after the run before."""
+    """Commands of the first tick: they let the teacher of the run before teach on."""
 
 
 async def serve(

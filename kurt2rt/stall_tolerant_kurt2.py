@@ -15,7 +15,7 @@ class StallTolerantKurt2(Kurt2):
     """
 
     _stopped_because = ""
-    """What `emergency_stop` was told last; empty since the last release."""
+    """Reason given to `emergency_stop` last; empty since the last release."""
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
         """Ask for wheel speeds; the tick that ends a stall stands, and its latch is not kept."""

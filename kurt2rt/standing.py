@@ -49,7 +49,7 @@ class StandReason(StrEnum):
     ENCODERS_SILENT = "encoders silent"
     BUMPERS_SILENT = "bumpers silent"
     NOT_A_NUMBER = "not a number"
-    """What was decided is no speed."""
+    """The decided speed is not a number."""
 
 
 class Standing(NamedTuple):
@@ -63,7 +63,7 @@ class Standing(NamedTuple):
     stall_s: float | None = None
     """For how long no tick ran before the second guard braked, where that is the reason; None else."""
     says: str = ""
-    """What the reason alone does not tell: who stopped it and how, what came of the goal, what the disk says."""
+    """Details that the reason lacks: actor and kind of a stop, the goal's outcome, the disk's error."""
 
 
 DRIVES = Standing()

@@ -169,7 +169,7 @@ def _flattened(parts: Iterable[RenderableType]) -> Iterator[TextTable | Text]:
 
 
 def _named(name: str, cell: Text, indent: int, width: int) -> Iterator[Text]:
-    """Yield the lines of one cell of a block, below each other where the value has no room beside its name."""
+    """Yield the lines of one cell of a block, below each other if the value has no room next to its name."""
     room = width - indent
     beside = cell_len(name) <= indent and _longest_word(cell) <= room
     if not beside:

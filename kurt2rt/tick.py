@@ -212,8 +212,8 @@ class Tick:
                 self._circumstances.be_surprised()
         self._statistics.count(decision.rla_id if turning else None)
         self._mid_uses.count(decision, driving=turning)
-        # A robot that stands blames nobody, also where it is the guard that has it stand; but for a bumper, which stops
-        # it for what an RLA wants.
+        # A robot that stands blames no RLA, also if the guard has it stand; but for a bumper, which stops it for what
+        # an RLA wants.
         answered = decision if self._driving else decision._replace(action=None, answers=False)
         self._school.recent.remember(
             tick,

@@ -43,7 +43,7 @@ class RealtimeSimulation:
         self._asked.append(job)
 
     def hold(self) -> None:
-        """Let the thread step no more; whoever holds the simulation steps it, until `go_on`."""
+        """Let the thread step no more; the holder of the simulation steps it, until `go_on`."""
         with self._stepping:
             self._held = True
 

@@ -115,7 +115,7 @@ def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor)
     corridor.run(100, set_phase(Phase.AUTONOMOUS))
     corridor.run(100)
     moved = averages(corridor.run(115))
-    assert averages(corridor.run(115)) != moved  # nobody is waited for
+    assert averages(corridor.run(115)) != moved  # no teacher is waited for
 
 
 def test_what_pushes_may_be_blamed_for_it(corridor: Corridor) -> None:

@@ -50,7 +50,7 @@ class Surroundings:
     health: Callable[[], HealthReport | None] = lambda: None
     """The newest report; None before the first."""
     exam: Callable[[], ExamStanding] | None = None
-    """How the exam stands; None where the robot is not examined."""
+    """Status of the exam; None if the robot is not examined."""
     simulation: Simulation | None = None
     """None where the simulator is not in this program."""
     speed: Speed | None = None

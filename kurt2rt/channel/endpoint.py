@@ -180,7 +180,7 @@ async def open_endpoint(
 ) -> Endpoint:
     """Listen on an address of this machine, "::" for all; port 0 takes a free one.
 
-    `hears`: whether somebody (a request's `remote`) is there for certain, though he confirmed nothing. `key_of`: the
+    `hears`: whether a sender (a request's `remote`) is there for certain, though it confirmed nothing. `key_of`: the
     security context that an OSCORE request names, or None.
     Raises ChannelError when the address is none of ours, or another program has the port.
     """

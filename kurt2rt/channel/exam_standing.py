@@ -1,4 +1,4 @@
-"""How the exam of a simulated robot stands, as it is told to its teachers."""
+"""Status of the exam of a simulated robot, as sent to its teachers."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ class WorldVerdict:
     world: str
     passed: bool
     text: str
-    """Progress beside that of the teacher's own policy, collisions, an early end."""
+    """Progress next to that of the teacher's own policy, collisions, an early end."""
     judged: bool = True
     """False: the teacher's own policy gets nowhere in this world, and `passed` says nothing."""
 
@@ -28,7 +28,7 @@ class ExamStanding:
     share: float
     """Of the robot time that is over, 0 to 1."""
     text: str
-    """What is being driven, or the verdict in a sentence; empty before the first exam."""
+    """The present drive, or the verdict in a sentence; empty before the first exam."""
     verdicts: tuple[WorldVerdict, ...] = ()
     """One per world; empty until the exam is over."""
     picture: str = ""

@@ -35,7 +35,7 @@ _Sender = tuple[str, int, int]
 
 @dataclass(slots=True)
 class Counters:
-    """What came in since the endpoint was opened; the last four are among those received."""
+    """Datagrams counted since the endpoint was opened; the last four counters are part of those received."""
 
     received: int = 0
     dropped_by_bucket: int = 0

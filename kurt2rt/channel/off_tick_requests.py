@@ -296,7 +296,7 @@ class OffTickRequests:
             if isinstance(request, MoveWallRequest):
                 self._ground.move_wall(request.name, request.dx_m, request.dy_m)
                 return done(self._tick(), f"{request.name} moved")
-            # Whoever stopped it looks at it where it stands.
+            # The teacher who stopped it looks at it where it stands.
             stopped = self._runtime.school.stopped_since(request.seen)
             if stopped is not None:
                 return refusal("refused", stopped, self._tick())

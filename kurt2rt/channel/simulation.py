@@ -21,7 +21,7 @@ class TaskName:
 
 @dataclass(frozen=True, slots=True)
 class SimulationView:
-    """What is simulated, and what else could be."""
+    """The simulated world and task, and those to choose from."""
 
     world: str
     """As it was chosen: `a`, `rooms-7`, a path."""
@@ -34,9 +34,9 @@ class SimulationView:
     reached: float = 1.0
     """The same as measured over the last second."""
     progress: float = 0.0
-    """How far the robot came with its task since the run began."""
+    """Progress of the robot with its task since the run began, in `unit`."""
     unit: str = ""
-    """What progress is counted in: laps, rounds, eights, m; empty where it is not measured."""
+    """Unit of `progress`: laps, rounds, eights, m; empty if progress is not measured."""
 
 
 SIMULATION = Form[SimulationView](
@@ -56,7 +56,7 @@ SIMULATION = Form[SimulationView](
 
 
 class TeacherNow(NamedTuple):
-    """Who teaches, and how; the next run begins with it."""
+    """The present teacher with phase and session; the next run begins with them."""
 
     device: str
     phase: int
@@ -64,7 +64,7 @@ class TeacherNow(NamedTuple):
 
 
 class Measure(Protocol):
-    """How far a simulated robot came with its task."""
+    """Measurement of a simulated robot's progress with its task."""
 
     @property
     def progress(self) -> float:
@@ -73,7 +73,7 @@ class Measure(Protocol):
 
     @property
     def unit(self) -> str:
-        """What progress is counted in."""
+        """Unit of `progress`."""
         ...
 
 
@@ -81,7 +81,7 @@ class Simulation(Protocol):
     """The runs of a robot that is simulated in its own program. Each has one world, one task, one knowledge file."""
 
     async def view(self) -> SimulationView:
-        """What is simulated."""
+        """Return the simulated world and task, and those to choose from."""
         ...
 
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:

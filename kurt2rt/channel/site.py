@@ -172,7 +172,7 @@ class RobotSite:
             response = await self._respond(request, sender)
             pipe.add_response(_protected(keys, response, request_id), is_last=True)
         except oscore.ContextUnavailable:
-            # Revoked or renewed meanwhile: silence, as to any key that nobody has. A disk that fails is a failure.
+            # Revoked or renewed meanwhile: silence, as to any key that no device has. A disk that fails is a failure.
             if not keys.closed:
                 raise
 

@@ -157,9 +157,9 @@ class State:
     plan_says: str = ""
     """How far the plan is, or why there is none, in a line; empty without a goal."""
     nearest_value: float | None = None
-    """What the nearest RLA was worth when its action was withdrawn; None where it has its action."""
+    """Value of the nearest RLA when its action was withdrawn; None if it has its action."""
     progress: Progress = NO_PROGRESS
-    """How much the robot drove by itself, and asked, in the last minute."""
+    """Share driven by the robot itself, and its questions, in the last minute."""
     standing: Standing | None = None
     """None from a robot that is too old to tell."""
 

@@ -77,7 +77,7 @@ class Companions:
         return ", ".join(each.trouble for each in self._companions if each.trouble)
 
     def start(self, name: str, *words: str, lasts: bool, hear: Callable[[str], None] | None = None) -> None:
-        """Start `kurt2rt WORDS`. `lasts`: it has no end of its own, so it is started anew when it ended.
+        """Start `kurt2rt WORDS`. `lasts`: it has no end of its own, so it is started again when it ended.
 
         `hear` takes each line that it prints, from a thread; such a line is told unless that is given.
         """

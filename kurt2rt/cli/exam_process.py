@@ -83,7 +83,7 @@ def _tell(standing: ExamStanding) -> None:
 
 
 def _end_with_input() -> None:
-    # The robot's program is gone: nobody reads the verdict.
+    # The robot's program is gone: no process reads the verdict.
     while os.read(0, 1024):
         continue
     os._exit(0)

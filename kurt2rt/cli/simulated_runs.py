@@ -40,7 +40,7 @@ _ZIP = b"PK"
 
 @dataclass(frozen=True, slots=True)
 class SimulatedRun:
-    """What one run is made of."""
+    """World, task, knowledge and teacher of one run."""
 
     world: str
     task: TaskSettings
@@ -52,11 +52,11 @@ class SimulatedRun:
     loaded: Path | None = None
     """Knowledge file that comes to `knowledge` then."""
     teacher: TeacherNow | None = None
-    """Who taught in the run before, and teaches on; None in the first run."""
+    """Teacher of the run before, who teaches on; None in the first run."""
 
     @property
     def begin_with(self) -> tuple[Command, ...]:
-        """What the first tick takes, so that the teacher need not take the robot again."""
+        """Commands of the first tick, so that the teacher need not take the robot again."""
         if self.teacher is None:
             return ()
         device, phase, session = self.teacher
@@ -81,7 +81,7 @@ class SimulatedRuns:
         self.next: SimulatedRun | None = None
 
     async def view(self) -> SimulationView:
-        """What is simulated, and what else could be."""
+        """Return the simulated world and task, and those to choose from."""
         if self._view is None:
             self._view = await anyio.to_thread.run_sync(self._look)
         return self._view

@@ -21,7 +21,7 @@ from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.teaching.client import TeacherClient
 
 FURTHER_PORTS = 9
-"""How many ports above that of the settings are tried where another page has it."""
+"""Number of ports above that of the settings to try if another page has it."""
 ROBOT_HERE = "127.0.0.1"
 
 

@@ -29,7 +29,7 @@ class Tip:
     """What it read, as the sensors' law has it."""
     needed_m: float
     reads: str
-    """What it read, in words."""
+    """The sensor's reading in words."""
     needs: str
     """The needed reading, in words."""
     rla: RlaStory | None

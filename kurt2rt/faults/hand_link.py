@@ -97,7 +97,7 @@ class HandLink:
 
 
 class _NoCopies:
-    """Nobody asks for a copy here (kurt2rt.channel.off_tick_requests.Copies)."""
+    """No request asks for a copy here (kurt2rt.channel.off_tick_requests.Copies)."""
 
     def save(self, label: str) -> Awaitable[SavedCopy]:
         """Never asked."""

@@ -35,7 +35,7 @@ class StatusSocket:
     """Tells every reader each report. One that does not read is left."""
 
     def __init__(self, watch: HealthWatch, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
-        """`path`: of the socket; whoever may write it may read the status, and the links of `pages` with it."""
+        """`path`: of the socket; users who may write it may read the status, and the links of `pages` with it."""
         self._pages = pages
         self._watch = watch
         self._path = path

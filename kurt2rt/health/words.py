@@ -100,7 +100,7 @@ _NAMES = {
     "machine": "this machine",
     "program": "the program",
 }
-"""What is wrong, in one or two words, by the subject of a trouble."""
+"""Fault in one or two words, by the subject of a trouble."""
 
 
 def name_of(trouble: Trouble) -> str:

@@ -40,7 +40,7 @@ class Safe:
     def __init__(
         self, knowledge: Path, writer: JournalWriter, package: Package, examine: Examine | None = None
     ) -> None:
-        """Copies go to the folders `saved` and `exported` beside the knowledge file, exams to `exams`.
+        """Copies go to the folders `saved` and `exported` next to the knowledge file, exams to `exams`.
 
         `examine`: None: this robot is not examined.
         """

@@ -39,7 +39,7 @@ class Access:
 
     @classmethod
     def without_device(cls, names: Collection[str]) -> Self:
-        """Return rules that let nobody in; `names` as for a device."""
+        """Return rules that refuse all visitors; `names` as for a device."""
         return cls("", secrets.token_urlsafe(), names, shown_by="kurt2rt run --phone")
 
     def opens(self, token: str) -> bool:

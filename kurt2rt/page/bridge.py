@@ -90,7 +90,7 @@ class Bridge:
 
     @property
     def visitors(self) -> int:
-        """How many pages are open."""
+        """Number of open pages."""
         return len(self._visitors)
 
     def dismiss(self) -> None:

@@ -130,7 +130,7 @@ class DevicePages:
         self._names = names
         self._idle_s = idle_s
         self._pages: Mapping[str, _DevicePage] = {}
-        # Opened by nobody's token: it tells strangers, also those who try tokens, what they are told anywhere.
+        # Opened by no token: it tells strangers, also those who try tokens, what they are told anywhere.
         self._refusal = Door(_nothing, Access.without_device(names))
 
     def serve(self, devices: Collection[Device]) -> None:

@@ -171,7 +171,7 @@ class RobotLink(Protocol):
         ...
 
     async def exam(self) -> ExamStanding | None:
-        """How the exam stands; None where the robot is not simulated in its own program."""
+        """Return the exam's status; None if the robot is not simulated in its own program."""
         ...
 
     def file_parts(self, name: str) -> AsyncIterator[FilePart]:
@@ -191,7 +191,7 @@ class RobotLink(Protocol):
         ...
 
     async def simulation(self) -> SimulationView | None:
-        """What is simulated; None where the robot is not simulated in its own program."""
+        """Return the simulated world and task; None if the robot is not simulated in its own program."""
         ...
 
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:

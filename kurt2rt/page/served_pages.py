@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 @dataclass(frozen=True, slots=True)
 class PageAddress:
-    """Where a device opens its page."""
+    """Address at which a device opens its page."""
 
     device: str
     link: str
@@ -15,14 +15,14 @@ class PageAddress:
 
 @dataclass(frozen=True, slots=True)
 class ServedPages:
-    """What is served now."""
+    """Pages served at present."""
 
     addresses: tuple[PageAddress, ...]
     """This machine's own first, then the others, the one that was paired last before them."""
     network: bool
     """Whether the port is open to the network."""
     trouble: str
-    """What is wrong with pairings or port, in a line; empty while nothing is."""
+    """Fault of pairings or port, in a line; empty without a fault."""
 
 
 NO_PAGES = ServedPages((), network=False, trouble="")

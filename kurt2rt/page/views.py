@@ -152,12 +152,12 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
 
 
 def exam_view(standing: ExamStanding) -> dict[str, Any]:
-    """How the exam stands."""
+    """Return the exam's status for the page."""
     return {"kind": "exam", **EXAM.plain_of(standing)}
 
 
 def simulation_view(simulation: SimulationView) -> dict[str, Any]:
-    """What is simulated, and what else could be."""
+    """Return the simulated world and task, and those to choose from, for the page."""
     return {"kind": "simulation", **SIMULATION.plain_of(simulation)}
 
 

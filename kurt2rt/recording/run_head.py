@@ -13,7 +13,7 @@ RUN_VERSION = 2
 """
 
 _BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False}
-"""What later versions tell of a run, as it was before they did."""
+"""Fields added by later versions, with the values that hold for older recordings."""
 
 RUN_METADATA = "run"
 """Name of the metadata record that holds the head, in each segment."""

@@ -79,7 +79,7 @@ class School:
         """
         self._level = level
         self.asked = asked
-        """Whether somebody is there who could be asked."""
+        """Whether there is a teacher to ask."""
         self.wanted = level.wanted
         self.authority = authority
         self.critic = critic

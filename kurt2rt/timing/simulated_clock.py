@@ -26,7 +26,7 @@ class HeldWorld(Protocol):
 
 
 class Speed(Protocol):
-    """How fast robot time passes."""
+    """Ratio of robot time to real time, chosen and measured."""
 
     @property
     def wanted(self) -> int:
@@ -60,7 +60,7 @@ class SimulatedClock:
         self._now_s = 0.0
         """Robot time at any other speed."""
         self._due_s = 0.0
-        """When the newest tick was due, by the real clock."""
+        """Due time of the newest tick, by the real clock."""
         self._measured_from_s = real.now_s(), real.now_s()
         """Real time and robot time at the beginning of the second that is being measured."""
         self._reached = 1.0

@@ -257,7 +257,7 @@ class Device:
     def _hear(self, message: Message) -> None:
         asked = self._waiting.get(message.token)
         if message.kind == CON:
-            # What nobody waits for any more is refused, so that the robot does not send it again.
+            # What no call waits for any more is refused, so that the robot does not send it again.
             self._put(bytes((0x40 | (ACK if asked else RST) << 4, 0)) + message.number.to_bytes(2, "big"))
             self.confirmed += asked is not None
         if asked is None or OSCORE not in message.options:
@@ -275,7 +275,7 @@ class Device:
 
 
 class Looking:
-    """An observation of /state; begun anew where the pictures cease."""
+    """An observation of /state; begun again when the pictures cease."""
 
     def __init__(self, device: Device) -> None:
         self._device = device

@@ -18,7 +18,7 @@ _UNKNOWN = "aabbcc"
 
 
 def forged(chance: random.Random, kid: bytes) -> bytes:
-    """Protected by a key that nobody has."""
+    """Protected by a key that no device has."""
     option = b"\x0b" + chance.randbytes(3) + kid
     return bytes((0x58, 0x02, 0, 0)) + bytes(8) + bytes((0x90 | len(option),)) + option + b"\xff" + chance.randbytes(30)
 

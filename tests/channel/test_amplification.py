@@ -28,7 +28,7 @@ def discovery(kind: Any, token: bytes, number: int, **block: Any) -> bytes:
 
 
 async def answered(at_work: RobotAtWork, datagrams: list[bytes]) -> list[int]:
-    """Bytes that came back for each, which nobody confirmed."""
+    """Bytes that came back for each, which the address did not confirm."""
     gate: Any = at_work.channel.endpoint._gate
     gate._strangers = _AllMayPass()
     senders = []

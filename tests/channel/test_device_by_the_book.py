@@ -91,7 +91,7 @@ def test_who_only_looks_goes_on_as_long_as_it_confirms(
     async def story() -> None:
         async with the_robot_and_its_device(tmp_path) as (at_work, device):
             looking = await device.look()
-            while at_work.tick < 1200:  # given up after 7.8 s at most, and asked for anew a second later
+            while at_work.tick < 1200:  # given up after 7.8 s at most, and asked for again a second later
                 await looking.picture()
             # One registration and its challenge; without confirmations there are more.
             assert (looking.begun > 2) is not confirms

@@ -1,4 +1,4 @@
-"""A key folder that is put back from a backup uses no number twice, and lets nobody replay."""
+"""A key folder that is put back from a backup uses no number twice, and lets no message be replayed."""
 
 import json
 import random

@@ -1,4 +1,4 @@
-"""Junk over the page's port leaves no traceback and keeps nobody out: half handshakes, binary and broken frames."""
+"""Junk over the page's port leaves no traceback and keeps no teacher out: half handshakes, binary and broken frames."""
 
 import asyncio
 import base64

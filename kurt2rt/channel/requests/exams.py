@@ -15,6 +15,6 @@ class ExamRequest(CommandRequest):
 
 @dataclass(frozen=True, slots=True)
 class ExamStandingRequest(Request):
-    """How the exam stands."""
+    """Query of the exam's status."""
 
     path: ClassVar[str] = "/exam/standing"

@@ -52,4 +52,4 @@ class FileRequest(Request):
     path: ClassVar[str] = "/file"
     name: Annotated[str, Text(LONGEST_FILE_NAME, least=1)]
     offset: Number
-    """Where the part begins, in bytes."""
+    """Position of the part's first byte in the file."""

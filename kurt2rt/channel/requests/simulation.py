@@ -11,7 +11,7 @@ from kurt2rt.timing.simulated_clock import FASTEST
 
 @dataclass(frozen=True, slots=True)
 class SimulationRequest(Request):
-    """What is simulated, and what else could be."""
+    """Query of the simulated world and task, and of those to choose from."""
 
     path: ClassVar[str] = "/simulation"
 

@@ -20,7 +20,7 @@ class UploadRequest(Request):
     upload: UploadId
     """Random, the same for all parts of one file."""
     offset: Number
-    """Where the part begins, in bytes; 0 begins the file."""
+    """Position of the part's first byte in the file; 0 begins the file."""
     part: Annotated[bytes, OctetsUpTo(UPLOAD_PART_BYTES)]
 
 

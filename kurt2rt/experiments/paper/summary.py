@@ -51,7 +51,7 @@ class WorldSummary:
     teacher_failed: int
     """Of his drives, how many collided, got stuck or were stopped by the guard for good."""
     teacher_got_nowhere: int
-    """How many made too little progress to measure another drive by."""
+    """Number of the teacher's drives with too little progress to measure another drive by."""
     share_unknown: float
     """Median."""
     junctions: int

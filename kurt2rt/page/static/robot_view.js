@@ -47,7 +47,7 @@ export function drawRobot(canvas, hello, state) {
   });
 }
 
-// What a marked sensor reads, beside where it sees it.
+// Paints the reading of a marked sensor next to the point that it sees.
 function label(paint, x, y, text) {
   paint.font = "700 13px system-ui, sans-serif";
   paint.textAlign = "center";

@@ -15,7 +15,7 @@ export function farthest({ law }) {
 }
 
 // The features of a question whose texts tell a difference: [name, here, there, place, its text here, and there].
-// The nearest or farthest of some sensors says nothing new beside the sensor that it is.
+// The nearest or farthest of some sensors says nothing new next to the sensor that it is.
 function told(question) {
   const ofSome = ([name]) => /^(maximum|minimum) /.test(name);
   const again = (line) => ofSome(line) && question.some((other) => !ofSome(other) && other[4] === line[4]);

@@ -7,7 +7,7 @@ import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const VALUES_FROM_PHASE = 3;
-const CALM_MS = 500; // readings flicker by a centimetre with every picture; nobody can read that
+const CALM_MS = 500; // readings flicker by a centimetre with every picture; no person can read that
 const GAUGE_SHARE = 0.7; // where R stands on the gauge
 
 export function when(stamp) {
