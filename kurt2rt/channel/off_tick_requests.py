@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
 from dataclasses import replace
+from functools import partial
 from typing import Any, Protocol
 
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
@@ -70,6 +71,10 @@ class Copies(Protocol):
 
     def examine(self) -> Awaitable[None]:
         """Begin an exam of a copy of the knowledge. Raises KnowledgeError."""
+        ...
+
+    def settle(self) -> Awaitable[None]:
+        """Wait until all that was taught is durable. Raises KnowledgeError."""
         ...
 
     def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
@@ -228,19 +233,21 @@ class OffTickRequests:
                 content = self._upload.take(device, request.upload, request.sha256)
             except ValueError as error:
                 return refusal("refused", str(error), self._tick())
-            preparing = self._simulation.load(content, teacher)
+            prepare = partial(self._simulation.load, content, teacher)
         else:
-            preparing = self._simulation.prepare(request.world, request.task, request.fresh, teacher)
+            prepare = partial(self._simulation.prepare, request.world, request.task, request.fresh, teacher)
         self._changing = True
         self._outcomes.begin(command_id)
-        self._do_outside(self._change_run(command_id, preparing))
+        self._do_outside(self._change_run(command_id, prepare))
         return None
 
-    async def _change_run(self, command_id: str, preparing: Awaitable[str]) -> None:
+    async def _change_run(self, command_id: str, prepare: Callable[[], Awaitable[str]]) -> None:
         try:
-            text = await preparing
+            await self._copies.settle()  # lessons that wait for a failing disk end with their run
+            text = await prepare()
         except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
-            text = str(error) if isinstance(error, ValueError) else f"the next run cannot begin: {error!r}"
+            told = isinstance(error, ValueError | KnowledgeError)
+            text = str(error) if told else f"the next run cannot begin: {error!r}"
             self._outcomes.settle(command_id, refusal("refused", " ".join(text.split()), self._tick()))
             self._changing = False
             return

@@ -115,6 +115,10 @@ class _NoCopies:
         """Never asked."""
         raise NotImplementedError
 
+    def settle(self) -> Awaitable[None]:
+        """Never asked."""
+        raise NotImplementedError
+
     def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
         """Never asked."""
         raise NotImplementedError(name)

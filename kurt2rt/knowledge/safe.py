@@ -73,6 +73,12 @@ class Safe:
         await anyio.to_thread.run_sync(examine, copy, picture)
         self._made[picture.name] = picture
 
+    async def settle(self) -> None:
+        """Wait until all that was taught is durable. Raises KnowledgeError."""
+        if self._writer.trouble is not None:
+            raise KnowledgeError(self._writer.trouble)
+        await anyio.to_thread.run_sync(self._flush)
+
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
         """Return up to `most_bytes` of a copy from `offset` on.
 
@@ -87,13 +93,16 @@ class Safe:
         folder = self._knowledge.parent / folder_name
 
         def flush_and_copy() -> SavedCopy:
-            if not self._writer.flush(_FLUSH_S):
-                raise KnowledgeError(f"{self._knowledge}: the newest lessons are not saved yet; try again later")
+            self._flush()
             return copy(folder)
 
         made = await anyio.to_thread.run_sync(flush_and_copy)
         self._made[made.name] = folder / made.name
         return made
+
+    def _flush(self) -> None:
+        if not self._writer.flush(_FLUSH_S):
+            raise KnowledgeError(f"{self._knowledge}: the newest lessons are not saved yet; try again later")
 
 
 def _read(path: Path, offset: int, most_bytes: int) -> FilePart:

@@ -87,6 +87,10 @@ class Shelf:
             raise KnowledgeError(self.problem)
         self.examined += 1
 
+    async def settle(self) -> None:
+        if self.problem:
+            raise KnowledgeError(self.problem)
+
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
         if name not in self.files:
             raise KnowledgeError(f"{name}: is no copy of this run of the program; save or export again")

@@ -559,6 +559,16 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     assert SIMULATION.read(decode_answer(encode_answer(told))) == await desk.simulation.view()
 
 
+async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk(ground=Yard())
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
+    await desk.ask(desk.command(TakeRequest))
+    desk.shelf.problem = "var/a.knowledge: the disk is full"
+    reply = await desk.ask(desk.command(NextRunRequest, "b", None, False))
+    assert (why(reply), reply.body["text"]) == ("refused", "var/a.knowledge: the disk is full")
+    assert not desk.simulation.prepared
+
+
 async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_robot_time() -> None:
     desk = Desk(ground=Yard())
     assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
