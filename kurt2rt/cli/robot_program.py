@@ -399,7 +399,8 @@ class RobotProgram:
         before, self._pages = self._pages, pages
         if self._live is not None:
             self._live.pin(pages)
-            if self._orders.opens_browser and not before.addresses and has_desktop():
+            # No address yet, for instance while the folder of keys cannot be read: the next one opens it.
+            if self._orders.opens_browser and pages.addresses and not before.addresses and has_desktop():
                 self._open_browser(pages.addresses[0])
             return
         for each in pages.addresses:

@@ -20,7 +20,7 @@ TICK_TOPIC = "/tick"
 _TORN = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 
 
-LARGEST_CHUNK_BYTES = 64_000_000
+LARGEST_CHUNK_BYTES = 16_000_000
 """Largest chunk that is unpacked. kurt2rt ends a chunk each second; the largest stored run has 4 MB in one."""
 _ALWAYS_UNPACKED_BYTES, _MOST_TIMES = 1_000_000, 1000
 """A larger chunk than the first unpacks to at most so many times its size; runs of a robot reach 15."""
