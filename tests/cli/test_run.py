@@ -135,7 +135,7 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
     limit_files(robot, log_of(knowledge).stat().st_size)
     person.type("replace 1 back")
     line = robot.wait_for("1 lessons not saved yet")
-    assert "stands: unsaved" in line
+    assert "stands: lessons cannot be saved" in line
     assert "mine.knowledge: the disk fails; look at its health and room" in line
     person.wait_for("refused: not saved yet; it may still count")
 
