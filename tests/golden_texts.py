@@ -1,0 +1,63 @@
+"""Golden files of the texts that users read: `tests/golden/<surface>_texts.txt`, one file per surface.
+
+Tests assert codes, numbers and types; English stands in these files only. `python -m tests.golden_texts` rewrites
+them from the text tables; review the diff and commit it with the change.
+
+To add a table of texts:
+
+1. Write `tests/texts/<table>.py` with a function without arguments per surface. It yields `(label, text)` for every
+   code of the table, with sample fields. The label begins with the code and names what the sample varies, if anything.
+   Iterate over the StrEnum and index a dict of samples by it, so that a code without a sample fails.
+2. Add one line to each surface in `SURFACES` that shows this table.
+3. Run `python -m tests.golden_texts`.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+
+from tests.texts import standing
+
+COMMAND = "python -m tests.golden_texts"
+FOLDER = Path(__file__).parent / "golden"
+
+Listing = Callable[[], Iterable[tuple[str, str]]]
+
+SURFACES: Mapping[str, Mapping[str, Listing]] = {
+    "page": {
+        "standing": standing.on_page,
+    },
+    "terminal": {
+        "standing": standing.in_terminal,
+    },
+    "log": {
+        "standing": standing.in_log,
+    },
+}
+"""Listings by surface and title of their section."""
+
+
+def golden_file(surface: str) -> Path:
+    """Return the path of a surface's golden file."""
+    return FOLDER / f"{surface}_texts.txt"
+
+
+def texts(surface: str) -> str:
+    """Return the content that a surface's golden file has to have.
+
+    Raises:
+        ValueError: a table lists a label twice.
+    """
+    lines = [f"Texts of the surface: {surface}. Written by `{COMMAND}`; do not edit."]
+    for title, listing in SURFACES[surface].items():
+        pairs = list(listing())
+        labels = [label for label, _ in pairs]
+        if len(set(labels)) != len(labels):
+            raise ValueError(f"{surface}, {title}: a label stands twice (got {labels}); name what each sample varies")
+        lines += ["", f"== {title}", *(f"{label}: {text}".rstrip() for label, text in pairs)]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(exist_ok=True)
+    for name in SURFACES:
+        golden_file(name).write_text(texts(name), encoding="utf-8")
