@@ -16,7 +16,7 @@ from kurt2rt.simulated_ground import SimulatedGround
 from kurt2rt.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.drawing import draw_robot, draw_world
 from simbridge.free_poses import FreePoses
-from simbridge.nearest import Nearest
+from simbridge.nearest import Clearance
 from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
@@ -73,8 +73,8 @@ class SimulatedArena:
 
     # Surveys of the whole world, which a run on a large map never asks for.
     @cached_property
-    def _nearest(self) -> Nearest:
-        return Nearest(self.simulation.world)
+    def _nearest(self) -> Clearance:
+        return Clearance(self.simulation.world)
 
     @cached_property
     def _free(self) -> FreePoses:
@@ -84,7 +84,7 @@ class SimulatedArena:
     def nearest_m(self) -> float:
         """From the robot's centre to the nearest wall or obstacle."""
         pose = self.simulation.pose
-        return self._nearest.away_m((pose.x_m, pose.y_m))
+        return self._nearest.distance_m((pose.x_m, pose.y_m))
 
     @property
     def collisions(self) -> int:

@@ -61,20 +61,20 @@ class SimulatedGround:
             raise ValueError(f"{name} would stand where the robot is")
         self._world = world
         self._version += 1
-        self._simulation.ask(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
+        self._simulation.submit(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
 
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
         """Put the robot down elsewhere, wheels still. Raises ValueError."""
         pose = Pose(x_m, y_m, heading_rad)
         if self._world.clearance_m(pose, self._geometry) == 0.0:
             raise ValueError("there is no room for the robot there")
-        self._simulation.ask(lambda: self._robot.place(pose))
+        self._simulation.submit(lambda: self._robot.place(pose))
 
     def put_robot_back(self) -> None:
         """Put the robot down where the run began, wheels still. Raises ValueError."""
         if self._world.clearance_m(self._start, self._geometry) == 0.0:
             raise ValueError("a wall stands where the run began; move it")
-        self._simulation.ask(lambda: self._robot.place(self._start))
+        self._simulation.submit(lambda: self._robot.place(self._start))
 
     def _stands_on_robot(self, world: WorldSettings, name: str) -> bool:
         # Only this one: a robot that leans against another wall must not nail down all of them.

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, Grant, Robot, Senses
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.expecting import Expecting
@@ -53,7 +53,7 @@ class TickRecord(NamedTuple):
     """What became of the teacher's commands that this tick took."""
     behaviour: str = ""
     """The taught behaviour that was wanted."""
-    circumstances: Circumstances | None = None
+    circumstances: AppraisalFeatures | None = None
     """What the critic looks at; None where the robot sees nothing, or has no critic."""
     opinion: Opinion | None = None
     """What the critic thinks of it; None where it was taught nothing, or there is none."""
@@ -278,7 +278,7 @@ class Tick:
         if self._expecting is not None:
             self._expecting.restart()
 
-    def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[Circumstances | None, Opinion | None]:
+    def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[AppraisalFeatures | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
         critic = self._school.critic
         if self._circumstances is None or critic is None:

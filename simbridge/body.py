@@ -11,7 +11,7 @@ from simbridge.noise import Noise
 from simbridge.pose import Pose
 from simbridge.world import ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
 
-SLIP_SHARE = 0.03
+SLIP_FRACTION = 0.03
 """Standard deviation of each side's slip."""
 SLIP_TIME_S = 0.3
 """Slip comes and goes over patches of floor; our choice."""
@@ -45,7 +45,7 @@ class Body:
         self._force_limit_n = geometry.mass_kg * _TRACTION_M_S2
         self._torque_limit_n_m = self._force_limit_n * geometry.outline_length_m / 2
         self._slip_keep = math.exp(-cycle_s / SLIP_TIME_S)
-        self._slip_gain = SLIP_SHARE * math.sqrt(1.0 - self._slip_keep**2)
+        self._slip_gain = SLIP_FRACTION * math.sqrt(1.0 - self._slip_keep**2)
         self._left_slip = 0.0
         self._right_slip = 0.0
         self._points: list[pymunk.ContactPointSet] = []

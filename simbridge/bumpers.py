@@ -47,7 +47,7 @@ class Bumpers:
         )
 
 
-class Collisions:
+class CollisionCounter:
     """Counts collisions: touches that come within 0.5 s of one another are one, a robot may bounce."""
 
     EPISODE_GAP_S = 0.5
@@ -57,7 +57,7 @@ class Collisions:
         self._free_cycles = self._gap_cycles + 1
         self.count = 0
 
-    def note(self, touching: bool) -> None:
+    def update(self, touching: bool) -> None:
         """One cycle."""
         if not touching:
             self._free_cycles += 1
@@ -66,6 +66,6 @@ class Collisions:
             self.count += 1
         self._free_cycles = 0
 
-    def forget(self) -> None:
+    def end_episode(self) -> None:
         """The robot was put elsewhere: its next touch is a new collision."""
         self._free_cycles = self._gap_cycles + 1

@@ -6,7 +6,7 @@ import random
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from simbridge.pose import Pose
-from simbridge.sight import Sight
+from simbridge.sight import RayCaster
 from simbridge.world import World
 
 _CLEARANCE_M = 0.1
@@ -28,7 +28,7 @@ class FreePoses:
         self._geometry = robot.geometry
         self._sensors = robot.infrared.sensors
         reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + _IN_SIGHT_M
-        self._sight = Sight(world, reach_m)
+        self._sight = RayCaster(world, reach_m)
 
     def draw(self, chance: random.Random, *, close: bool = False) -> Pose:
         """One of them; `close`: also so close to something that it cannot turn on the spot.
@@ -51,7 +51,7 @@ class FreePoses:
     def _sees(self, pose: Pose) -> bool:
         cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
         posts = self._world.settings.round_obstacles
-        self._sight.look_from(pose.x_m, pose.y_m)
+        self._sight.set_origin(pose.x_m, pose.y_m)
         for sensor in self._sensors:
             x_m = pose.x_m + sensor.x_m * cos - sensor.y_m * sin
             y_m = pose.y_m + sensor.x_m * sin + sensor.y_m * cos

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from hal.robot_settings import InfraredSettings
 from simbridge.noise import Noise
 from simbridge.pose import Pose
-from simbridge.sight import Sight
+from simbridge.sight import RayCaster
 from simbridge.world import World
 
 _RECESS_M = 0.05
@@ -32,7 +32,7 @@ class InfraredSensors:
         self._rays = [_rays_of(settings, i, world.settings.infrared_rays) for i in range(count)]
         self._ray_m = _RECESS_M + settings.far_m + 0.01  # so that a miss reads beyond far_m
         farthest_start_m = max(math.hypot(ray[0], ray[1]) for rays in self._rays for ray in rays)
-        self._sight = Sight(world, farthest_start_m + self._ray_m)
+        self._sight = RayCaster(world, farthest_start_m + self._ray_m)
         self.counts = [settings.floor_counts] * count
         self.due_s = [
             period_s * (1.0 + share) / 2 for period_s, share in zip(self._periods_s, noise.uniform(count), strict=True)
@@ -67,7 +67,7 @@ class InfraredSensors:
         noise_share, noise_least = self._noise_share, self._noise_least
         x_m, y_m, heading_rad = pose
         cos, sin = math.cos(heading_rad), math.sin(heading_rad)
-        self._sight.look_from(x_m, y_m)
+        self._sight.set_origin(x_m, y_m)
         distance_m = self._sight.distance_m
         for i in sensors:
             free_m = ray_m

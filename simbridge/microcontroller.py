@@ -16,7 +16,7 @@ CRASH_STEP_M_S = 0.45
 speed (reference 4); half of the full 0.9 m/s is our choice."""
 
 
-class Orders(NamedTuple):
+class MotorCommands(NamedTuple):
     """What the motors are told in a cycle."""
 
     left_m_s: float
@@ -25,8 +25,8 @@ class Orders(NamedTuple):
     right_brake: bool = False
 
 
-_OFF = Orders(0.0, 0.0)
-_BRAKED = Orders(0.0, 0.0, left_brake=True, right_brake=True)
+_OFF = MotorCommands(0.0, 0.0)
+_BRAKED = MotorCommands(0.0, 0.0, left_brake=True, right_brake=True)
 
 
 class MicroController:
@@ -45,10 +45,10 @@ class MicroController:
         self._silent_cycles = self._watchdog_cycles
         self._actuators_on = True
         self._last_payload: bytes | bytearray | None = None
-        self._last_command: SystemControl | None = None
-        self._last_orders = _BRAKED
-        self.orders = _BRAKED
-        self.dead = False
+        self._last_system_command: SystemControl | None = None
+        self._last_commands = _BRAKED
+        self.commands = _BRAKED
+        self.crashed = False
         """True after a crash, until MC_RESET."""
         self.control_frames = 0
         """CONTROL frames that were understood, since the robot was switched on."""
@@ -58,7 +58,7 @@ class MicroController:
     def receive(self) -> None:
         """First half of a cycle: take what waits on the bus and order the motors. Raises hal.bus.BusError."""
         self._silent_cycles += 1
-        newest: Orders | None = None
+        newest: MotorCommands | None = None
         for message in self._bus.drain():
             if message.arbitration_id != CONTROL_ID or message.is_extended_id:
                 continue
@@ -73,78 +73,80 @@ class MicroController:
                     continue
             self.control_frames += 1
             self._silent_cycles = 0
-            newest = self._obey(self._last_command, newest) if self._last_command else self._last_orders
-        if self.dead:
+            newest = (
+                self._execute(self._last_system_command, newest) if self._last_system_command else self._last_commands
+            )
+        if self.crashed:
             return
         if newest is not None and self._actuators_on:
-            if newest is not self.orders:
-                self._take(newest)
-        elif self.unheard:
-            self.orders = _BRAKED
+            if newest is not self.commands:
+                self._apply(newest)
+        elif self.watchdog_expired:
+            self.commands = _BRAKED
 
-    def switch_on(self) -> None:
+    def power_cycle(self) -> None:
         """Somebody has switched it off and on: it is dead no longer, and braked until it hears a CONTROL."""
-        self.dead = False
+        self.crashed = False
         self._actuators_on = True
-        self.orders = _BRAKED
+        self.commands = _BRAKED
         self._silent_cycles = self._watchdog_cycles
 
     @property
-    def unheard(self) -> bool:
+    def watchdog_expired(self) -> bool:
         """True while the watchdog holds the robot: no valid CONTROL for its time."""
         return self._silent_cycles >= self._watchdog_cycles
 
     @property
     def state(self) -> tuple[int, ...]:
         """What the next cycle's orders depend on, besides the present ones."""
-        return self._silent_cycles, self._actuators_on, self.dead, self.junk_frames
+        return self._silent_cycles, self._actuators_on, self.crashed, self.junk_frames
 
-    def note_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
+    def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
         """Converter results of the sensors that measured anew."""
-        self._telemetry.note_readings(fresh, counts)
+        self._telemetry.update_readings(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
         """Second half of a cycle: what was measured goes out. Raises hal.bus.BusError."""
         self._instruments.count(left_ticks, right_ticks)
-        if not self.dead:
+        if not self.crashed:
             self._telemetry.send(left_ticks, right_ticks, bumpers)
 
     def _decode(self, data: bytes | bytearray) -> None:
         """Understand a payload; most cycles repeat the last one, so its meaning is kept."""
         control = decode_control(data)
         self._last_payload = bytes(data)
-        self._last_command = control if isinstance(control, SystemControl) else None
+        self._last_system_command = control if isinstance(control, SystemControl) else None
         if not isinstance(control, SystemControl):
             left_m_s, right_m_s = control.wheel_speeds(self._motors)
             brakes = (control.left.brake, control.right.brake) if isinstance(control, RawControl) else (False, False)
-            self._last_orders = Orders(left_m_s, right_m_s, *brakes)
+            self._last_commands = MotorCommands(left_m_s, right_m_s, *brakes)
 
-    def _take(self, wanted: Orders) -> None:
-        old = self.orders
+    def _apply(self, wanted: MotorCommands) -> None:
+        old = self.commands
         if (
             _speed_up_m_s(old.left_m_s, wanted.left_m_s) > CRASH_STEP_M_S
             or _speed_up_m_s(old.right_m_s, wanted.right_m_s) > CRASH_STEP_M_S
         ):
-            self.dead = True
-            self.orders = _OFF
+            self.crashed = True
+            self.commands = _OFF
             return
-        self.orders = wanted
+        self.commands = wanted
 
-    def _obey(self, command: SystemControl, newest: Orders | None) -> Orders | None:
+    def _execute(self, command: SystemControl, newest: MotorCommands | None) -> MotorCommands | None:
         """Obey a system command; returns the set point that still holds after it."""
         if command.mode is Mode.MC_RESET:
-            self.dead = False
+            self.crashed = False
             self._actuators_on = True
-            self.orders = _OFF
+            self.commands = _OFF
             self._instruments.reset()
             return None
-        if self.dead:
+        if self.crashed:
             return newest
         if command.mode is Mode.ACTUATOR_ON:
             self._actuators_on = True
         elif command.mode is Mode.ACTUATOR_OFF:
             self._actuators_on = False
-            self.orders = _OFF
+            self.commands = _OFF
             return None
         elif command.mode is Mode.CALIBRATE_GYRO:
             self._instruments.calibrate_gyro()

@@ -8,14 +8,14 @@ from simbridge.geometry import Point
 from simbridge.world import World
 
 
-class Nearest:
+class Clearance:
     """Distances in a world whose walls may be moved."""
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._survey()
 
-    def away_m(self, position: Point) -> float:
+    def distance_m(self, position: Point) -> float:
         """From a position to the nearest face; 0 inside of what stands there."""
         world = self._world.settings
         if world is not self._surveyed:

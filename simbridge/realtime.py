@@ -20,7 +20,7 @@ class RealtimeSimulation:
         self._robot = robot
         self._cycle_ns = round(cycle_s * 1e9)
         self._stopping = threading.Event()
-        self._asked: deque[Callable[[], object]] = deque()
+        self._jobs: deque[Callable[[], object]] = deque()
         self._stepping = threading.Lock()
         self._held = False
         self._thread = threading.Thread(target=self._run, name="simulated-robot", daemon=True)
@@ -38,9 +38,9 @@ class RealtimeSimulation:
         if self.error is not None:
             raise self.error
 
-    def ask(self, job: Callable[[], object]) -> None:
+    def submit(self, job: Callable[[], object]) -> None:
         """Have something done before the next step, by the thread that steps; from any thread. An error ends it."""
-        self._asked.append(job)
+        self._jobs.append(job)
 
     def hold(self) -> None:
         """Let the thread step no more; the holder of the simulation steps it, until `go_on`."""
@@ -49,8 +49,8 @@ class RealtimeSimulation:
 
     def step(self) -> None:
         """One cycle in the caller's thread, while the simulation is held."""
-        while self._asked:
-            self._asked.popleft()()
+        while self._jobs:
+            self._jobs.popleft()()
         self._robot.step()
 
     def go_on(self) -> None:

@@ -18,11 +18,11 @@ _CORNER = 1e-9
 """Rays through a corner must not slip between its two faces."""
 
 
-class Sight:
+class RayCaster:
     """Rays from points of the body; keeps the faces near it and looks for others once it went or a wall moved."""
 
     def __init__(self, world: World, reach_m: float) -> None:
-        """Rays end within `reach_m` of the position that `look_from` is given."""
+        """Rays end within `reach_m` of the position that `set_origin` is given."""
         self._world = world
         self._keep_m = reach_m + _MARGIN_M
         self._seen_world = world.settings
@@ -32,7 +32,7 @@ class Sight:
         self._faces: list[tuple[float, float, float, float]] = []
         self._posts: list[tuple[float, float, float]] = []
 
-    def look_from(self, x_m: float, y_m: float) -> None:
+    def set_origin(self, x_m: float, y_m: float) -> None:
         """The body's centre in this cycle."""
         seen = self._seen_from
         if (

@@ -6,7 +6,7 @@ import struct
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from simbridge.body import Body
-from simbridge.bumpers import Bumpers, Collisions
+from simbridge.bumpers import Bumpers, CollisionCounter
 from simbridge.controller_bus import ControllerBus
 from simbridge.infrared import InfraredSensors
 from simbridge.instruments import Instruments
@@ -51,7 +51,7 @@ class SimulatedRobot:
         build = Noise(seed if robot_seed is None else robot_seed, "robot")
         self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise, build)
         self._bumpers = Bumpers(robot.bumpers, robot.geometry)
-        self._collisions = Collisions(cycle_s)
+        self._collisions = CollisionCounter(cycle_s)
         self._progress = WallProgress(self.world)
         self._pressed = 0
         self.lifted = False
@@ -64,15 +64,15 @@ class SimulatedRobot:
         self._cycles += 1
         controller, wheels, body = self.controller, self._wheels, self._body
         controller.receive()
-        wheels.turn(*controller.orders)
+        wheels.turn(*controller.commands)
         if self.lifted:
             body.rest()
         else:
             body.move(wheels.left_m_s, wheels.right_m_s)
         pose = body.pose
-        self._collisions.note(body.touching)
+        self._collisions.update(body.touching)
         self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
-        controller.note_readings(self._infrared.measure(pose), self._infrared.counts)
+        controller.update_readings(self._infrared.measure(pose), self._infrared.counts)
         if self._cycles % _LAPS_EVERY_CYCLES == 0:
             self._progress.update(*pose)
         controller.send(*wheels.take_ticks(), self._pressed)
@@ -81,11 +81,11 @@ class SimulatedRobot:
         """Pick it up and put it down elsewhere: wheels still, sensors settled, no lap or collision counted for it."""
         self._wheels.halt()
         self._body.place(pose)
-        self._collisions.forget()
+        self._collisions.end_episode()
         self._pressed = 0
         self._progress.reset(pose)
         self._infrared.measure_all(pose)
-        self.controller.note_readings(range(len(self._infrared.counts)), self._infrared.counts)
+        self.controller.update_readings(range(len(self._infrared.counts)), self._infrared.counts)
 
     @property
     def time_s(self) -> float:
@@ -139,7 +139,7 @@ class SimulatedRobot:
             *self._body.velocity,
             *self._body.slip,
             *self._wheels.state,
-            *self.controller.orders,
+            *self.controller.commands,
             *self._infrared.due_s,
             self.laps,
         )

@@ -10,7 +10,7 @@ from hal.codec import load_codec
 from hal.robot_settings import RobotSettings
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.steady_bus import SteadyBus
+from simbridge.steady_bus import ReconnectingBus
 from simbridge.world_settings import WorldSettings
 
 _LISTENS_S = 0.1
@@ -30,7 +30,7 @@ class StandaloneRobot:
         _require_no_robot(settings, bus)
         bus.listen_to({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
         self._bus = bus
-        self.bus = SteadyBus(bus)
+        self.bus = ReconnectingBus(bus)
         chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
         self.robot = SimulatedRobot(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
         starts = [each.pose for each in world.start_poses]

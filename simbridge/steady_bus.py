@@ -10,7 +10,7 @@ from hal.bus import BusError, CanBus, FramePort
 REOPEN_PERIOD_S = 1.0
 
 
-class SteadyBus:
+class ReconnectingBus:
     """One end of a bus (simbridge.controller_bus.ControllerBus) that raises nothing.
 
     While the bus is gone nothing arrives and what is sent is lost and counted; once a second it is opened anew.
@@ -22,7 +22,7 @@ class SteadyBus:
         self._now_s = now_s
         self._reopen_at_s: float | None = None
         self._failed = False
-        self.trouble = ""
+        self.error_text = ""
         """Why nothing gets through; empty while it does. As of the last drain."""
         self.lost = 0
         """Frames that the bus did not take."""
@@ -36,15 +36,15 @@ class SteadyBus:
             self._note(error)
             return []
 
-    def telemetry_port(self) -> "SteadyPort":
+    def telemetry_port(self) -> "ReconnectingPort":
         """A way out for every frame except CONTROL."""
-        return SteadyPort(self, self._bus.telemetry_port())
+        return ReconnectingPort(self, self._bus.telemetry_port())
 
     def _settle(self) -> None:
         """What the cycle before has shown: the bus is well when nothing failed in it."""
         if not self._failed:
             self._reopen_at_s = None
-            self.trouble = ""
+            self.error_text = ""
             return
         self._failed = False
         now_s = self._now_s()
@@ -55,17 +55,17 @@ class SteadyBus:
             try:
                 self._bus.reopen()
             except BusError as error:
-                self.trouble = str(error)
+                self.error_text = str(error)
 
     def _note(self, error: BusError) -> None:
         self._failed = True
-        self.trouble = self.trouble or str(error)
+        self.error_text = self.error_text or str(error)
 
 
-class SteadyPort:
-    """A way out of a SteadyBus."""
+class ReconnectingPort:
+    """A way out of a ReconnectingBus."""
 
-    def __init__(self, bus: SteadyBus, port: FramePort) -> None:
+    def __init__(self, bus: ReconnectingBus, port: FramePort) -> None:
         self._bus = bus
         self._port = port
 

@@ -44,7 +44,7 @@ class Telemetry:
         idle = self._analog.without_sensor
         self._idle_turns = [idle[(turn - len(slow)) % SLOW_CYCLES :: SLOW_CYCLES] for turn in range(SLOW_CYCLES)]
 
-    def note_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
+    def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
         """Take over the new readings of some sensors."""
         self._analog.note(fresh, counts)
 

@@ -30,7 +30,7 @@ class Yard:
     def step(self) -> None:
         """Until the thread has done all that was asked."""
         done = threading.Event()
-        self.simulation.ask(done.set)
+        self.simulation.submit(done.set)
         assert done.wait(30.0)
 
 

@@ -1,14 +1,14 @@
 """An eight round two columns: what the scripted teacher of that task praises and blames."""
 
-from behaviors.judges.judge import Circumstances, Judge, JudgeSettings
-from behaviors.judges.trouble import Speed, Trouble, TurnRate, in_trouble
+from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
+from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 
 class EightSettings(JudgeSettings):
     """What the teacher looks for; distances from the sensors' faces."""
 
-    trouble: Trouble
+    trouble: CommonFaults
     front_m: Distance
     """With something ahead nearer than this it has to turn."""
     last_m: Distance
@@ -51,10 +51,10 @@ class Eight:
     def __init__(self, settings: EightSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: Circumstances) -> int:
+    def judge(self, circumstances: AppraisalFeatures) -> int:
         """-1 bad, 0 neutral, +1 good."""
         want, now = self._settings, circumstances
-        if in_trouble(now, want.trouble):
+        if has_fault(now, want.trouble):
             return -1
         if now.front_m < want.front_m:
             drives_at_it = now.front_m < want.last_m and now.speed_m_s > want.drives_m_s

@@ -1,14 +1,14 @@
 """Fleeing with collision avoidance: what the scripted teacher of that task praises and blames."""
 
-from behaviors.judges.judge import Circumstances, Judge, JudgeSettings
-from behaviors.judges.trouble import Speed, Trouble, TurnRate, in_trouble
+from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
+from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 
 class FleeingSettings(JudgeSettings):
     """What the teacher looks for; distances from the sensors' faces."""
 
-    trouble: Trouble
+    trouble: CommonFaults
     front_m: Distance
     """With something ahead nearer than this ..."""
     edge_m: Distance
@@ -51,10 +51,10 @@ class Fleeing:
     def __init__(self, settings: FleeingSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: Circumstances) -> int:
+    def judge(self, circumstances: AppraisalFeatures) -> int:
         """-1 bad, 0 neutral, +1 good."""
         want, now = self._settings, circumstances
-        if in_trouble(now, want.trouble):
+        if has_fault(now, want.trouble):
             return -1
         edge_m = min(now.ahead_left_m, now.ahead_right_m)
         if now.front_m < want.front_m or edge_m < want.edge_m:
@@ -65,7 +65,7 @@ class Fleeing:
             return 1
         return -1 if self._curves_to_what_it_sees(now) else 0
 
-    def _near(self, now: Circumstances) -> int:
+    def _near(self, now: AppraisalFeatures) -> int:
         """It has to turn left on the spot."""
         want = self._settings
         drives_at_it = now.front_m < want.last_m and now.speed_m_s > want.drives_m_s
@@ -73,7 +73,7 @@ class Fleeing:
             return -1
         return int(now.turn_rad_s > want.whirls_rad_s)
 
-    def _free(self, now: Circumstances) -> int:
+    def _free(self, now: AppraisalFeatures) -> int:
         want, turn_rad_s = self._settings, abs(now.turn_rad_s)
         if turn_rad_s > want.whirls_rad_s and now.speed_m_s < want.whirls_m_s:
             return -1 if now.turn_rad_s < 0 else 0
@@ -81,11 +81,11 @@ class Fleeing:
             return 1
         return -1 if now.speed_m_s < want.creeps_m_s and turn_rad_s < want.curves_rad_s else 0
 
-    def _is_off(self, now: Circumstances) -> bool:
+    def _is_off(self, now: AppraisalFeatures) -> bool:
         want = self._settings
         return now.speed_m_s > want.fast_m_s and abs(now.turn_rad_s) < want.straight_rad_s
 
-    def _curves_to_what_it_sees(self, now: Circumstances) -> bool:
+    def _curves_to_what_it_sees(self, now: AppraisalFeatures) -> bool:
         want = self._settings
         if now.ahead_right_m < min(now.ahead_left_m, want.wary_m):
             return now.turn_rad_s < -want.turns_rad_s

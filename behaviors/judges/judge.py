@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 from hal.settings_by_kind import KindSettings
 
 
-class Circumstances(NamedTuple):
+class AppraisalFeatures(NamedTuple):
     """The appraisal situation: how near things are, how the robot moves, and what goes wrong, from its senses alone."""
 
     left_m: float
@@ -41,7 +41,7 @@ class Judge(Protocol):
     Memoryless, as a reference policy is: a critic can only learn from what is in its appraisal situation.
     """
 
-    def judge(self, circumstances: Circumstances) -> int:
+    def judge(self, circumstances: AppraisalFeatures) -> int:
         """-1 bad, 0 neutral, +1 good."""
         ...
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.settings import Settings
 
 Speed = Annotated[float, Field(ge=0, le=1)]
@@ -13,7 +13,7 @@ TurnRate = Annotated[float, Field(ge=0, le=4)]
 """The same in rad/s, to either side."""
 
 
-class Trouble(Settings):
+class CommonFaults(Settings):
     """What is trouble."""
 
     creeps_m_s: Speed
@@ -26,7 +26,7 @@ class Trouble(Settings):
     """... and turning slower than this it stands."""
 
 
-def in_trouble(now: Circumstances, trouble: Trouble) -> bool:
+def has_fault(now: AppraisalFeatures, trouble: CommonFaults) -> bool:
     """Whether it bumped into something, gets nowhere, backs or stands."""
     return (
         now.bumped > 0.0

@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.judges.judge import Circumstances, Judge, JudgeSettings
-from behaviors.judges.trouble import Speed, Trouble, TurnRate, in_trouble
+from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
+from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 Error = Annotated[float, Field(gt=0, le=0.6)]
@@ -15,7 +15,7 @@ Error = Annotated[float, Field(gt=0, le=0.6)]
 class WallFollowingSettings(JudgeSettings):
     """What the teacher looks for; distances from the sensors' faces."""
 
-    trouble: Trouble
+    trouble: CommonFaults
     front_m: Distance
     """With something ahead nearer than this ..."""
     edge_m: Distance
@@ -76,10 +76,10 @@ class WallFollowing:
     def __init__(self, settings: WallFollowingSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: Circumstances) -> int:
+    def judge(self, circumstances: AppraisalFeatures) -> int:
         """-1 bad, 0 neutral, +1 good."""
         want, now = self._settings, circumstances
-        if in_trouble(now, want.trouble):
+        if has_fault(now, want.trouble):
             return -1
         if now.front_m < want.front_m or now.ahead_left_m < want.edge_m or now.left_m <= want.near_m:
             return self._blocked(now)
@@ -91,7 +91,7 @@ class WallFollowing:
             return self._past_the_end(now)
         return self._along(now)
 
-    def _blocked(self, now: Circumstances) -> int:
+    def _blocked(self, now: AppraisalFeatures) -> int:
         """It has to turn right."""
         want = self._settings
         drives_at_it = now.front_m < want.last_m and now.speed_m_s > want.drives_m_s
@@ -99,7 +99,7 @@ class WallFollowing:
             return -1
         return int(now.turn_rad_s < -want.away_rad_s)
 
-    def _spins_without_need(self, now: Circumstances) -> bool:
+    def _spins_without_need(self, now: AppraisalFeatures) -> bool:
         want = self._settings
         if abs(now.turn_rad_s) <= want.spins_rad_s or now.speed_m_s >= want.spins_m_s:
             return False
@@ -112,14 +112,14 @@ class WallFollowing:
             and now.left_angle_rad > want.open_angle_rad
         )
 
-    def _past_the_end(self, now: Circumstances) -> int:
+    def _past_the_end(self, now: AppraisalFeatures) -> int:
         """The wall ends: round its corner."""
         want = self._settings
         if now.turn_rad_s > want.corner_rad_s and now.speed_m_s > want.drifts_m_s:
             return 1
         return -1 if now.turn_rad_s < -want.corner_rad_s else 0
 
-    def _along(self, now: Circumstances) -> int:
+    def _along(self, now: AppraisalFeatures) -> int:
         want = self._settings
         error_m = now.left_m - want.wanted_m + want.heading_weight_m * now.left_angle_rad
         to_wall, away = now.turn_rad_s > want.curves_rad_s, now.turn_rad_s < -want.curves_rad_s

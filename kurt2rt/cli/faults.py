@@ -57,7 +57,7 @@ def faults(
     from kurt2rt.faults.report import as_json, print_report
     from kurt2rt.faults.stop_times import stop_times
     from kurt2rt.faults.suite import try_cases
-    from simbridge.faults.stage import FaultStage
+    from simbridge.faults.stage import FaultRigFactory
 
     require_json_file(file, as_json=json)
     targets, kinds = _targets(target), _kinds(kind)
@@ -72,7 +72,9 @@ def faults(
 
         async def run() -> "list[Trial]":
             cases = cases_of(chosen, targets, kinds)
-            return await try_cases(FaultStage(settings), cases, chosen, settings, task, range(1, seeds + 1), on_done)
+            return await try_cases(
+                FaultRigFactory(settings), cases, chosen, settings, task, range(1, seeds + 1), on_done
+            )
 
         trials = anyio.run(run)
     times = stop_times(chosen, trials)

@@ -58,7 +58,7 @@ class Desk:
         def lift() -> None:
             self._standalone.robot.lifted = lifted
 
-        self._standalone.simulation.ask(lift)
+        self._standalone.simulation.submit(lift)
         return "the robot stands on a block, its wheels in the air" if lifted else "the robot stands on its wheels"
 
     def _put(self, pose: Pose) -> str:
@@ -100,9 +100,9 @@ class News:
 
     def since(self) -> Iterator[str]:
         """Each change once."""
-        robot, trouble = self._standalone.robot, self._standalone.bus.trouble
+        robot, trouble = self._standalone.robot, self._standalone.bus.error_text
         controller = robot.controller
-        unheard, dead, collisions = controller.unheard, controller.dead, robot.collisions
+        unheard, dead, collisions = controller.watchdog_expired, controller.crashed, robot.collisions
         if trouble != self._trouble:
             yield f"lost: {trouble}" if trouble else "the bus is there again"
         if unheard != self._unheard:
@@ -131,7 +131,7 @@ class StatusLine:
         time_s, control_frames = robot.time_s, controller.control_frames
         rate = (control_frames - self._told) / max(time_s - self._told_at_s, 0.01)
         self._told_at_s, self._told = time_s, control_frames
-        turn, orders = robot.wheel_speeds, controller.orders
+        turn, orders = robot.wheel_speeds, controller.commands
         braked = " with brakes" if orders.left_brake or orders.right_brake else ""
         parts = [
             f"{time_s:8.1f} s",
@@ -142,14 +142,14 @@ class StatusLine:
             f"collisions {robot.collisions}",
             f"missed {simulation.missed_cycles}",
         ]
-        if controller.dead:
+        if controller.crashed:
             parts.append("crashed, needs MC_RESET")
-        elif controller.unheard:
+        elif controller.watchdog_expired:
             parts.append("no CONTROL, braked")
         if robot.lifted:
             parts.append("on a block")
-        if bus.trouble:
-            parts.append(f"{bus.trouble}; {bus.lost} frames lost")
+        if bus.error_text:
+            parts.append(f"{bus.error_text}; {bus.lost} frames lost")
         return " | ".join(parts)
 
 

@@ -77,7 +77,7 @@ def soak(
     from kurt2rt.soak.picture import draw_soak
     from kurt2rt.soak.report import as_json as soak_as_json
     from kurt2rt.soak.report import print_report
-    from simbridge.faults.lasting_place import LastingPlace
+    from simbridge.faults.lasting_place import LongRunRig
 
     give_back_large_pieces()  # as the robot's program does
     settings = load_soak(day)
@@ -88,7 +88,7 @@ def soak(
         update={"knowledge": str(out / _KNOWLEDGE), "checkpoint_period_s": settings.checkpoint_period_s}
     )
     recording = Recording(out / _RUNS, budget_of(settings.recordings_mb), "sim")
-    place = LastingPlace(robot, settings.world, seed)
+    place = LongRunRig(robot, settings.world, seed)
     try:
         running = Day(place, settings, table, robot, task, service, recording, seed=seed, by_module=by_module)
         columns = (*Progress.get_default_columns()[:-1], TimeElapsedColumn(), TimeRemainingColumn())

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import AppraisalSettings, CriticSettings
 from kurt2rt.rla.rla import CRITIC, Rla
 from kurt2rt.rla.rla_system import RlaSystem
@@ -55,10 +55,10 @@ class Critic:
         """Farther than this from the nearest condition another opinion is inserted, else it replaces."""
         return self.settings.learning.insert_beyond_share * self.settings.learning.radius
 
-    def think(self, tick: int, circumstances: Circumstances) -> Opinion | None:
+    def think(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
         """What it thinks in this tick, looked up anew every few ticks and after each lesson; None before its first one.
 
-        Circumstances do not change within hundredths of a second, and the search would be the dearest part of a tick.
+        The features do not change within hundredths of a second, and the search would be the dearest part of a tick.
         """
         lessons = self._system.standing_lessons
         if tick >= self._think_again_tick or lessons != self._lessons:
@@ -67,7 +67,7 @@ class Critic:
             self._think_again_tick = tick + self.settings.think_every_ticks
         return self._thought
 
-    def vector_of(self, circumstances: Circumstances) -> NDArray[np.float64]:
+    def vector_of(self, circumstances: AppraisalFeatures) -> NDArray[np.float64]:
         """Appraisal situation vector (d,), unweighted, for `opinion` and for conditions."""
         return np.array(circumstances[: self._dimensions], dtype=np.float64)
 

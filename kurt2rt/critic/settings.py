@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, field_validator, model_validator
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.settings import Settings, find_config, load_settings
 
 Seconds = Annotated[float, Field(gt=0, le=100_000)]
@@ -19,7 +19,7 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-*_ALWAYS, SURPRISED = Circumstances._fields
+*_ALWAYS, SURPRISED = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
 """Of the features of an appraisal situation, in their order; a critic may look at SURPRISED, too."""
 
@@ -70,7 +70,7 @@ class CircumstancesSettings(Settings):
 
 
 class CircumstanceWeights(Settings):
-    """What each circumstance counts in a distance; nothing where it is left out. One for each of Circumstances."""
+    """What each circumstance counts in a distance; nothing where it is left out. One for each of AppraisalFeatures."""
 
     left_m: Weight = 0.0
     front_m: Weight = 0.0

@@ -1,10 +1,10 @@
-"""Circumstances of this tick, from the senses of it and of the last few seconds: the critic's appraisal situation."""
+"""Appraisal features of one tick: the critic's view of the last few seconds of senses."""
 
 import math
 from collections.abc import Callable
 from operator import itemgetter
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import HIGHEST_COUNTS, Senses
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
@@ -13,7 +13,7 @@ from kurt2rt.steady import steady
 
 
 class CircumstancesPerception:
-    """Turns Senses into Circumstances, once per tick, in memory that does not grow."""
+    """Turns Senses into AppraisalFeatures, once per tick, in memory that does not grow."""
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
         """Raises SettingsError for a sensor that the robot does not have."""
@@ -65,8 +65,8 @@ class CircumstancesPerception:
         """In the tick before something else came than was expected."""
         self._since_surprise = -1
 
-    def perceive(self, senses: Senses, *, driving: bool) -> Circumstances:
-        """Circumstances of this tick; `driving`: whether an action drove the wheels until now.
+    def perceive(self, senses: Senses, *, driving: bool) -> AppraisalFeatures:
+        """Return the features of this tick; `driving`: whether an action drove the wheels until now.
 
         While the robot waits, the time without a wall stands still, and a wait is not a lack of progress.
         """
@@ -82,7 +82,7 @@ class CircumstancesPerception:
             self._without_wall = 0
         elif driving:
             self._without_wall += 1
-        return Circumstances(
+        return AppraisalFeatures(
             distance_m[max(self._left(counts))],
             distance_m[max(self._front(counts))],
             distance_m[max(self._right(counts))],

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.layers.decision import Decision
 from kurt2rt.perception.perception import Situation
@@ -22,7 +22,7 @@ class RecentDecisions:
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
-        self._circumstances: list[Circumstances | None] = [None] * capacity
+        self._circumstances: list[AppraisalFeatures | None] = [None] * capacity
         self._opinions: list[Opinion | None] = [None] * capacity
         self.newest = -1
         """Tick of the newest decision; -1 before the first."""
@@ -36,7 +36,7 @@ class RecentDecisions:
         *,
         blind: bool,
         touches: bool = False,
-        circumstances: Circumstances | None = None,
+        circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
     ) -> None:
         """Keep what was decided in a tick, for which taught behaviour, and what the critic thought of it.
@@ -92,7 +92,7 @@ class RecentDecisions:
         kept = self._ticks[rows] == ticks
         return ticks[kept], self._answering[rows[kept]]
 
-    def circumstances(self, tick: int) -> Circumstances | None:
+    def circumstances(self, tick: int) -> AppraisalFeatures | None:
         """The appraisal situation of a tick that is known; None where the robot saw nothing, or has no critic."""
         return self._circumstances[tick % self._capacity]
 

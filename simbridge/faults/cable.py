@@ -17,28 +17,28 @@ class Cable:
 
     def __init__(self, now_s: Callable[[], float]) -> None:
         self.now_s = now_s
-        self._ends: list[CableEnd] = []
+        self._ends: list[CableInterface] = []
 
-    def open(self) -> "CableEnd":
+    def open(self) -> "CableInterface":
         """One more end."""
-        end = CableEnd(self)
+        end = CableInterface(self)
         self._ends.append(end)
         return end
 
-    def carry(self, frame: can.Message, sender: "CableEnd") -> None:
+    def carry(self, frame: can.Message, sender: "CableInterface") -> None:
         """A copy for everybody, the sender too."""
         now_s = self.now_s()
         for end in self._ends:
             if is_heard(frame, end.heard):
                 end.hear(frame, now_s, own=end is sender)
 
-    def leave(self, end: "CableEnd") -> None:
+    def leave(self, end: "CableInterface") -> None:
         """One end less; it may have left already."""
         if end in self._ends:
             self._ends.remove(end)
 
 
-class CableEnd:
+class CableInterface:
     """One end (hal.bus_end.BusEnd)."""
 
     confirms = True

@@ -8,7 +8,7 @@ import can
 from hal.bus import CONTROL_ID
 from hal.bus_end import BusEnd
 from hal.frame import Frame
-from simbridge.faults.way import Way
+from simbridge.faults.way import FrameLink
 
 
 class NumberedFrame(Frame):
@@ -27,15 +27,15 @@ class NumberedFrame(Frame):
         return NumberedFrame(self.arbitration_id, self.data, self.number)
 
 
-class Ways:
+class Links:
     """What an end's frames suffer now; outlives the end, which may be opened anew. None: they go straight."""
 
     def __init__(self) -> None:
-        self.outward: Way | None = None
-        self.inward: Way | None = None
+        self.outward: FrameLink | None = None
+        self.inward: FrameLink | None = None
 
 
-class ChangingEnd:
+class SwitchableInterface:
     """Wraps an end that stamps frames and confirms its own (hal.bus_end.BusEnd)."""
 
     confirms = True
@@ -43,7 +43,7 @@ class ChangingEnd:
     def __init__(
         self,
         inner: BusEnd,
-        ways: Ways,
+        ways: Links,
         now_s: Callable[[], float],
         *,
         on_send: Callable[[can.Message], can.Message] | None = None,

@@ -7,7 +7,7 @@ Kind = Literal["off", "stuck", "garbage", "wrong", "slow", "delayed", "intermitt
 false, comes less often, comes late, comes and goes."""
 
 
-class Disturbance(NamedTuple):
+class TimedFault(NamedTuple):
     """One fault, for one span of simulated time."""
 
     kind: Kind

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import can
 
 from hal.bus_end import BusEnd
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.way import Way
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.way import FrameLink
 
 
-class DisturbedEnd:
+class FaultyInterface:
     """Wraps another end (hal.bus_end.BusEnd) and can behave as one of SocketCAN: stamps, and its own frames confirmed.
 
     Frames get their stamp when they come from the bus, before the way in: as the kernel does it.
@@ -22,10 +22,10 @@ class DisturbedEnd:
     def __init__(
         self,
         inner: BusEnd,
-        time: EventTime,
+        time: EventScheduler,
         *,
-        outward: Way,
-        inward: Way,
+        outward: FrameLink,
+        inward: FrameLink,
         confirms: bool,
         on_carried: Callable[[], None],
     ) -> None:

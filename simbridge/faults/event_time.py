@@ -4,7 +4,7 @@ import heapq
 from collections.abc import Callable
 
 
-class EventTime:
+class EventScheduler:
     """Time passes only by `run_until`, and what was planned happens at its moment, in order.
 
     A tick that hangs lets time pass from within: controller and watchdog go on, the loop does not.

@@ -6,7 +6,7 @@ _LENGTH_M, _WIDTH_M = 10.0, 4.0
 _WALL_AT_M = 0.22
 _HALF_WIDTH_M = 0.165
 
-HALL = WorldSettings(
+CORRIDOR_WORLD = WorldSettings(
     name="hall",
     size_m=(_LENGTH_M, _WIDTH_M),
     infrared_rays=1,

@@ -15,21 +15,21 @@ from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from hal.watchdog import POLL_S, TICKS_CEASED
 from simbridge.faults.cable import Cable
-from simbridge.faults.changing_end import ChangingEnd, NumberedFrame, Ways
-from simbridge.faults.disturbance import Disturbance, Kind
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.motors import ChangingWheels
-from simbridge.faults.parts import disturbed_telemetry, disturbed_way_in, disturbed_way_out, part_of
+from simbridge.faults.changing_end import Links, NumberedFrame, SwitchableInterface
+from simbridge.faults.disturbance import Kind, TimedFault
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.motors import FaultyWheels
+from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.pose import Pose
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.wire.end import WireEnd
+from simbridge.wire.end import WireInterface
 from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
 from simbridge.world_settings import load_world
 
 
-class LastingPlace:
+class LongRunRig:
     """Robot, bus and driver (kurt2rt.soak.place.SoakPlace).
 
     The loop's ticks, the controller's cycle and the watchdog have phases of their own. The watchdog's thread is
@@ -39,7 +39,7 @@ class LastingPlace:
     def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
         """Stands at a start pose of the world, with nobody at its bus. Raises SettingsError."""
         self._chance = random.Random(f"lasting place in {world}, seed {seed}")
-        self.time = EventTime()
+        self.time = EventScheduler()
         self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Called with number and payload of each CONTROL that the driver hands to its bus."""
         self.on_control: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
@@ -52,14 +52,14 @@ class LastingPlace:
         self._codec = load_codec(settings.can.database)
         self._cycle_s = settings.can.cycle_s
         self._numbers = 0
-        self._robots_ways, self._notebooks_ways = Ways(), Ways()
+        self._robots_links, self._notebooks_links = Links(), Links()
         self._join: Callable[[str], BusEnd]
-        self._lay(NO_WIRE)
+        self._open_bus(NO_WIRE)
         self._robots_bus = CanBus("soak", self._open_robots_end)
         self._robots_bus.listen_to({CONTROL_ID})
         world_settings = load_world(world, settings)
         self._starts = [start.pose for start in world_settings.start_poses]
-        self._wheels = ChangingWheels(settings)
+        self._wheels = FaultyWheels(settings)
         self.simulation = SimulatedRobot(
             settings,
             world_settings,
@@ -77,7 +77,7 @@ class LastingPlace:
     def start_driver(self, wire: str) -> Kurt2:
         """A driver that knows nothing comes to the bus, over a wire by name or `none`. Raises SettingsError."""
         self.end_driver()
-        self._lay(wire)
+        self._open_bus(wire)
         self._robots_bus.reopen()
         self._notebooks_bus = CanBus("soak", self._open_notebooks_end)
         self.robot = Kurt2(self._settings, self._notebooks_bus, watchdog_clock=self.time.now_s)
@@ -91,20 +91,20 @@ class LastingPlace:
 
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
-    ) -> Disturbance:
+    ) -> TimedFault:
         """Something is going to fail; one that is no part of robot or bus is left to the caller."""
-        disturbance = Disturbance(kind, begin_s, end_s, period_s, delay_s)
+        disturbance = TimedFault(kind, begin_s, end_s, period_s, delay_s)
         part, time, chance = part_of(target), self.time, self._chance
-        self._robots_ways.outward = disturbed_telemetry(part, disturbance, time, chance, self._codec)
-        self._notebooks_ways.inward = disturbed_way_in(part, disturbance, time, chance, self._codec)
-        self._notebooks_ways.outward = disturbed_way_out(part, disturbance, time, chance)
+        self._robots_links.outward = faulty_telemetry_link(part, disturbance, time, chance, self._codec)
+        self._notebooks_links.inward = faulty_rx_link(part, disturbance, time, chance, self._codec)
+        self._notebooks_links.outward = faulty_tx_link(part, disturbance, time, chance)
         self._wheels.disturb(part, disturbance, time, chance)
         return disturbance
 
     def end(self) -> None:
         """All is well again."""
-        self._robots_ways.outward = self._notebooks_ways.inward = self._notebooks_ways.outward = None
-        self._wheels.disturb(None, Disturbance("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
+        self._robots_links.outward = self._notebooks_links.inward = self._notebooks_links.outward = None
+        self._wheels.disturb(None, TimedFault("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
 
     def look_on(self, tap: Tap | None) -> None:
         """Somebody looks on at the driver's end of the bus; None: nobody."""
@@ -117,7 +117,7 @@ class LastingPlace:
 
     def switch_on(self) -> None:
         """Somebody switches the robot's controller off and on."""
-        self.simulation.controller.switch_on()
+        self.simulation.controller.power_cycle()
 
     @property
     def position_m(self) -> tuple[float, float]:
@@ -147,7 +147,7 @@ class LastingPlace:
         left_m_s, right_m_s = simulation.wheel_speeds
         self.turned_m[0] += left_m_s * self._cycle_s
         self.turned_m[1] += right_m_s * self._cycle_s
-        if simulation.controller.dead:
+        if simulation.controller.crashed:
             self.switch_on()
             self.crashes += 1
 
@@ -156,7 +156,7 @@ class LastingPlace:
         if robot is not None and robot.watchdog.check(self.time.now_s()):
             robot.emergency_stop(TICKS_CEASED)
 
-    def _lay(self, wire: str) -> None:
+    def _open_bus(self, wire: str) -> None:
         """Another wire between the two ends that will be opened."""
         if wire == NO_WIRE:
             cable = Cable(self.time.now_s)
@@ -167,13 +167,15 @@ class LastingPlace:
         carrier.advance(self.time.now_s())
         carrier.follow(self.time.now_s)
         nodes = {"robot": settings.robot, "notebook": settings.notebook}
-        self._join = lambda end: WireEnd(carrier, nodes[end])
+        self._join = lambda end: WireInterface(carrier, nodes[end])
 
     def _open_robots_end(self, _: str) -> BusEnd:
-        return ChangingEnd(self._join("robot"), self._robots_ways, self.time.now_s, on_heard=self._note_arrival)
+        return SwitchableInterface(
+            self._join("robot"), self._robots_links, self.time.now_s, on_heard=self._note_arrival
+        )
 
     def _open_notebooks_end(self, _: str) -> BusEnd:
-        return ChangingEnd(self._join("notebook"), self._notebooks_ways, self.time.now_s, on_send=self._number)
+        return SwitchableInterface(self._join("notebook"), self._notebooks_links, self.time.now_s, on_send=self._number)
 
     def _number(self, frame: can.Message) -> can.Message:
         self._numbers += 1

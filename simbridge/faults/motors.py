@@ -5,8 +5,8 @@ from collections import deque
 from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.event_time import EventTime
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.event_time import EventScheduler
 from simbridge.wheels import Wheels
 
 _FASTEST_M_S = 0.9
@@ -21,7 +21,7 @@ class Order(NamedTuple):
     brake: bool
 
 
-class DisturbedSide:
+class FaultyMotor:
     """One side's motor, disturbed: makes of what it is told what it does.
 
     off: it gets no current and rolls out. stuck: it goes on as it was last told, brake or not. garbage: it
@@ -29,7 +29,7 @@ class DisturbedSide:
     delayed: it does everything late. intermittent: its cable has a loose contact.
     """
 
-    def __init__(self, disturbance: Disturbance, time: EventTime, chance: random.Random, cycle_s: float) -> None:
+    def __init__(self, disturbance: TimedFault, time: EventScheduler, chance: random.Random, cycle_s: float) -> None:
         self._disturbance = disturbance
         self._time = time
         self._chance = chance
@@ -68,20 +68,20 @@ class DisturbedSide:
                 return late
 
 
-class ChangingWheels(Wheels):
+class FaultyWheels(Wheels):
     """The wheels, with whatever is wrong with a side's motor now."""
 
     def __init__(self, robot: RobotSettings) -> None:
         super().__init__(robot)
         self._cycle_s = robot.can.cycle_s
-        self._disturbed: dict[str, DisturbedSide] = {}
+        self._disturbed: dict[str, FaultyMotor] = {}
         """By part; a side is sound where there is none."""
 
-    def disturb(self, part: str | None, disturbance: Disturbance, time: EventTime, chance: random.Random) -> None:
+    def disturb(self, part: str | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random) -> None:
         """From now on `left_motor` or `right_motor` is disturbed; all is sound where it is another part, or none."""
         self._disturbed = {}
         if part in ("left_motor", "right_motor"):
-            self._disturbed[part] = DisturbedSide(disturbance, time, chance, self._cycle_s)
+            self._disturbed[part] = FaultyMotor(disturbance, time, chance, self._cycle_s)
 
     def turn(
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False

@@ -9,10 +9,10 @@ import can
 from hal.bus import CONTROL_ID
 from hal.codec import Codec
 from hal.frame import Frame
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.way import DisturbedWay, Way
-from simbridge.faults.way_out import DisturbedWayOut
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.way import FaultyLink, FrameLink
+from simbridge.faults.way_out import FaultyTxLink
 
 Part = Literal["sensor_board_1", "sensor_board_2", "encoders", "left_motor", "right_motor", "bus_in", "bus_out"]
 """What can fail on the robot's side of the driver."""
@@ -31,13 +31,13 @@ def part_of(target: str) -> Part | None:
     return next((each for each in PARTS if each == target), None)
 
 
-def disturbed_telemetry(
-    part: Part | None, disturbance: Disturbance, time: EventTime, chance: random.Random, codec: Codec
-) -> Way | None:
+def faulty_telemetry_link(
+    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
+) -> FrameLink | None:
     """The way from the robot's boards to the bus; None where this part does not disturb it."""
     if part == "encoders":
         encoder = codec.message("ENCODER")
-        return DisturbedWay(
+        return FaultyLink(
             disturbance,
             time,
             chance,
@@ -55,12 +55,12 @@ def disturbed_telemetry(
         message = board[frame.arbitration_id]
         return [message.pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in message.unpack(frame.data)))]
 
-    return DisturbedWay(disturbance, time, chance, board.keys(), falsify=show_far_for_near)
+    return FaultyLink(disturbance, time, chance, board.keys(), falsify=show_far_for_near)
 
 
-def disturbed_way_in(
-    part: Part | None, disturbance: Disturbance, time: EventTime, chance: random.Random, codec: Codec
-) -> Way | None:
+def faulty_rx_link(
+    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
+) -> FrameLink | None:
     """The way from the bus to the driver; None where this part does not disturb it."""
     if part != "bus_in":
         return None
@@ -69,11 +69,11 @@ def disturbed_way_in(
     def hear_somebody_else(frame: can.Message) -> list[can.Message]:
         return [frame, _SOMEBODY_ELSES_ORDER] if frame.arbitration_id == last_of_a_cycle else [frame]
 
-    return DisturbedWay(disturbance, time, chance, None, falsify=hear_somebody_else)
+    return FaultyLink(disturbance, time, chance, None, falsify=hear_somebody_else)
 
 
-def disturbed_way_out(
-    part: Part | None, disturbance: Disturbance, time: EventTime, chance: random.Random
-) -> Way | None:
+def faulty_tx_link(
+    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random
+) -> FrameLink | None:
     """The way from the driver to the bus; None where this part does not disturb it."""
-    return DisturbedWayOut(disturbance, time, chance) if part == "bus_out" else None
+    return FaultyTxLink(disturbance, time, chance) if part == "bus_out" else None

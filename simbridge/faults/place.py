@@ -13,27 +13,27 @@ from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from hal.watchdog import POLL_S, TICKS_CEASED
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.disturbed_end import DisturbedEnd
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.hall import HALL
-from simbridge.faults.motors import ChangingWheels
-from simbridge.faults.parts import Part, disturbed_telemetry, disturbed_way_in, disturbed_way_out
-from simbridge.faults.way import Arrive, StraightWay, Way
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.disturbed_end import FaultyInterface
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.hall import CORRIDOR_WORLD
+from simbridge.faults.motors import FaultyWheels
+from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link
+from simbridge.faults.way import Deliver, FrameLink, IdealLink
 from simbridge.simulated_robot import SimulatedRobot
 
 
-class FaultyPlace:
+class SimulatedFaultRig:
     """Robot, bus and driver. The loop's ticks, the controller's cycle and the watchdog have phases of their own.
 
     The watchdog's thread is replaced by a look at moments of simulated time.
     """
 
     def __init__(
-        self, settings: RobotSettings, part: Part | None, disturbance: Disturbance, chance: random.Random
+        self, settings: RobotSettings, part: Part | None, disturbance: TimedFault, chance: random.Random
     ) -> None:
         """`part`: what the disturbance hits; None when that is not on this side of the driver."""
-        self.time = EventTime()
+        self.time = EventScheduler()
         self.disturbance = disturbance
         self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Called for each frame that the driver hands to its bus, before anything can happen to it."""
@@ -44,11 +44,11 @@ class FaultyPlace:
         self._chance = chance
         self._spec = f"faults-{uuid.UUID(int=chance.getrandbits(128))}-{id(self)}"
         self._put = self._carried = 0
-        self._notebooks_end: DisturbedEnd | None = None
-        self._robots_end: DisturbedEnd | None = None
+        self._notebooks_end: FaultyInterface | None = None
+        self._robots_end: FaultyInterface | None = None
         self._robots_bus = CanBus(self._spec, self._open_robots_end)
         self.simulation = SimulatedRobot(
-            settings, HALL, self._robots_bus, chance.getrandbits(32), wheels=self._wheels()
+            settings, CORRIDOR_WORLD, self._robots_bus, chance.getrandbits(32), wheels=self._wheels()
         )
         self.robot = self._driver()
         self.time.every(settings.can.cycle_s, 0.0, self.simulation.step)
@@ -77,19 +77,19 @@ class FaultyPlace:
         if self.robot.watchdog.check(self.time.now_s()):
             self.robot.emergency_stop(TICKS_CEASED)
 
-    def _open_robots_end(self, name: str) -> DisturbedEnd:
-        self._robots_end = DisturbedEnd(
+    def _open_robots_end(self, name: str) -> FaultyInterface:
+        self._robots_end = FaultyInterface(
             InProcessBus(name),
             self.time,
             outward=self._way_of_telemetry(),
-            inward=_Watched(StraightWay(), self._note_arrival),
+            inward=_Watched(IdealLink(), self._note_arrival),
             confirms=False,
             on_carried=self._notebook_hears,
         )
         return self._robots_end
 
-    def _open_notebooks_end(self, name: str) -> DisturbedEnd:
-        self._notebooks_end = DisturbedEnd(
+    def _open_notebooks_end(self, name: str) -> FaultyInterface:
+        self._notebooks_end = FaultyInterface(
             InProcessBus(name),
             self.time,
             outward=_Numbered(self._way_out(), self._note_put, self._note_coming_out),
@@ -119,19 +119,19 @@ class FaultyPlace:
         if frame.arbitration_id == CONTROL_ID:
             self.on_control(self._carried, bytes(frame.data))
 
-    def _way_of_telemetry(self) -> Way:
+    def _way_of_telemetry(self) -> FrameLink:
         codec = load_codec(self._settings.can.database)
-        return disturbed_telemetry(self._part, self.disturbance, self.time, self._chance, codec) or StraightWay()
+        return faulty_telemetry_link(self._part, self.disturbance, self.time, self._chance, codec) or IdealLink()
 
-    def _way_in(self) -> Way:
+    def _way_in(self) -> FrameLink:
         codec = load_codec(self._settings.can.database)
-        return disturbed_way_in(self._part, self.disturbance, self.time, self._chance, codec) or StraightWay()
+        return faulty_rx_link(self._part, self.disturbance, self.time, self._chance, codec) or IdealLink()
 
-    def _way_out(self) -> Way:
-        return disturbed_way_out(self._part, self.disturbance, self.time, self._chance) or StraightWay()
+    def _way_out(self) -> FrameLink:
+        return faulty_tx_link(self._part, self.disturbance, self.time, self._chance) or IdealLink()
 
-    def _wheels(self) -> ChangingWheels:
-        wheels = ChangingWheels(self._settings)
+    def _wheels(self) -> FaultyWheels:
+        wheels = FaultyWheels(self._settings)
         wheels.disturb(self._part, self.disturbance, self.time, self._chance)
         return wheels
 
@@ -139,11 +139,11 @@ class FaultyPlace:
 class _Watched:
     """A way that tells of each frame that sets out on it."""
 
-    def __init__(self, way: Way, note: Callable[[can.Message], None]) -> None:
+    def __init__(self, way: FrameLink, note: Callable[[can.Message], None]) -> None:
         self._way = way
         self._note = note
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """A frame sets out."""
         self._note(frame)
         self._way.carry(frame, arrive)
@@ -152,12 +152,12 @@ class _Watched:
 class _Numbered:
     """A way that numbers the frames that set out, and tells of each that comes out which one it is."""
 
-    def __init__(self, way: Way, note: Callable[[bytes], int], note_coming_out: Callable[[int], None]) -> None:
+    def __init__(self, way: FrameLink, note: Callable[[bytes], int], note_coming_out: Callable[[int], None]) -> None:
         self._way = way
         self._note = note
         self._note_coming_out = note_coming_out
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """A frame sets out. Raises OSError."""
         number = self._note(bytes(frame.data))
 

@@ -8,31 +8,31 @@ from typing import Protocol
 import can
 
 from hal.frame import Frame
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.event_time import EventTime
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.event_time import EventScheduler
 
 _ROUNDING_S = 1e-9
 
-Arrive = Callable[[can.Message], None]
+Deliver = Callable[[can.Message], None]
 
 
-class Way(Protocol):
+class FrameLink(Protocol):
     """Takes frames at one end and lets them arrive at the other, now, later or never."""
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """A frame sets out. Raises OSError where it cannot."""
         ...
 
 
-class StraightWay:
+class IdealLink:
     """Each frame arrives at once."""
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """It is there."""
         arrive(frame)
 
 
-class DisturbedWay:
+class FaultyLink:
     """Frames with some identifiers suffer, for the disturbance's span; they never overtake one another.
 
     What repeats itself repeats each identifier's last frame, unless `freeze` says what it is that stands still.
@@ -40,8 +40,8 @@ class DisturbedWay:
 
     def __init__(
         self,
-        disturbance: Disturbance,
-        time: EventTime,
+        disturbance: TimedFault,
+        time: EventScheduler,
         chance: random.Random,
         concerns: Set[int] | None,
         *,
@@ -57,10 +57,10 @@ class DisturbedWay:
         self._falsify = falsify
         self._newest: dict[int, can.Message] = {}
         self._passed_at_s: dict[int, float] = {}
-        self._late: deque[tuple[can.Message, Arrive]] = deque()
+        self._late: deque[tuple[can.Message, Deliver]] = deque()
         time.at(disturbance.end_s, self._let_all_arrive)
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """A frame sets out."""
         if self._concerns is not None and frame.arbitration_id not in self._concerns:
             arrive(frame)
@@ -70,7 +70,7 @@ class DisturbedWay:
         else:
             self._disturb(frame, arrive)
 
-    def _disturb(self, frame: can.Message, arrive: Arrive) -> None:
+    def _disturb(self, frame: can.Message, arrive: Deliver) -> None:
         frame_id, now_s = frame.arbitration_id, self._time.now_s()
         match self._disturbance.kind:
             case "off" | "intermittent":

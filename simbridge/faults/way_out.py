@@ -6,29 +6,29 @@ from collections import deque
 import can
 
 from hal.frame import Frame
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.way import Arrive
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.way import Deliver
 
 _ANOTHER_ID = 0x7E
 """Nobody listens to it."""
 
 
-class DisturbedWayOut:
+class FaultyTxLink:
     """off: sending fails. stuck: frames are taken and stay in the queue. slow: the queue moves once a period.
 
     garbage: payloads are garbled. wrong: the frames come out under another identifier. intermittent: taken and lost.
     """
 
-    def __init__(self, disturbance: Disturbance, time: EventTime, chance: random.Random) -> None:
+    def __init__(self, disturbance: TimedFault, time: EventScheduler, chance: random.Random) -> None:
         self._disturbance = disturbance
         self._time = time
         self._chance = chance
-        self._queue: deque[tuple[can.Message, Arrive]] = deque()
+        self._queue: deque[tuple[can.Message, Deliver]] = deque()
         self._next_at_s = disturbance.begin_s
         time.at(disturbance.end_s, self._let_all_out)
 
-    def carry(self, frame: can.Message, arrive: Arrive) -> None:
+    def carry(self, frame: can.Message, arrive: Deliver) -> None:
         """A frame sets out. Raises OSError where sending fails."""
         now_s = self._time.now_s()
         if not self._disturbance.acts(now_s):
@@ -51,7 +51,7 @@ class DisturbedWayOut:
             case "intermittent":
                 return
 
-    def _send_later(self, frame: can.Message, arrive: Arrive, at_s: float) -> None:
+    def _send_later(self, frame: can.Message, arrive: Deliver, at_s: float) -> None:
         self._queue.append((frame, arrive))
         self._time.at(at_s, self._let_one_out)
 

@@ -11,7 +11,7 @@ _NS_PER_S = 1_000_000_000
 _NEVER = (1 << 62, 1 << 62)
 
 
-class Disturbance:
+class BusNoise:
     """Noise on the wire. Asked about transmissions in the order of their time."""
 
     def __init__(self, settings: NoiseSettings, seed: int) -> None:
@@ -23,7 +23,7 @@ class Disturbance:
         self._next_set = self._set.pop() if self._set else _NEVER
         self._next_drawn = self._draw(0) if self._gap_ns else _NEVER
 
-    def strikes(self, start_ns: int, end_ns: int) -> int | None:
+    def corrupted_at_ns(self, start_ns: int, end_ns: int) -> int | None:
         """When noise first meets a transmission that would last from `start_ns` to `end_ns`; None: it does not."""
         while self._next_set[1] <= start_ns:
             self._next_set = self._set.pop() if self._set else _NEVER
@@ -42,7 +42,7 @@ class Disturbance:
         return int(-mean_ns * math.log(1.0 - self._bursts.fraction()))
 
 
-class Loss:
+class FrameLoss:
     """Receivers that miss frames which the wire carried."""
 
     def __init__(self, settings: LossSettings, seed: int) -> None:
@@ -50,7 +50,7 @@ class Loss:
         self._share_by_id = dict(settings.shares_by_id)
         self._noise = Noise(seed, "missed frames")
 
-    def misses(self, frame: can.Message) -> bool:
+    def drops(self, frame: can.Message) -> bool:
         """Whether a receiver misses this frame; to be asked once for each receiver."""
         share = self._share
         if self._share_by_id and not frame.is_extended_id:

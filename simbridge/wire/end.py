@@ -6,7 +6,7 @@ from simbridge.wire.settings import NodeSettings
 from simbridge.wire.wire import Wire
 
 
-class WireEnd:
+class WireInterface:
     """A controller of its own on the wire, with its reader (hal.bus_end.BusEnd).
 
     Opening one is plugging an adapter in: its counters begin at zero.

@@ -38,9 +38,9 @@ class ErrorCounters:
         elif self.receive:
             self.receive -= 1
 
-    def send_failed(self, *, unheard: bool) -> None:
-        """A frame of its own was destroyed, or `unheard`: nobody acknowledged it, which takes no node off the bus."""
-        if not (unheard and self.state is ErrorState.PASSIVE):
+    def send_failed(self, *, unacknowledged: bool) -> None:
+        """Count a destroyed own frame; a missing acknowledgement alone never leads to bus-off."""
+        if not (unacknowledged and self.state is ErrorState.PASSIVE):
             self.transmit += _SEND_ERROR
 
     def receive_failed(self) -> None:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.settings import SettingsError
-from simbridge.wire.end import WireEnd
+from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import WireSettings, load_wire
 from simbridge.wire.wire import Wire
 
@@ -63,8 +63,8 @@ class WiredLine:
                 f"allowed is less than the robot's cycle ({cycle_s})"
             )
         self.wire = Wire(settings, seed)
-        self.robot_end = CanBus(f"wire:{settings.name}", lambda _: WireEnd(self.wire, settings.robot))
-        self.notebook_end = CanBus(f"wire:{settings.name}", lambda _: WireEnd(self.wire, settings.notebook))
+        self.robot_end = CanBus(f"wire:{settings.name}", lambda _: WireInterface(self.wire, settings.robot))
+        self.notebook_end = CanBus(f"wire:{settings.name}", lambda _: WireInterface(self.wire, settings.notebook))
         self.robot_end.listen_to({CONTROL_ID})  # all that the robot reads; its own frames need not come back
         self._cycle_s = cycle_s
         self._phase_s = settings.notebook_phase_s

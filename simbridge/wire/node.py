@@ -11,7 +11,7 @@ from simbridge.wire.error_counters import ErrorCounters, ErrorState
 from simbridge.wire.error_frames import restarted_frame, state_frame
 from simbridge.wire.settings import NodeSettings, SendingOrder
 
-HEARD_FRAMES = 4096
+RX_QUEUE_FRAMES = 4096
 """Frames that wait for their reader; one that comes on top of them is lost to it."""
 
 
@@ -123,7 +123,7 @@ class WireNode:
         return wanted is None or (frame.arbitration_id in wanted and not frame.is_extended_id) or frame.is_error_frame
 
     def _keep(self, frame: can.Message) -> None:
-        if len(self.heard) >= HEARD_FRAMES:
+        if len(self.heard) >= RX_QUEUE_FRAMES:
             self.overrun += 1
             return
         self.heard.append(frame)

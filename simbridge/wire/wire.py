@@ -7,7 +7,7 @@ from threading import RLock
 import can
 
 from simbridge.wire.bits import INTERFRAME_BITS, bits_before_ack, bits_to_difference
-from simbridge.wire.disturbance import Disturbance, Loss
+from simbridge.wire.disturbance import BusNoise, FrameLoss
 from simbridge.wire.error_counters import ErrorState
 from simbridge.wire.node import Queued, WireNode
 from simbridge.wire.settings import NodeSettings, WireSettings
@@ -32,7 +32,7 @@ class _Transmission:
     start_ns: int
     end_ns: int
     destroyed: bool
-    unheard: bool
+    unacknowledged: bool
     """Destroyed for want of anybody who acknowledges it."""
 
 
@@ -61,8 +61,8 @@ class Wire:
         self.settings = settings
         self.counts = WireCounts()
         self._ns_per_bit = _NS_PER_S / settings.bit_rate_bit_s
-        self._disturbance = Disturbance(settings.noise, seed)
-        self._loss = Loss(settings.loss, seed)
+        self._disturbance = BusNoise(settings.noise, seed)
+        self._loss = FrameLoss(settings.loss, seed)
         self._lock = RLock()
         self._nodes: list[WireNode] = []
         self._transmission: _Transmission | None = None
@@ -171,17 +171,17 @@ class Wire:
             node for node in self._nodes if not node.off and node.hears_from_ns <= start_ns and node not in sending
         )
         wrong_bit = self._wrong_bit(start_ns, end_ns, [queued.frame for _, queued in senders])
-        unheard = wrong_bit is None and not others
-        if unheard:
+        unacknowledged = wrong_bit is None and not others
+        if unacknowledged:
             wrong_bit = bits_before_ack(first.bits)
         if wrong_bit is not None:
             end_ns = start_ns + self._ns(wrong_bit + 1 + ERROR_FRAME_BITS)
-        return _Transmission(senders, others, start_ns, end_ns, wrong_bit is not None, unheard)
+        return _Transmission(senders, others, start_ns, end_ns, wrong_bit is not None, unacknowledged)
 
     def _wrong_bit(self, start_ns: int, end_ns: int, frames: list[can.Message]) -> int | None:
         """The first bit that noise hits, or that two senders of one identifier see differently; None: there is none."""
         wrong: list[int] = []
-        strike_ns = self._disturbance.strikes(start_ns, end_ns)
+        strike_ns = self._disturbance.corrupted_at_ns(start_ns, end_ns)
         if strike_ns is not None:
             wrong.append(int((strike_ns - start_ns) / self._ns_per_bit))
         for other in frames[1:]:
@@ -197,7 +197,7 @@ class Wire:
         if done.destroyed:
             self.counts.destroyed += 1
             for node, queued in done.senders:
-                node.counters.send_failed(unheard=done.unheard)
+                node.counters.send_failed(unacknowledged=done.unacknowledged)
                 node.put_back(queued)
             for node in done.others:
                 node.counters.receive_failed()
@@ -220,7 +220,7 @@ class Wire:
         for node in done.others:
             node.counters.received()
             node.note_state(done.end_ns)
-            if self._loss.misses(frame):
+            if self._loss.drops(frame):
                 self.counts.missed += 1
             else:
                 node.hear(frame, time_s, own=False)

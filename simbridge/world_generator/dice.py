@@ -7,7 +7,7 @@ from typing import TypeVar
 T = TypeVar("T")
 
 
-class Dice:
+class SeededRandom:
     """Choices made from a text; only Random.random() is used, the one sequence that Python promises never to change."""
 
     def __init__(self, text: str) -> None:
@@ -15,16 +15,16 @@ class Dice:
 
     def length_m(self, least_m: float, most_m: float) -> float:
         """A length in whole centimetres, bounds included: sums of them differ nowhere by a last bit that matters."""
-        return round(round(least_m * 100) + self.whole(round((most_m - least_m) * 100) + 1)) / 100
+        return round(round(least_m * 100) + self.integer(round((most_m - least_m) * 100) + 1)) / 100
 
-    def whole(self, count: int) -> int:
+    def integer(self, count: int) -> int:
         """A whole number from 0 to below count."""
         return int(self._random() * count)
 
-    def of(self, choices: Sequence[T]) -> T:
+    def choice(self, choices: Sequence[T]) -> T:
         """One of them."""
-        return choices[self.whole(len(choices))]
+        return choices[self.integer(len(choices))]
 
-    def chance(self, share: float) -> bool:
+    def chance(self, probability: float) -> bool:
         """True in this share of cases."""
-        return self._random() < share
+        return self._random() < probability

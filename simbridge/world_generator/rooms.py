@@ -4,7 +4,7 @@ import math
 
 from simbridge.geometry import Edge, Point, is_convex, rectangle
 from simbridge.obstacle_settings import PolygonObstacleSettings, WallSettings
-from simbridge.world_generator.dice import Dice
+from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_generator.room_plan import RoomPlan
 from simbridge.world_generator.starts import starts_along_walls
 from simbridge.world_settings import WorldSettings
@@ -19,10 +19,10 @@ def room(seed: int) -> WorldSettings:
     name = f"rooms-{seed}"
     attempt = 0
     while True:
-        dice = Dice(f"{name}, attempt {attempt}")
-        plan = RoomPlan(dice.length_m(3.2, 5.0), dice.length_m(3.2, 4.6))
-        if _furnish(plan, dice):
-            starts = starts_along_walls(plan.floor, dice)
+        rng = SeededRandom(f"{name}, attempt {attempt}")
+        plan = RoomPlan(rng.length_m(3.2, 5.0), rng.length_m(3.2, 4.6))
+        if _furnish(plan, rng):
+            starts = starts_along_walls(plan.floor, rng)
             if len(starts) >= _LEAST_STARTS:
                 break
         attempt += 1
@@ -37,33 +37,33 @@ def room(seed: int) -> WorldSettings:
     )
 
 
-def _furnish(plan: RoomPlan, dice: Dice) -> bool:
+def _furnish(plan: RoomPlan, rng: SeededRandom) -> bool:
     """Cut corners, put walls and tables in; False when chance left the room too plain."""
     cuts = 0
-    wanted = _LEAST_CUTS + dice.whole(3)
+    wanted = _LEAST_CUTS + rng.integer(3)
     for _ in range(_TRIES):
-        cuts += plan.cut(_cut(plan, dice))
+        cuts += plan.cut(_cut(plan, rng))
         if cuts == wanted:
             break
     if (
         cuts < _LEAST_CUTS
         or is_convex(plan.corners[:-1])
-        or not any(plan.stand(_tongue(plan, dice)) for _ in range(_TRIES))
+        or not any(plan.stand(_spur_wall(plan, rng)) for _ in range(_TRIES))
     ):
         return False
-    if dice.chance(0.5):
-        any(plan.stand(_moved_wall(plan, dice)) for _ in range(_TRIES))
-    for i in range(dice.whole(3)):
-        any(plan.lay(_table(plan, dice, f"table-{i + 1}")) for _ in range(_TRIES))
+    if rng.chance(0.5):
+        any(plan.stand(_moved_wall(plan, rng)) for _ in range(_TRIES))
+    for i in range(rng.integer(3)):
+        any(plan.lay(_table(plan, rng, f"table-{i + 1}")) for _ in range(_TRIES))
     return True
 
 
-def _cut(plan: RoomPlan, dice: Dice) -> tuple[Point, ...]:
+def _cut(plan: RoomPlan, rng: SeededRandom) -> tuple[Point, ...]:
     """A corner or a piece of a side, as a box or slanted."""
-    side = dice.whole(4)
+    side = rng.integer(4)
     side_m = plan.width_m if side % 2 == 0 else plan.height_m
-    long_m, deep_m = dice.length_m(0.5, 1.4), dice.length_m(0.3, 1.1)
-    kind = dice.of(("boxed corner", "slanted corner", "box", "wedge"))
+    long_m, deep_m = rng.length_m(0.5, 1.4), rng.length_m(0.3, 1.1)
+    kind = rng.choice(("boxed corner", "slanted corner", "box", "wedge"))
     out_m = 0.1  # beyond the outline, so that no chink stays
     if kind == "boxed corner":
         shape = [(-out_m, -out_m), (long_m, -out_m), (long_m, deep_m), (-out_m, deep_m)]
@@ -71,9 +71,9 @@ def _cut(plan: RoomPlan, dice: Dice) -> tuple[Point, ...]:
         share = out_m / long_m
         shape = [(-out_m, -out_m), (long_m + out_m, -share * deep_m), (-out_m, deep_m * (1 + share))]
     else:
-        begin_m = dice.length_m(0.4, max(0.4, side_m - long_m - 0.4))
-        lean_m = 0.0 if kind == "box" else dice.length_m(0.15, 0.6)
-        end_m = begin_m + long_m + (0.0 if kind == "box" else dice.length_m(0.15, 0.6))
+        begin_m = rng.length_m(0.4, max(0.4, side_m - long_m - 0.4))
+        lean_m = 0.0 if kind == "box" else rng.length_m(0.15, 0.6)
+        end_m = begin_m + long_m + (0.0 if kind == "box" else rng.length_m(0.15, 0.6))
         shape = [(begin_m, 0.0), (end_m, 0.0), (begin_m + lean_m + 0.6 * long_m, deep_m), (begin_m + lean_m, deep_m)]
         if kind == "box":
             shape = [(begin_m, -out_m), (end_m, -out_m), (end_m, deep_m), (begin_m, deep_m)]
@@ -90,49 +90,49 @@ def _from_side(plan: RoomPlan, side: int, along_m: float, in_m: float) -> Point:
     )[side]
 
 
-def _tongue(plan: RoomPlan, dice: Dice) -> WallSettings:
+def _spur_wall(plan: RoomPlan, rng: SeededRandom) -> WallSettings:
     """A wall that reaches from the outline into the room; round its free end the robot turns back."""
-    return _leaning(plan, dice, "tongue", dice.length_m(0.8, 1.8))
+    return _leaning(plan, rng, "tongue", rng.length_m(0.8, 1.8))
 
 
-def _moved_wall(plan: RoomPlan, dice: Dice) -> WallSettings:
+def _moved_wall(plan: RoomPlan, rng: SeededRandom) -> WallSettings:
     """A wall that somebody moved to where it leans against another, or off it into the room."""
-    wall = _leaning(plan, dice, "moved-wall", dice.length_m(0.5, 1.2))
-    if dice.chance(0.5):
+    wall = _leaning(plan, rng, "moved-wall", rng.length_m(0.5, 1.2))
+    if rng.chance(0.5):
         return wall
-    return wall.moved(dice.length_m(-1.5, 1.5), dice.length_m(-1.5, 1.5))
+    return wall.moved(rng.length_m(-1.5, 1.5), rng.length_m(-1.5, 1.5))
 
 
-def _leaning(plan: RoomPlan, dice: Dice, name: str, length_m: float) -> WallSettings:
-    edge = dice.of(plan.edges(1.2))
-    at = _along(edge, (0.25, 0.75), dice)
+def _leaning(plan: RoomPlan, rng: SeededRandom, name: str, length_m: float) -> WallSettings:
+    edge = rng.choice(plan.edges(1.2))
+    at = _along(edge, (0.25, 0.75), rng)
     inwards_rad = math.atan2(edge[1][1] - edge[0][1], edge[1][0] - edge[0][0]) + math.pi / 2
-    inwards_rad += math.radians(dice.of((0, 0, -15, -10, 10, 15)))
+    inwards_rad += math.radians(rng.choice((0, 0, -15, -10, 10, 15)))
     return WallSettings(
         name=name,
         from_m=_beyond(at, -0.03, inwards_rad),
         to_m=_beyond(at, length_m, inwards_rad),
-        thickness_m=dice.length_m(0.06, 0.1),
+        thickness_m=rng.length_m(0.06, 0.1),
     )
 
 
-def _table(plan: RoomPlan, dice: Dice, name: str) -> PolygonObstacleSettings:
+def _table(plan: RoomPlan, rng: SeededRandom, name: str) -> PolygonObstacleSettings:
     """A box against a wall, or anywhere."""
-    long_m, deep_m = dice.length_m(0.4, 1.0), dice.length_m(0.4, 0.8)
-    if dice.chance(0.6):
-        edge = dice.of(plan.edges(0.8))
+    long_m, deep_m = rng.length_m(0.4, 1.0), rng.length_m(0.4, 0.8)
+    if rng.chance(0.6):
+        edge = rng.choice(plan.edges(0.8))
         heading_rad = math.atan2(edge[1][1] - edge[0][1], edge[1][0] - edge[0][0])
-        centre = _beyond(_along(edge, (0.0, 1.0), dice), deep_m / 2 - 0.02, heading_rad + math.pi / 2)
+        centre = _beyond(_along(edge, (0.0, 1.0), rng), deep_m / 2 - 0.02, heading_rad + math.pi / 2)
     else:
-        heading_rad = math.radians(15 * dice.whole(6))
-        centre = dice.length_m(0.0, plan.width_m), dice.length_m(0.0, plan.height_m)
+        heading_rad = math.radians(15 * rng.integer(6))
+        centre = rng.length_m(0.0, plan.width_m), rng.length_m(0.0, plan.height_m)
     corners = rectangle(centre, long_m, deep_m, heading_rad)
     return PolygonObstacleSettings(name=name, corners=tuple((round(x, 2), round(y, 2)) for x, y in corners))
 
 
-def _along(edge: Edge, shares: tuple[float, float], dice: Dice) -> Point:
+def _along(edge: Edge, shares: tuple[float, float], rng: SeededRandom) -> Point:
     (ax, ay), (bx, by) = edge
-    share = shares[0] + (shares[1] - shares[0]) * dice.whole(101) / 100
+    share = shares[0] + (shares[1] - shares[0]) * rng.integer(101) / 100
     return ax + share * (bx - ax), ay + share * (by - ay)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import shapely
 
 from simbridge.geometry import Edge, edges_of
-from simbridge.world_generator.dice import Dice
+from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_generator.drivable import TURNING_M
 from simbridge.world_settings import StartPoseSettings
 
@@ -17,20 +17,20 @@ _FARTHEST_M = 0.43
 _APART_M = 0.45
 
 
-def starts_along_walls(room: shapely.Polygon, dice: Dice) -> tuple[StartPoseSettings, ...]:
+def starts_along_walls(room: shapely.Polygon, rng: SeededRandom) -> tuple[StartPoseSettings, ...]:
     """Poses along the outer wall of a room, clockwise, each where the robot can turn; none where no wall is long."""
     clear = room.buffer(-TURNING_M)
     starts: list[StartPoseSettings] = []
     for a, b in _clockwise(room):
         length_m = math.dist(a, b)
-        along_m = _HALF_SEEN_M + dice.length_m(0.0, 0.2)
+        along_m = _HALF_SEEN_M + rng.length_m(0.0, 0.2)
         while along_m <= length_m - _HALF_SEEN_M:
-            start = _start(a, b, along_m / length_m, dice.length_m(TURNING_M + 0.01, _FARTHEST_M))
+            start = _start(a, b, along_m / length_m, rng.length_m(TURNING_M + 0.01, _FARTHEST_M))
             at = shapely.Point(start.x_m, start.y_m)
             near = any(math.dist((start.x_m, start.y_m), (each.x_m, each.y_m)) < _APART_M for each in starts)
             if clear.contains(at) and not near:
                 starts.append(start)
-            along_m += _APART_M + dice.length_m(0.0, 0.5)
+            along_m += _APART_M + rng.length_m(0.0, 0.5)
     return tuple(starts)
 
 

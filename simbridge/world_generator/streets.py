@@ -4,7 +4,7 @@ from itertools import accumulate, chain, product
 
 from simbridge.geometry import Point
 from simbridge.obstacle_settings import PolygonObstacleSettings
-from simbridge.world_generator.dice import Dice
+from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_settings import StartPoseSettings, StreetSettings, WorldSettings
 
 _NARROWEST_M, _WIDEST_M = 0.7, 1.1
@@ -17,13 +17,13 @@ Block = tuple[int, int]
 def streets(seed: int) -> WorldSettings:
     """The street grid of a seed: 3 to 5 streets each way, those at the border included."""
     name = f"streets-{seed}"
-    dice = Dice(name)
-    columns, rows = _Axis(2 + dice.whole(3), dice), _Axis(2 + dice.whole(3), dice)
+    rng = SeededRandom(name)
+    columns, rows = _Axis(2 + rng.integer(3), rng), _Axis(2 + rng.integer(3), rng)
     blocks = list(product(range(columns.blocks), range(rows.blocks)))
     # Not at the corners of the grid, where two streets at the border would go with the block.
     inner = [block for block in blocks if 0 < block[0] < columns.blocks - 1 or 0 < block[1] < rows.blocks - 1]
-    for _ in range(dice.whole(2 + len(inner) // 4) if inner else 0):
-        inner.remove(missing := dice.of(inner))
+    for _ in range(rng.integer(2 + len(inner) // 4) if inner else 0):
+        inner.remove(missing := rng.choice(inner))
         blocks.remove(missing)
     width_m, height_m = columns.length_m, rows.length_m
     built = set(blocks)
@@ -49,18 +49,18 @@ def streets(seed: int) -> WorldSettings:
             for column, row in blocks
         ),
         streets=_joined(stretches),
-        start_poses=tuple(_start(each, dice) for each in stretches),
+        start_poses=tuple(_start(each, rng) for each in stretches),
     )
 
 
 class _Axis:
     """Widths along one axis: a street, a block, a street, and so on, and a street at last."""
 
-    def __init__(self, blocks: int, dice: Dice) -> None:
+    def __init__(self, blocks: int, rng: SeededRandom) -> None:
         self.blocks = blocks
-        self.widths_m = [dice.length_m(_NARROWEST_M, _WIDEST_M) for _ in range(blocks + 1)]
+        self.widths_m = [rng.length_m(_NARROWEST_M, _WIDEST_M) for _ in range(blocks + 1)]
         """Of the streets."""
-        block_widths_m = [dice.length_m(0.6, 1.3) for _ in range(blocks)]
+        block_widths_m = [rng.length_m(0.6, 1.3) for _ in range(blocks)]
         both = chain.from_iterable(zip(self.widths_m, [*block_widths_m, 0.0], strict=True))
         self._edges_m = [0.0, *(round(edge_m, 2) for edge_m in accumulate(both))]
 
@@ -112,8 +112,8 @@ def _is_upright(street: StreetSettings) -> bool:
     return street.from_m[0] == street.to_m[0]
 
 
-def _start(street: StreetSettings, dice: Dice) -> StartPoseSettings:
+def _start(street: StreetSettings, rng: SeededRandom) -> StartPoseSettings:
     """Halfway between two junctions, one way or the other."""
     (ax, ay), (bx, by) = street.from_m, street.to_m
-    heading_deg = dice.of((90.0, -90.0)) if _is_upright(street) else dice.of((0.0, 180.0))
+    heading_deg = rng.choice((90.0, -90.0)) if _is_upright(street) else rng.choice((0.0, 180.0))
     return StartPoseSettings(x_m=round((ax + bx) / 2, 3), y_m=round((ay + by) / 2, 3), heading_deg=heading_deg)

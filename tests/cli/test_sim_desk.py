@@ -33,7 +33,7 @@ class Table:
         self.robot = self.standalone.robot
         self.asked: list[object] = []
         simulation = self.standalone.simulation
-        simulation.ask = lambda job: self.asked.append(job())  # type: ignore[method-assign]  # no thread runs here
+        simulation.submit = lambda job: self.asked.append(job())  # type: ignore[method-assign]  # no thread runs here
         self.desk = Desk(self.standalone, WORLD, SimulatedGround(self.robot, WORLD, ROBOT.geometry, simulation))
         self.news = News(self.standalone)
 

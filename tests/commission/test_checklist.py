@@ -92,7 +92,7 @@ async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path
         session.knows(speed_mode=SpeedMode.SPEED)
         await session.walk("wheels")
         workshop.step()
-        assert workshop.robot.controller.orders == (0.0, 0.0, True, True)
+        assert workshop.robot.controller.commands == (0.0, 0.0, True, True)
 
 
 async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_path: Path) -> None:

@@ -110,7 +110,7 @@ async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> Non
 
         def crash(question: Question) -> None:
             if question.about is Asked.MOVE:
-                workshop.robot.controller.dead = True
+                workshop.robot.controller.crashed = True
 
         session = Session(workshop, tmp_path, crash)
         await session.walk("modes")

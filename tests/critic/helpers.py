@@ -2,12 +2,12 @@
 
 from itertools import count
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import NAMES, load_critic
 from kurt2rt.rla.rla import CRITIC, Origin, Phase, Rla, RlaCreated
 
 SETTINGS = load_critic()
-FREE = Circumstances(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+FREE = AppraisalFeatures(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
 
 _numbers = count(1)
 
@@ -18,6 +18,6 @@ def origin(command_id: str | None = None, teacher: str = "ada", phase: Phase = P
 
 
 def appraisal(
-    rla_id: int, action: str, circumstances: Circumstances = FREE, said_by: Origin | None = None
+    rla_id: int, action: str, circumstances: AppraisalFeatures = FREE, said_by: Origin | None = None
 ) -> RlaCreated:
     return RlaCreated(Rla(rla_id, tuple(circumstances)[: len(NAMES)], action, None, said_by or origin(), level=CRITIC))

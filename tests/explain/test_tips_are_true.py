@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.tipping import Tip, tips
@@ -26,7 +26,7 @@ class Before:
     """A robot as it was before a tick."""
 
     replay: Replay
-    seen: list[Circumstances]
+    seen: list[AppraisalFeatures]
     """What it remembers of the ticks until then; nobody changes it, and a copy of the robot may share it."""
 
     def again(self) -> Replay:
@@ -39,7 +39,7 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
     run = stored(name)
     replay = Replay(run)
     action, chosen_at = None, 0
-    seen: list[Circumstances] = []
+    seen: list[AppraisalFeatures] = []
     for entry in run.entries():
         decided = entry.decision.cause in DECIDED
         regular = decided and entry.number % every_ticks == 0

@@ -6,7 +6,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.faults.suite import Trial, try_case
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, load_faults
 from kurt2rt.tasks.settings import TaskSettings, load_task
-from simbridge.faults.stage import FaultStage
+from simbridge.faults.stage import FaultRigFactory
 
 TABLE: FaultTable = load_faults()
 ROBOT: RobotSettings = load_robot(TABLE.robot)
@@ -21,7 +21,7 @@ def tried(target: Target, kind: Kind, *, seed: int = 1, robot: RobotSettings = R
     """The case, on this robot; `must`: what the table says otherwise."""
     case = case_of(target, kind)
     case = case._replace(must=case.must.model_copy(update=must))
-    return anyio.run(try_case, FaultStage(robot), case, TABLE, robot, TASK, seed)
+    return anyio.run(try_case, FaultRigFactory(robot), case, TABLE, robot, TASK, seed)
 
 
 def with_guard(**limits: float) -> RobotSettings:

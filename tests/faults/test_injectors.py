@@ -11,29 +11,29 @@ from hal.frame import Frame
 from kurt2rt.faults.clocks import BrokenClockError, DisturbedClock, DrillClock
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.witness import Stand, Witness
-from simbridge.faults.disturbance import Disturbance, Kind
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.motors import ChangingWheels
-from simbridge.faults.place import FaultyPlace
-from simbridge.faults.stage import FaultStage
-from simbridge.faults.way import DisturbedWay, StraightWay
-from simbridge.faults.way_out import DisturbedWayOut
+from simbridge.faults.disturbance import Kind, TimedFault
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.motors import FaultyWheels
+from simbridge.faults.place import SimulatedFaultRig
+from simbridge.faults.stage import FaultRigFactory
+from simbridge.faults.way import FaultyLink, IdealLink
+from simbridge.faults.way_out import FaultyTxLink
 from tests.faults.helpers import ROBOT, TABLE
 
 BOARD, OTHER = 0x10, 0x20
 CYCLES = 40
 
 
-def fault(kind: Kind, *, period_s: float = 0.05, delay_s: float = 0.025) -> Disturbance:
+def fault(kind: Kind, *, period_s: float = 0.05, delay_s: float = 0.025) -> TimedFault:
     """From shortly before 0.1 s to shortly before 0.3 s."""
-    return Disturbance(kind, 0.095, 0.295, period_s, delay_s)
+    return TimedFault(kind, 0.095, 0.295, period_s, delay_s)
 
 
 # Time
 
 
 def test_time_lets_everybody_act_at_his_moment() -> None:
-    time, acted = EventTime(), list[tuple[str, float]]()
+    time, acted = EventScheduler(), list[tuple[str, float]]()
     time.every(0.01, 0.005, lambda: acted.append(("cycle", round(time.now_s(), 6))))
     time.at(0.02, lambda: acted.append(("once", time.now_s())))
     time.run_until(0.02)
@@ -43,7 +43,7 @@ def test_time_lets_everybody_act_at_his_moment() -> None:
 
 
 def test_time_passes_inside_of_what_hangs() -> None:
-    time, acted = EventTime(), list[float]()
+    time, acted = EventScheduler(), list[float]()
     time.every(0.01, 0.0, lambda: acted.append(time.now_s()))
     time.run_until(0.001)
     time.run_until(time.now_s() + 0.1)  # a tick that hangs
@@ -53,7 +53,7 @@ def test_time_passes_inside_of_what_hangs() -> None:
 # Frames on their way
 
 
-def sent_through(way: DisturbedWay | DisturbedWayOut | StraightWay, time: EventTime) -> list[tuple[float, int, bytes]]:
+def sent_through(way: FaultyLink | FaultyTxLink | IdealLink, time: EventScheduler) -> list[tuple[float, int, bytes]]:
     """A numbered frame of each identifier in every cycle; what arrived, and when."""
     arrived: list[tuple[float, int, bytes]] = []
 
@@ -69,8 +69,8 @@ def sent_through(way: DisturbedWay | DisturbedWayOut | StraightWay, time: EventT
 
 
 def telemetry(kind: Kind) -> list[tuple[float, int, bytes]]:
-    time = EventTime()
-    way = DisturbedWay(
+    time = EventScheduler()
+    way = FaultyLink(
         fault(kind),
         time,
         random.Random(1),
@@ -131,8 +131,8 @@ def test_intermittent_comes_and_goes() -> None:
 
 
 def out(kind: Kind) -> list[tuple[float, int, bytes]]:
-    time = EventTime()
-    return sent_through(DisturbedWayOut(fault(kind), time, random.Random(1)), time)
+    time = EventScheduler()
+    return sent_through(FaultyTxLink(fault(kind), time, random.Random(1)), time)
 
 
 def test_a_way_out_that_is_off_raises_and_one_that_is_stuck_gives_all_at_the_end() -> None:
@@ -157,9 +157,9 @@ def test_a_way_out_that_is_wrong_says_it_under_another_name() -> None:
 
 def wheels(kind: Kind, brake_at: int = 28) -> list[tuple[float, float]]:
     """Both sides' speeds after each cycle, told 0.3 m/s, and to brake from a cycle on."""
-    time = EventTime()
-    wrong = Disturbance(kind, 0.095, 1.0, 1.0, 0.15)
-    driven = ChangingWheels(ROBOT)
+    time = EventScheduler()
+    wrong = TimedFault(kind, 0.095, 1.0, 1.0, 0.15)
+    driven = FaultyWheels(ROBOT)
     driven.disturb("left_motor", wrong, time, random.Random(1))
     speeds = []
     for cycle in range(CYCLES):
@@ -191,7 +191,7 @@ def test_a_motor_fails_as_its_kind_says() -> None:
 
 
 async def test_a_sound_clock_waits_exactly() -> None:
-    time = EventTime()
+    time = EventScheduler()
     clock = DrillClock(time)
     await clock.wait_until(0.25)
     assert clock.now_s() == time.now_s() == 0.25
@@ -202,7 +202,7 @@ async def test_a_sound_clock_waits_exactly() -> None:
     [("stuck", 0.295), ("wrong", 0.225), ("delayed", 0.225), ("slow", 0.3), ("intermittent", 0.195), ("garbage", 0.2)],
 )
 async def test_a_clock_wakes_the_loop_by_its_own_time(kind: Kind, woken_at_s: float) -> None:
-    time = EventTime()
+    time = EventScheduler()
     clock = DisturbedClock(time, fault(kind))
     await clock.wait_until(0.09)
     assert time.now_s() == 0.09
@@ -211,7 +211,7 @@ async def test_a_clock_wakes_the_loop_by_its_own_time(kind: Kind, woken_at_s: fl
 
 
 async def test_a_clock_that_is_off_cannot_be_read_and_one_that_gives_garbage_gives_no_number() -> None:
-    time = EventTime()
+    time = EventScheduler()
     time.run_until(0.15)
     with pytest.raises(BrokenClockError):
         DisturbedClock(time, fault("off")).now_s()
@@ -225,13 +225,13 @@ async def test_a_clock_that_is_off_cannot_be_read_and_one_that_gives_garbage_giv
 
 
 @pytest.fixture
-def place() -> Iterator[FaultyPlace]:
-    opened = FaultStage(ROBOT).open("tick", "stuck", begin_s=1.0, end_s=2.0, period_s=1.0, delay_s=1.0, seed=1)
+def place() -> Iterator[SimulatedFaultRig]:
+    opened = FaultRigFactory(ROBOT).open("tick", "stuck", begin_s=1.0, end_s=2.0, period_s=1.0, delay_s=1.0, seed=1)
     yield opened
     opened.close()
 
 
-def test_the_witness_knows_when_the_robot_stands(place: FaultyPlace) -> None:
+def test_the_witness_knows_when_the_robot_stands(place: SimulatedFaultRig) -> None:
     witness = Witness(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):

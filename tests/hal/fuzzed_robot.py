@@ -87,6 +87,6 @@ class FuzzedRobot:
     def _judge(self, record: TickRecord) -> None:
         self.onlooker.judge(record.now_s, record.grant)
         assert all(0 <= counts <= 1023 for counts in record.senses.infrared_counts)
-        orders = self.simulation.controller.orders
+        orders = self.simulation.controller.commands
         assert math.isfinite(orders.left_m_s)
         assert math.isfinite(orders.right_m_s)

@@ -76,18 +76,18 @@ def tell_the_controller(seed: int, cycles: int) -> MicroController:
         told = [frames.for_control() for _ in range(50)]
         for frame in told:
             stranger.send(frame, 0)
-        before = controller.orders
+        before = controller.commands
         robot.step()
         stranger.recv(0)
         understood += sum(map(is_whole_control, told))
         assert controller.control_frames == understood
-        orders = controller.orders
+        orders = controller.commands
         assert math.isfinite(orders.left_m_s)
         assert math.isfinite(orders.right_m_s)
         for was_m_s, is_m_s in zip(before[:2], orders[:2], strict=True):
             assert abs(is_m_s) - abs(was_m_s) <= CRASH_STEP_M_S
         assert max(map(abs, robot.wheel_speeds)) <= ROBOT.motors.maximum_speed_m_s
-        was_dead = was_dead or controller.dead
+        was_dead = was_dead or controller.crashed
     assert was_dead, "nothing ever made it crash"
     bus.shutdown()
     stranger.shutdown()

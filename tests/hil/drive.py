@@ -11,7 +11,7 @@ from hal.kurt2 import Kurt2
 from hal.robot import Grant, Senses, WheelSpeeds
 from hal.robot_settings import load_robot
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.steady_bus import SteadyBus
+from simbridge.steady_bus import ReconnectingBus
 from tests.simbridge.rig import room
 
 FORWARD = WheelSpeeds(0.3, 0.3)
@@ -28,7 +28,7 @@ class Drive:
         self._cycle_s = settings.can.cycle_s
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
-        self.simulated = SimulatedRobot(settings, room(), SteadyBus(self._far_end, lambda: self.now_s), seed=3)
+        self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
         self.senses = Senses(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
         self.grant = Grant(FORWARD, (), False)
 

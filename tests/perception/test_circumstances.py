@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import Senses
 from hal.settings import SettingsError
 from kurt2rt.critic.settings import CriticSettings, load_critic
@@ -31,8 +31,8 @@ def perception() -> CircumstancesPerception:
     return CircumstancesPerception(CRITIC, ROBOT)
 
 
-def after(seconds: float, of: CircumstancesPerception, sensed: Senses, *, driving: bool = True) -> Circumstances:
-    """Circumstances of the last tick of so many alike."""
+def after(seconds: float, of: CircumstancesPerception, sensed: Senses, *, driving: bool = True) -> AppraisalFeatures:
+    """AppraisalFeatures of the last tick of so many alike."""
     for _ in range(round(seconds * 100)):
         circumstances = of.perceive(sensed, driving=driving)
     return circumstances
@@ -55,7 +55,7 @@ def test_the_nearest_thing_of_each_side_counts() -> None:
 
 
 def test_where_nothing_is_seen_it_is_far_and_there_is_no_angle() -> None:
-    assert perception().perceive(senses(), driving=False) == Circumstances(*[FAR_M] * 6, *[0.0] * 7)
+    assert perception().perceive(senses(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
 
 def test_the_angle_is_that_by_which_the_nose_is_turned_away() -> None:
@@ -144,14 +144,14 @@ def test_a_robot_that_was_blind_begins_anew() -> None:
     blinded = perception()
     after(10.0, blinded, senses(0.2, -0.2, bumpers=1))
     here = blinded.perceive(senses(age_s=0.06), driving=False)
-    assert here == Circumstances(*[FAR_M] * 6, *[0.0] * 7)
+    assert here == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
     here = after(1.99, blinded, senses())
     assert (here.bumped, here.no_progress, here.no_wall) == (0.0, 0.0, 0.0)
 
 
 def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
     unborn = Senses(0.0, (0,) * 18, math.inf, 0, 0, math.inf, 0, math.inf)
-    assert after(5.0, perception(), unborn) == Circumstances(*[FAR_M] * 6, *[0.0] * 7)
+    assert after(5.0, perception(), unborn) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
 
 @given(

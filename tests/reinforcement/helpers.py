@@ -1,6 +1,6 @@
 """A robot on a line: its situation is one number, and all that learns goes on behind it, one tick in a call."""
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic
 from kurt2rt.critic.settings import AgreementSettings, BestSettings, CriticSettings, NeedSettings, SignalEverySettings
@@ -100,7 +100,9 @@ class Track:
         self.tick = 0
         self._commands = 0
 
-    def go(self, place: float, ticks: int = 1, seen: Circumstances = CALM, because: Cause | None = None) -> Decision:
+    def go(
+        self, place: float, ticks: int = 1, seen: AppraisalFeatures = CALM, because: Cause | None = None
+    ) -> Decision:
         """So many ticks in one place; returns the last decision."""
         self.learnt = []
         for _ in range(ticks):

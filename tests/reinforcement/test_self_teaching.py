@@ -2,7 +2,7 @@
 
 import pytest
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import BestSettings
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, MID, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
@@ -208,7 +208,7 @@ def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
 
 
 @pytest.mark.parametrize("seen", [CALM, CRASHED])
-def test_in_its_first_window_it_only_looks(seen: Circumstances) -> None:
+def test_in_its_first_window_it_only_looks(seen: AppraisalFeatures) -> None:
     robot = alone()
     known = robot.hash
     robot.go(HERE, 100, seen)

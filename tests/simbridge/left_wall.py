@@ -2,7 +2,7 @@
 
 import math
 
-from simbridge.sight import Sight
+from simbridge.sight import RayCaster
 from simbridge.world import World
 from simbridge.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT
@@ -14,8 +14,8 @@ def left_clearances_m(world: WorldSettings, start: int) -> list[float]:
     """Distance to the wall at the left of each left sensor at a start pose."""
     pose = world.start_poses[start].pose
     cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-    sight = Sight(World(world), 2.0)
-    sight.look_from(pose.x_m, pose.y_m)
+    sight = RayCaster(World(world), 2.0)
+    sight.set_origin(pose.x_m, pose.y_m)
     return [
         sight.distance_m(
             pose.x_m + sensor.x_m * cos - sensor.y_m * sin,

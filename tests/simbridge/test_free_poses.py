@@ -5,7 +5,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from simbridge.free_poses import FreePoses
-from simbridge.nearest import Nearest
+from simbridge.nearest import Clearance
 from simbridge.pose import Pose
 from simbridge.world import World
 from simbridge.world_settings import load_world
@@ -39,8 +39,8 @@ def test_close_to_something_it_still_touches_nothing() -> None:
 
 
 def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
-    nearest = Nearest(World(load_world("a")))
-    assert all(nearest.away_m((pose.x_m, pose.y_m)) < 0.45 + FARTHEST_SENSOR_M for pose in poses("a"))
+    nearest = Clearance(World(load_world("a")))
+    assert all(nearest.distance_m((pose.x_m, pose.y_m)) < 0.45 + FARTHEST_SENSOR_M for pose in poses("a"))
 
 
 def test_a_robot_that_is_set_down_there_tells_what_it_sees_from_nothing() -> None:
@@ -70,12 +70,12 @@ def test_the_same_chance_draws_the_same() -> None:
     ],
 )
 def test_the_nearest_face_in_whatever_direction(world: str, position: tuple[float, float], away_m: float) -> None:
-    assert Nearest(World(load_world(world))).away_m(position) == pytest.approx(away_m, abs=1e-9)
+    assert Clearance(World(load_world(world))).distance_m(position) == pytest.approx(away_m, abs=1e-9)
 
 
 def test_a_wall_that_was_moved_is_nearest_where_it_stands_now() -> None:
     world = World(load_world("a"))
-    nearest = Nearest(world)
-    before_m = nearest.away_m((0.6, 1.5))
+    nearest = Clearance(world)
+    before_m = nearest.distance_m((0.6, 1.5))
     world.move_wall("tongue", 0.0, 0.2)
-    assert nearest.away_m((0.6, 1.5)) == pytest.approx(before_m + 0.2)
+    assert nearest.distance_m((0.6, 1.5)) == pytest.approx(before_m + 0.2)

@@ -5,7 +5,7 @@ import pytest
 
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.pose import Pose
-from simbridge.sight import Sight
+from simbridge.sight import RayCaster
 from simbridge.world import World
 from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, quiet_robot, room
 
@@ -170,13 +170,13 @@ def test_sight_agrees_with_the_physics_engine_in_every_direction() -> None:
         boxes=[PolygonObstacleSettings(name="box", corners=((2.6, 1.0), (3.1, 1.2), (2.7, 1.6)))],
     )
     world = World(settings)
-    sight = Sight(world, 1.0)
+    sight = RayCaster(world, 1.0)
     for step in range(360):
         angle_rad = math.radians(step) + 1e-4
         x_m, y_m = 2.0 + 0.9 * math.cos(step), 2.0 + 0.9 * math.sin(step)
         if world.space.point_query_nearest((x_m, y_m), 0.0, pymunk.ShapeFilter()):
             continue  # within an obstacle
-        sight.look_from(x_m, y_m)
+        sight.set_origin(x_m, y_m)
         along = (math.cos(angle_rad), math.sin(angle_rad))
         end = (x_m + 0.8 * along[0], y_m + 0.8 * along[1])
         hit = world.space.segment_query_first((x_m, y_m), end, 0.0, pymunk.ShapeFilter())
@@ -184,8 +184,8 @@ def test_sight_agrees_with_the_physics_engine_in_every_direction() -> None:
 
 
 def test_rays_do_not_slip_through_corners() -> None:
-    sight = Sight(World(room()), 6.0)
-    sight.look_from(2.0, 2.0)
+    sight = RayCaster(World(room()), 6.0)
+    sight.set_origin(2.0, 2.0)
     for corner in ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)):
         dx, dy = corner[0] - 2.0, corner[1] - 2.0
         length_m = math.hypot(dx, dy)

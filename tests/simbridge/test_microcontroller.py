@@ -77,7 +77,7 @@ def test_the_newest_of_several_commands_wins() -> None:
         for cm_s in (-30, 10, 20):
             rig.tell(SpeedControl(Mode.SPEED_CM, cm_s, cm_s))
         rig.step()
-        assert rig.robot.controller.orders.left_m_s == 0.20
+        assert rig.robot.controller.commands.left_m_s == 0.20
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_a_step_from_zero_to_full_kills_it_until_reset(control: SpeedControl | R
     with Rig() as rig:
         rig.run(0.1, STAND)
         rig.run(1.0, control)
-        assert rig.robot.controller.dead
+        assert rig.robot.controller.crashed
         assert rig.frames == 0
         assert rig.robot.pose == Pose(2.0, 2.0, 0.0)
         rig.tell(SystemControl(Mode.ACTUATOR_ON))
@@ -110,7 +110,7 @@ def test_a_crash_while_driving_lets_the_robot_roll_out() -> None:
     with Rig() as rig:
         rig.run(1.0, FORWARD)
         rig.run(1.5, SpeedControl(Mode.SPEED_CM, 80, 80))
-        assert rig.robot.controller.dead
+        assert rig.robot.controller.crashed
         before = rig.robot.pose
         rig.run(0.2)
         assert rig.robot.pose.x_m == pytest.approx(before.x_m, abs=0.001)
@@ -121,7 +121,7 @@ def test_stopping_from_full_speed_at_once_is_no_crash() -> None:
         rig.robot.place(Pose(0.5, 2.0, 0.0))
         rig.drive(80, 80, 1.0)
         rig.run(1.0, STAND)
-        assert not rig.robot.controller.dead
+        assert not rig.robot.controller.crashed
         assert rig.heard["ENCODER"] == (0, 0) or abs(rig.speed_m_s) < 0.001
 
 
@@ -158,7 +158,7 @@ def test_a_reset_forgets_the_set_point_that_came_before_it() -> None:
     with Rig() as rig:
         rig.tell(FORWARD)
         rig.step(reset())
-        assert rig.robot.controller.orders.left_m_s == 0.0
+        assert rig.robot.controller.commands.left_m_s == 0.0
 
 
 def test_seven_frames_come_every_cycle_and_each_other_one_every_tenth() -> None:

@@ -93,8 +93,8 @@ def test_what_is_asked_is_done_in_order_by_the_thread_that_steps_before_its_next
             done.append((name, threading.current_thread().name, rig.robot.time_s))
 
         for name in ("first", "second"):
-            simulation.ask(functools.partial(job, name))
-        simulation.ask(finished.set)
+            simulation.submit(functools.partial(job, name))
+        simulation.submit(finished.set)
         with simulation:
             assert finished.wait(30.0)
         assert done == [("first", "simulated-robot", 0.0), ("second", "simulated-robot", 0.0)]
@@ -106,8 +106,8 @@ def test_what_is_asked_of_a_running_simulation_is_done_once_and_it_goes_on(monke
         times: list[float] = []
         with RealtimeSimulation(rig.robot) as simulation:
             done = threading.Event()
-            simulation.ask(lambda: times.append(rig.robot.time_s))
-            simulation.ask(done.set)
+            simulation.submit(lambda: times.append(rig.robot.time_s))
+            simulation.submit(done.set)
             assert done.wait(30.0)
             monkeypatch.setattr(rig.robot, "step", steps)
             assert steps.enough.wait(30.0)
@@ -120,7 +120,7 @@ def test_an_error_in_what_is_asked_ends_the_thread_and_comes_out_of_stop() -> No
 
     with Rig() as rig:
         simulation = RealtimeSimulation(rig.robot)
-        simulation.ask(fail)
+        simulation.submit(fail)
         simulation.start()
         assert simulation.wait(30.0)
         with pytest.raises(ValueError, match="a wall that is none"):
@@ -143,7 +143,7 @@ def test_while_it_is_held_only_its_holder_steps_it_and_what_is_asked_is_done(mon
             simulation.hold()
             by_whom.clear()
             asked: list[int] = []
-            simulation.ask(lambda: asked.append(len(by_whom)))
+            simulation.submit(lambda: asked.append(len(by_whom)))
             for _ in range(3):
                 simulation.step()
             assert by_whom == [threading.current_thread()] * 3

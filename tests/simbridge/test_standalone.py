@@ -75,7 +75,7 @@ def test_a_second_robot_on_the_bus_is_refused(name: str) -> None:
     with StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1) as first:
         stepped = threading.Event()
         end = open_bus(name)
-        first.simulation.ask(stepped.set)
+        first.simulation.submit(stepped.set)
         assert stepped.wait(30.0)
         with pytest.raises(BusError, match=r"a robot is on it already; end that one, or take another bus"):
             StandaloneRobot(ROBOT, WORLD, end, seed=2)

@@ -9,7 +9,7 @@ from hal.bus_end import BusEnd
 from hal.control import Mode, SpeedControl, control_frame
 from hal.in_process_bus import QUEUE_FRAMES, InProcessBus
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.steady_bus import SteadyBus
+from simbridge.steady_bus import ReconnectingBus
 from tests.simbridge.rig import CODEC, ROBOT, room
 
 SLOWLY = control_frame(SpeedControl(Mode.SPEED_CM, 20, 20))
@@ -23,7 +23,7 @@ class Adapter:
         self.now_s = 0.0
         self.tries = 0
         self.bus = CanBus("desk", self._open)
-        self.steady = SteadyBus(self.bus, lambda: self.now_s)
+        self.steady = ReconnectingBus(self.bus, lambda: self.now_s)
         self.notebook = open_bus("virtual:steady-bus-test")
         self.control = self.notebook.control_port()
         self._end: InProcessBus
@@ -60,20 +60,20 @@ def test_the_robot_stands_while_its_bus_is_gone_and_goes_on_when_it_is_back(adap
 
     cycles(50)
     assert min(robot.wheel_speeds) > 0.1
-    assert not robot.controller.unheard
+    assert not robot.controller.watchdog_expired
     adapter.unplug()
     cycles(60)
-    assert robot.controller.unheard
+    assert robot.controller.watchdog_expired
     assert robot.wheel_speeds == (0.0, 0.0)
-    assert adapter.steady.trouble
+    assert adapter.steady.error_text
     assert adapter.steady.lost > 100
     cycles(300)
     assert 3 <= adapter.tries - 1 <= 4  # once a second, and no oftener
-    assert adapter.steady.trouble == "bus 'desk': no such network interface"
+    assert adapter.steady.error_text == "bus 'desk': no such network interface"
     adapter.plugged_in = True
     cycles(150)
-    assert adapter.steady.trouble == ""
-    assert not robot.controller.unheard
+    assert adapter.steady.error_text == ""
+    assert not robot.controller.watchdog_expired
     assert min(robot.wheel_speeds) > 0.1
 
 
@@ -85,9 +85,9 @@ def test_one_full_queue_costs_its_frame_and_no_more(adapter: Adapter) -> None:
     assert adapter.steady.lost == 0
     port.send(encoder)
     assert adapter.steady.lost == 1
-    assert "too many frames waiting" in adapter.steady.trouble
+    assert "too many frames waiting" in adapter.steady.error_text
     assert len(adapter.notebook.drain()) == QUEUE_FRAMES
     adapter.steady.drain()
     port.send(encoder)
     adapter.steady.drain()
-    assert (adapter.steady.trouble, adapter.steady.lost, adapter.tries) == ("", 1, 1)
+    assert (adapter.steady.error_text, adapter.steady.lost, adapter.tries) == ("", 1, 1)

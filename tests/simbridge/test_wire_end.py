@@ -8,7 +8,7 @@ import can
 import pytest
 
 from hal.bus import BusError, CanBus
-from simbridge.wire.end import WireEnd
+from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import NodeSettings, SendingOrder
 from simbridge.wire.wire import Wire
 from tests.hal.bus_conformance import Behind, BusConformance, Join, joining
@@ -25,7 +25,7 @@ class TestWireEnd(BusConformance):
     @pytest.fixture
     def join(self) -> Iterator[Join]:
         wire = self.wire = quiet_wire()
-        with joining(lambda: CanBus("wire", lambda _: WireEnd(wire, DEEP))) as join:
+        with joining(lambda: CanBus("wire", lambda _: WireInterface(wire, DEEP))) as join:
             yield join
 
     def carry(self) -> None:
@@ -35,7 +35,7 @@ class TestWireEnd(BusConformance):
 def test_a_queue_holds_as_many_frames_as_it_is_set_to_and_then_says_so() -> None:
     small = NodeSettings(order=SendingOrder.FIFO, queue_frames=10, restart_s=None)
     wire = quiet_wire()
-    bus = CanBus("wire", lambda _: WireEnd(wire, small))
+    bus = CanBus("wire", lambda _: WireInterface(wire, small))
     (listener,) = ends_on(wire, 1)
     port = bus.telemetry_port()
     for _ in range(10):
@@ -66,7 +66,7 @@ def test_threads_that_send_at_once_lose_nothing_and_keep_their_order() -> None:
     wire.follow(lambda: next(ticks) * 1e-6)  # each call is a microsecond later
     numbers = range(800)
 
-    def send_all(end: WireEnd, frame_id: int) -> None:
+    def send_all(end: WireInterface, frame_id: int) -> None:
         for number in numbers:
             end.send(frame(frame_id, f"{number:016x}"))
 

@@ -5,8 +5,8 @@ import itertools
 import can
 import pytest
 
-from simbridge.wire.disturbance import Disturbance
-from simbridge.wire.end import WireEnd
+from simbridge.wire.disturbance import BusNoise
+from simbridge.wire.end import WireInterface
 from simbridge.wire.error_counters import ErrorCounters, ErrorState
 from simbridge.wire.error_frames import restarted_frame, state_frame
 from simbridge.wire.wire import Wire
@@ -207,9 +207,9 @@ def test_a_destroyed_share_is_sent_again_and_nothing_is_missing() -> None:
 
 
 def test_bursts_of_chance_come_as_often_and_last_as_long_as_they_are_set_to() -> None:
-    noise = Disturbance(settings(gap_s=0.01, length_s=0.002).noise, seed=5)
+    noise = BusNoise(settings(gap_s=0.01, length_s=0.002).noise, seed=5)
     step_ns, steps = 50_000, 400_000
-    noisy = [noise.strikes(at * step_ns, at * step_ns + 1) is not None for at in range(steps)]
+    noisy = [noise.corrupted_at_ns(at * step_ns, at * step_ns + 1) is not None for at in range(steps)]
     bursts = sum(now and not before for before, now in itertools.pairwise(noisy))
     seconds = steps * step_ns / 1e9
     assert bursts == pytest.approx(seconds / 0.012, rel=0.1)
@@ -278,11 +278,11 @@ def test_counters_follow_the_rules_of_can() -> None:
     counters.received()
     assert (counters.receive, counters.state) == (119, ErrorState.WARNING)
     for _ in range(31):
-        counters.send_failed(unheard=False)
+        counters.send_failed(unacknowledged=False)
     assert (counters.transmit, counters.state) == (248, ErrorState.PASSIVE)
-    counters.send_failed(unheard=True)
+    counters.send_failed(unacknowledged=True)
     assert (counters.transmit, counters.state) == (248, ErrorState.PASSIVE)
-    counters.send_failed(unheard=False)
+    counters.send_failed(unacknowledged=False)
     assert (counters.transmit, counters.state) == (256, ErrorState.BUS_OFF)
 
 
@@ -330,6 +330,6 @@ def test_an_end_that_is_unplugged_while_its_frame_is_destroyed_does_not_try_agai
     leaving.shutdown()
     wire.advance(1.0)
     assert wire.counts.destroyed == 1
-    late = WireEnd(wire, FIFO)
+    late = WireInterface(wire, FIFO)
     wire.advance(2.0)
     assert waiting(late) == []

@@ -1,6 +1,6 @@
 """When each frame is there, to the bit, against a schedule worked out by hand."""
 
-from simbridge.wire.end import WireEnd
+from simbridge.wire.end import WireInterface
 from simbridge.wire.wire import Wire
 from tests.simbridge.wires import (
     BY_IDENTIFIER,
@@ -123,7 +123,7 @@ def test_what_is_queued_at_the_moment_at_which_the_wire_is_free_takes_part() -> 
     assert [message.arbitration_id for message in waiting(listener)] == [0x04, 0x01, 0x05]
 
 
-def order_of(sender: WireEnd, wire: Wire, listener: WireEnd) -> list[int]:
+def order_of(sender: WireInterface, wire: Wire, listener: WireInterface) -> list[int]:
     for frame_id in (0x18, 0x0A, 0x01):
         sender.send(frame(frame_id))
     wire.advance(0.01)

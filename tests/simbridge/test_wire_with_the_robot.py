@@ -163,7 +163,7 @@ def test_in_real_time_the_wire_goes_by_the_clock() -> None:
     with closing(SimulatedArena(ROBOT, "a", 1, "wire", "one_megabit")) as arena, arena.live() as simulation:
         for _ in range(3):  # the frames of one cycle are out when the next one begins
             stepped = threading.Event()
-            simulation.ask(stepped.set)
+            simulation.submit(stepped.set)
             assert stepped.wait(5.0)
         senses = arena.robot.sense(0.0)
         assert 0.0 <= senses.encoder_age_s < 5.0

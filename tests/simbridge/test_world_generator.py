@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from hal.settings import SettingsError
-from simbridge.world_generator.dice import Dice
+from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
 from simbridge.world_settings import WorldSettings, load_world
 from tests.simbridge.left_wall import left_clearances_m
@@ -107,10 +107,10 @@ def test_other_seeds_are_other_worlds() -> None:
 
 
 def test_dice_fall_within_their_bounds_and_reach_them() -> None:
-    dice = Dice("bounds")
-    lengths = {dice.length_m(0.7, 1.1) for _ in range(2000)}
+    rng = SeededRandom("bounds")
+    lengths = {rng.length_m(0.7, 1.1) for _ in range(2000)}
     assert (min(lengths), max(lengths), len(lengths)) == (0.7, 1.1, 41)
-    assert {dice.whole(3) for _ in range(100)} == {0, 1, 2}
+    assert {rng.integer(3) for _ in range(100)} == {0, 1, 2}
 
 
 def test_a_gap_that_the_robot_does_not_fit_through_is_not_drivable() -> None:

@@ -3,7 +3,7 @@
 import can
 
 from hal.frame import Frame
-from simbridge.wire.end import WireEnd
+from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import LossSettings, NodeSettings, NoiseSettings, SendingOrder, WireSettings
 from simbridge.wire.wire import Wire
 
@@ -43,15 +43,15 @@ def quiet_wire() -> Wire:
     return Wire(settings(), seed=1)
 
 
-def ends_on(wire: Wire, number: int, node: NodeSettings = FIFO) -> list[WireEnd]:
-    return [WireEnd(wire, node) for _ in range(number)]
+def ends_on(wire: Wire, number: int, node: NodeSettings = FIFO) -> list[WireInterface]:
+    return [WireInterface(wire, node) for _ in range(number)]
 
 
 def frame(frame_id: int, payload: str = "0000000000000000") -> Frame:
     return Frame(frame_id, bytes.fromhex(payload))
 
 
-def waiting(end: WireEnd) -> list[can.Message]:
+def waiting(end: WireInterface) -> list[can.Message]:
     """All that waits at an end, oldest first."""
     found = []
     while (message := end.recv(0)) is not None:
@@ -59,15 +59,15 @@ def waiting(end: WireEnd) -> list[can.Message]:
     return found
 
 
-def others_frames(end: WireEnd) -> list[can.Message]:
+def others_frames(end: WireInterface) -> list[can.Message]:
     return [message for message in waiting(end) if message.is_rx and not message.is_error_frame]
 
 
-def confirmations(end: WireEnd) -> list[can.Message]:
+def confirmations(end: WireInterface) -> list[can.Message]:
     return [message for message in waiting(end) if not message.is_rx]
 
 
-def error_frames(end: WireEnd) -> list[can.Message]:
+def error_frames(end: WireInterface) -> list[can.Message]:
     return [message for message in waiting(end) if message.is_error_frame]
 
 

@@ -13,7 +13,7 @@ from kurt2rt.soak.day import Day
 from kurt2rt.soak.result import SoakResult
 from kurt2rt.soak.settings import MoodSettings, SoakSettings, load_soak
 from kurt2rt.tasks.settings import TaskSettings, load_task
-from simbridge.faults.lasting_place import LastingPlace
+from simbridge.faults.lasting_place import LongRunRig
 
 DAY: SoakSettings = load_soak()
 TABLE: FaultTable = load_faults(DAY.faults)
@@ -44,7 +44,7 @@ def recording_in(folder: Path) -> Recording:
 
 def soaked(folder: Path, minutes: float, soak: SoakSettings, seed: int = 1) -> SoakResult:
     """What a day comes to."""
-    place = LastingPlace(ROBOT, soak.world, seed)
+    place = LongRunRig(ROBOT, soak.world, seed)
     try:
         day = Day(place, soak, TABLE, ROBOT, TASK, service_in(folder), recording_in(folder), seed=seed)
         return anyio.run(day.run, minutes / 60.0, lambda _: None)

@@ -7,8 +7,8 @@ import pytest
 
 from hal.bus import CanBus
 from simbridge.faults.cable import Cable
-from simbridge.faults.changing_end import ChangingEnd, Ways
-from simbridge.faults.event_time import EventTime
+from simbridge.faults.changing_end import Links, SwitchableInterface
+from simbridge.faults.event_time import EventScheduler
 from tests.hal.bus_conformance import Behind, ErrorFrameConformance, Join, joining
 
 
@@ -18,7 +18,7 @@ class TestChangingEnd(ErrorFrameConformance):
 
     @pytest.fixture
     def join(self) -> Iterator[Join]:
-        time = EventTime()
+        time = EventScheduler()
         cable = Cable(time.now_s)
-        with joining(lambda: CanBus("cable", lambda _: ChangingEnd(cable.open(), Ways(), time.now_s))) as join:
+        with joining(lambda: CanBus("cable", lambda _: SwitchableInterface(cable.open(), Links(), time.now_s))) as join:
             yield join

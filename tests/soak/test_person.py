@@ -13,7 +13,7 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.person import Person
 from kurt2rt.teaching.commands import CommandResult, Resume
 from kurt2rt.tick import TickRecord
-from simbridge.faults.lasting_place import LastingPlace
+from simbridge.faults.lasting_place import LongRunRig
 from tests.soak.helpers import CYCLE_S, ROBOT
 
 AHEAD = WheelSpeeds(0.3, 0.3)
@@ -21,14 +21,14 @@ PATIENCE_S = 1.5
 
 
 @pytest.fixture
-def place() -> Iterator[LastingPlace]:
-    place = LastingPlace(ROBOT, "a", seed=2)
+def place() -> Iterator[LongRunRig]:
+    place = LongRunRig(ROBOT, "a", seed=2)
     place.start_driver("none")
     yield place
     place.close()
 
 
-def drive(place: LastingPlace, person: Person, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
+def drive(place: LongRunRig, person: Person, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
     """Tick by tick, with somebody who says *Go* at once whenever the robot stops itself; the person looks on."""
     robot, time = place.robot, place.time
     assert robot is not None
@@ -47,20 +47,20 @@ def seen(grant: Grant, *commands: Resume) -> TickRecord:
     return cast(TickRecord, SimpleNamespace(grant=grant, decision=decision, commands=commands, results=results))
 
 
-def test_a_robot_that_makes_its_way_is_left_alone(place: LastingPlace) -> None:
+def test_a_robot_that_makes_its_way_is_left_alone(place: LongRunRig) -> None:
     person = Person(place, PATIENCE_S, CYCLE_S)
     drive(place, person, 2.5)
     assert (person.set_down, person.switched_on) == (0, 0)
 
 
-def test_one_that_makes_no_way_is_set_down_elsewhere(place: LastingPlace) -> None:
+def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
     person = Person(place, PATIENCE_S, CYCLE_S)
     drive(place, person, PATIENCE_S + 0.2, WheelSpeeds(0.1, -0.1))
     assert (person.set_down, person.switched_on) == (1, 0)
 
 
 def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
-    place: LastingPlace, monkeypatch: pytest.MonkeyPatch
+    place: LongRunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """ACTUATOR_OFF (reference 1.3) holds through any number of programs."""
     monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
@@ -78,7 +78,7 @@ def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
     assert min(place.simulation.wheel_speeds) > 0.2
 
 
-def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LastingPlace) -> None:
+def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LongRunRig) -> None:
     person, robot, time = Person(place, PATIENCE_S, CYCLE_S), place.robot, place.time
     assert robot is not None
     robot.emergency_stop(WHEELS_DISOBEY)
@@ -90,7 +90,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
     assert person.set_down == 0
 
 
-def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LastingPlace) -> None:
+def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
     person = Person(place, PATIENCE_S, CYCLE_S)
     again = Grant(STANDSTILL, (WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")

@@ -9,22 +9,22 @@ from hal.guard import BUS_BLOCKED
 from hal.robot import STANDSTILL, Grant, WheelSpeeds
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.soak.clock import SoakClock
-from simbridge.faults.disturbance import Disturbance
-from simbridge.faults.event_time import EventTime
-from simbridge.faults.lasting_place import LastingPlace
+from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.lasting_place import LongRunRig
 from tests.soak.helpers import CYCLE_S, ROBOT, TABLE
 
 AHEAD = WheelSpeeds(0.2, 0.2)
 
 
 @pytest.fixture
-def place() -> Iterator[LastingPlace]:
-    place = LastingPlace(ROBOT, "a", seed=2)
+def place() -> Iterator[LongRunRig]:
+    place = LongRunRig(ROBOT, "a", seed=2)
     yield place
     place.close()
 
 
-def drive(place: LastingPlace, until_s: float, envelope: Envelope | None = None) -> Grant:
+def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -> Grant:
     """Ahead, tick by tick; the envelope sees what is put on the bus, and what arrives."""
     robot, time = place.robot, place.time
     assert robot is not None
@@ -42,7 +42,7 @@ def drive(place: LastingPlace, until_s: float, envelope: Envelope | None = None)
 
 
 @pytest.mark.parametrize("wire", ["none", "one_megabit", "lossy"])
-def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(place: LastingPlace, wire: str) -> None:
+def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(place: LongRunRig, wire: str) -> None:
     for until_s in (1.0, 2.0):
         place.start_driver(wire)
         assert drive(place, until_s).wheel_speeds == AHEAD
@@ -52,7 +52,7 @@ def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(place: LastingPl
         assert place.standing
 
 
-def test_one_fault_after_another_and_each_is_over_when_it_is_over(place: LastingPlace) -> None:
+def test_one_fault_after_another_and_each_is_over_when_it_is_over(place: LongRunRig) -> None:
     place.start_driver("none")
     drive(place, 1.0)
     for target, begin_s in (("sensor_board_1", 1.1), ("encoders", 2.1), ("bus_in", 3.1)):
@@ -63,7 +63,7 @@ def test_one_fault_after_another_and_each_is_over_when_it_is_over(place: Lasting
         assert drive(place, begin_s + 0.8).wheel_speeds == AHEAD
 
 
-def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(place: LastingPlace) -> None:
+def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     envelope = Envelope(TABLE.envelope)
     drive(place, 1.0, envelope)
@@ -75,7 +75,7 @@ def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(
         robot.release()
 
 
-def test_a_bus_that_lost_frames_and_is_well_again_takes_set_points_after_the_first_go(place: LastingPlace) -> None:
+def test_a_bus_that_lost_frames_and_is_well_again_takes_set_points_after_the_first_go(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     drive(place, 1.0)
     place.begin("bus_out", "intermittent", begin_s=1.0, end_s=1.1, period_s=0.2, delay_s=1.0)
@@ -85,7 +85,7 @@ def test_a_bus_that_lost_frames_and_is_well_again_takes_set_points_after_the_fir
     assert drive(place, 2.5).wheel_speeds == AHEAD
 
 
-def test_what_the_wheels_turned_is_what_the_robot_counts(place: LastingPlace) -> None:
+def test_what_the_wheels_turned_is_what_the_robot_counts(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     ticks = 0
     while place.time.now_s() < 2.0:
@@ -97,10 +97,10 @@ def test_what_the_wheels_turned_is_what_the_robot_counts(place: LastingPlace) ->
 
 
 async def test_a_clock_that_went_slow_does_not_get_back_what_it_lost() -> None:
-    time = EventTime()
+    time = EventScheduler()
     clock = SoakClock(time)
     await clock.wait_until(1.0)
-    clock.disturb(Disturbance("slow", 1.0, 2.0, 1.0, 1.0))
+    clock.disturb(TimedFault("slow", 1.0, 2.0, 1.0, 1.0))
     await clock.wait_until(1.5)
     assert time.now_s() == pytest.approx(2.0, abs=0.001)
     clock.mend()
@@ -112,7 +112,7 @@ async def test_a_clock_that_went_slow_does_not_get_back_what_it_lost() -> None:
 def test_the_same_seed_stands_at_the_same_place() -> None:
     poses = []
     for seed in (1, 1, 2):
-        place = LastingPlace(ROBOT, "a", seed)
+        place = LongRunRig(ROBOT, "a", seed)
         place.start_driver("lossy")
         drive(place, random.Random(7).uniform(0.5, 1.0))
         poses.append((place.simulation.pose, place.simulation.state_hash()))

@@ -14,7 +14,7 @@ from kurt2rt.perception.perception import Situation
 from kurt2rt.soak.life import Life
 from kurt2rt.soak.teacher import SoakTeacher
 from kurt2rt.soak.witness import SoakWitness
-from simbridge.faults.lasting_place import LastingPlace
+from simbridge.faults.lasting_place import LongRunRig
 from tests.soak.helpers import DAY, PATIENT, ROBOT, TABLE, TASK, recording_in, service_in
 
 AWAY = PATIENT.model_copy(update={"there": False})
@@ -32,18 +32,18 @@ class Careless:
 
 
 @pytest.fixture
-def place() -> Iterator[LastingPlace]:
-    place = LastingPlace(ROBOT, "a", seed=1)
+def place() -> Iterator[LongRunRig]:
+    place = LongRunRig(ROBOT, "a", seed=1)
     yield place
     place.close()
 
 
 @pytest.fixture
-def witness(place: LastingPlace) -> SoakWitness:
+def witness(place: LongRunRig) -> SoakWitness:
     return SoakWitness(place, TABLE.envelope)
 
 
-def started(folder: Path, place: LastingPlace, witness: SoakWitness, **moods: object) -> Life:
+def started(folder: Path, place: LongRunRig, witness: SoakWitness, **moods: object) -> Life:
     """A program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
@@ -61,11 +61,11 @@ def started(folder: Path, place: LastingPlace, witness: SoakWitness, **moods: ob
     )
 
 
-def run(life: Life, place: LastingPlace, until_s: float) -> None:
+def run(life: Life, place: LongRunRig, until_s: float) -> None:
     anyio.run(life.run, lambda _: None, lambda: place.time.now_s() >= until_s)
 
 
-def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 1.0)
     assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
@@ -73,7 +73,7 @@ def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: Lasting
 
 
 def test_one_that_drives_though_it_was_only_started_is_seen(
-    tmp_path: Path, place: LastingPlace, witness: SoakWitness, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tick, "standing", lambda decision, _: decision)
     life = started(tmp_path, place, witness, away=AWAY)
@@ -86,7 +86,7 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
 
 
 def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
-    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness
 ) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     assert life.level.behind is not None
@@ -96,7 +96,7 @@ def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_w
     assert witness.stands
 
 
-def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 0.5)
     assert witness.complaints.count == 0
@@ -106,7 +106,7 @@ def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: Lasting
     assert "done and 1 missed are not as many" in witness.complaints.told[0]
 
 
-def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LastingPlace, witness: SoakWitness) -> None:
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, patient=PATIENT)
     run(life, place, 3.0)
     life.knowledge.submitted.append("soak-999")
@@ -114,7 +114,7 @@ def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: Lasti
 
 
 def test_an_error_in_the_loop_ends_the_program_and_says_where(
-    tmp_path: Path, place: LastingPlace, witness: SoakWitness
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness
 ) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     life.level.behind = None

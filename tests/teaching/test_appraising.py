@@ -2,7 +2,7 @@
 
 import pytest
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import NAMES
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
@@ -63,9 +63,9 @@ def test_another_opinion_near_an_appraisal_replaces_and_farther_off_inserts() ->
     assert appraise(robot, "good", "x-2").text == "appraisal RLA 3 taught: good"
 
 
-def beyond(robot: Track) -> Circumstances:
-    """Circumstances just farther from CALM than another opinion may replace."""
-    weight = QUICK.weight_vector[Circumstances._fields.index("front_m")]
+def beyond(robot: Track) -> AppraisalFeatures:
+    """AppraisalFeatures just farther from CALM than another opinion may replace."""
+    weight = QUICK.weight_vector[AppraisalFeatures._fields.index("front_m")]
     return CALM._replace(front_m=CALM.front_m - 1.01 * robot.critic.insert_beyond / weight)
 
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from behaviors.judges.judge import Circumstances
+from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, Grant
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
@@ -32,7 +32,7 @@ GOOD, NEUTRAL, BAD = 1, 0, -1
 class LeftIsTheVerdict:
     """Thinks as a test says: what is left of the robot is its opinion."""
 
-    def judge(self, circumstances: Circumstances) -> int:
+    def judge(self, circumstances: AppraisalFeatures) -> int:
         return int(circumstances.left_m)
 
 
@@ -40,7 +40,7 @@ def record(tick: int, verdict: int, cause: Cause = Cause.RLA) -> TickRecord:
     """A tick in which RLA 1 drives, or the hand, or nobody."""
     driving = cause in (Cause.RLA, Cause.TEACHER)
     rla_id = 1 if cause is Cause.RLA else None
-    circumstances = Circumstances(*[0.0] * len(Circumstances._fields))._replace(left_m=float(verdict))
+    circumstances = AppraisalFeatures(*[0.0] * len(AppraisalFeatures._fields))._replace(left_m=float(verdict))
     decision = Decision(STANDSTILL, cause, "a" if driving else None, rla_id, None)
     situation = Situation(np.zeros(1), history_frozen=not driving)
     grant = Grant(STANDSTILL, (), latched=False)

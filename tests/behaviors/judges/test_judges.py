@@ -5,18 +5,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.finding import judge_settings
-from behaviors.judges.judge import Circumstances, Judge
+from behaviors.judges.judge import AppraisalFeatures, Judge
 from behaviors.judges.wall_following import WallFollowingSettings
 from kurt2rt.tasks.settings import load_task
 from tests.examples import examples
 
 TASKS = ("wall_following", "fleeing", "eight")
-OPEN = Circumstances(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+OPEN = AppraisalFeatures(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
 
 distances_m = st.floats(0.1, 0.6)
 flags = st.sampled_from((0.0, 0.0, 0.0, 1.0))
 anywhere = st.builds(
-    Circumstances,
+    AppraisalFeatures,
     *[distances_m] * 6,
     *[st.floats(-1.1, 1.1)] * 2,
     st.floats(-0.3, 0.5),
@@ -51,7 +51,9 @@ def test_a_judge_is_found_by_its_name() -> None:
 @pytest.mark.parametrize("task", TASKS)
 @given(circumstances=anywhere)
 @examples(100)
-def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(task: str, circumstances: Circumstances) -> None:
+def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(
+    task: str, circumstances: AppraisalFeatures
+) -> None:
     assert JUDGES[task].judge(circumstances) in {-1, 0, 1}
     for trouble in (
         {"bumped": 1.0},
@@ -171,7 +173,7 @@ def test_the_eight(circumstances: dict[str, float], thought: int) -> None:
 
 @given(circumstances=anywhere)
 @examples(200)
-def test_the_eight_is_judged_the_same_to_either_side(circumstances: Circumstances) -> None:
+def test_the_eight_is_judged_the_same_to_either_side(circumstances: AppraisalFeatures) -> None:
     """But for what is done with neither column beside it, which has to be one side."""
     now = circumstances._replace(left_m=min(circumstances.left_m, 0.3))
     mirrored = now._replace(
