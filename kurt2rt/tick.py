@@ -292,9 +292,8 @@ class Tick:
         school, authority = self._school, self._school.authority
         school.look_after(tick, was_driving=self._driving)
         stand = self._reason_to_stand(tick, blind=blind)
-        # Also when something else stands in its way: the loop ends the hand's lease, whatever happens.
-        by_hand = authority.hand_on_wheel(tick)
-        if by_hand:
+        authority.expire(tick)
+        if authority.is_manual(tick):
             because = self._unable(blind=blind) or Cause.TEACHER
             aside = standing(self._level.decide(situation, senses, because), because)
             if because is not Cause.TEACHER:

@@ -125,7 +125,7 @@ class Bedlam(Town):
         school, mid = self.runtime.school, self.runtime.mid
         assert mid is not None
         if decision.cause is Cause.TEACHER:
-            return school.authority.hand_on_wheel(self.tick)
+            return school.authority.is_manual(self.tick)
         there = school.authority.present(self.tick) or school.phase is Phase.AUTONOMOUS
         stands_at_goal = decision.plan is not None and decision.plan.course in (Course.ARRIVED, Course.NO_WAY)
         asks = decision.mid is None or decision.mid.asks

@@ -88,7 +88,7 @@ class Telling:
             taught_at="" if nearest is None else self._safekeeping.stamp_of(nearest.origin.command_id),
             question=question,
             teacher=school.authority.teacher,
-            by_hand=school.authority.hand_on_wheel(record.tick),
+            by_hand=school.authority.is_manual(record.tick),
             stopped_because=school.stopped_because or _latched(record),
             rlas=len(system),
             lessons=system.standing_lessons,

@@ -47,7 +47,7 @@ class Authority:
 
     def take(self, teacher: str, tick: int) -> str | None:
         """Become the teacher also in place of another one; a refusal while that one drives by hand."""
-        if self.teacher not in (None, teacher) and self.hand_on_wheel(tick):
+        if self.teacher not in (None, teacher) and self.is_manual(tick):
             return f"{self.teacher} drives by hand just now; stop the robot first"
         if self.teacher != teacher:
             self._become(teacher)
@@ -74,7 +74,7 @@ class Authority:
 
     def drives_on(self, teacher: str, hold: int, tick: int) -> bool:
         """Whether this teacher drives by a later press than `hold`."""
-        return self.hand_on_wheel(tick) and self.teacher == teacher and self._hold.get(teacher, -1) > hold
+        return self.is_manual(tick) and self.teacher == teacher and self._hold.get(teacher, -1) > hold
 
     def forget(self, teacher: str) -> None:
         """His device has new keys, and counts its presses anew."""
@@ -115,16 +115,19 @@ class Authority:
         self._speeds = None
         self._behaviour = None
 
-    def hand_on_wheel(self, tick: int) -> bool:
-        """Whether the teacher drives by hand or runs a behaviour in this tick."""
-        if self._speeds is not None and tick >= self._driven_until:
+    def is_manual(self, tick: int) -> bool:
+        """Return whether the teacher drives by hand or runs a behaviour in this tick."""
+        if self._speeds is not None:
+            return tick < self._driven_until
+        return self._behaviour is not None and tick < self._behaviour_until and self.present(tick)
+
+    def expire(self, tick: int) -> None:
+        """End a press or a run whose lease is over in this tick; the tick calls it before it decides."""
+        if not self.is_manual(tick) and (self._speeds is not None or self._behaviour is not None):
             self.end_hand()
-        if self._behaviour is not None and (tick >= self._behaviour_until or not self.present(tick)):
-            self.end_hand()
-        return self._speeds is not None or self._behaviour is not None
 
     def step(self, senses: Senses) -> tuple[str, WheelSpeeds]:
-        """What the hand does, after `hand_on_wheel`: a name for it, and wheel speeds."""
+        """Return a name for the action of the manual drive and its wheel speeds; only while `is_manual`."""
         if self._speeds is not None:
             return _BY_HAND, self._speeds
         assert self._behaviour is not None

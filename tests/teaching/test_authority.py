@@ -23,8 +23,13 @@ class Hands:
         self.authority.drive(press(hold, seen=tick if seen is None else seen), tick)
 
     def driven_ticks(self, first: int = NOW, last: int = NOW + 100) -> list[int]:
-        """In which ticks the hand drives, asked in each of them as the loop does."""
-        return [tick for tick in range(first, last) if self.authority.hand_on_wheel(tick)]
+        """Return the ticks in which the teacher drives, each expired as the loop does."""
+        driven = []
+        for tick in range(first, last):
+            self.authority.expire(tick)
+            if self.authority.is_manual(tick):
+                driven.append(tick)
+        return driven
 
 
 def press(hold: int = 1, *, teacher: str = "Ann", seen: int = NOW) -> Drive:
@@ -43,7 +48,7 @@ def test_one_message_drives_for_thirty_ticks_from_its_arrival(hands: Hands) -> N
 
 def test_the_hand_does_what_the_newest_message_says(hands: Hands) -> None:
     hands.drive(NOW)
-    assert hands.authority.hand_on_wheel(NOW)
+    assert hands.authority.is_manual(NOW)
     assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(0.2, 0.1))
     hands.authority.drive(Drive("Ann", NOW + 1, 1, -0.1, 0.3), NOW + 1)
     assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(-0.1, 0.3))
@@ -70,15 +75,36 @@ def test_messages_that_keep_coming_keep_the_hand_on_the_wheels(hands: Hands) -> 
 def test_a_picture_that_does_not_change_any_more_ends_the_drive_however_many_messages_come(hands: Hands) -> None:
     for tick in range(NOW, NOW + REACH):
         hands.drive(tick, seen=NOW)
-        assert hands.authority.hand_on_wheel(tick)
+        assert hands.authority.is_manual(tick)
     hands.drive(NOW + REACH, seen=NOW)
-    assert not hands.authority.hand_on_wheel(NOW + REACH)
+    assert not hands.authority.is_manual(NOW + REACH)
 
 
 def test_a_press_that_ended_never_comes_back_and_the_next_one_does(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
-    assert not hands.authority.hand_on_wheel(NOW + LEASE)
+    hands.authority.expire(NOW + LEASE)
     assert [hands.authority.is_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
+
+
+def test_is_manual_after_the_lease_changes_nothing(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    assert not hands.authority.is_manual(NOW + LEASE)
+    assert not hands.authority.is_over(press(7))
+    assert hands.authority.is_manual(NOW + LEASE - 1)
+
+
+def test_is_manual_of_a_run_without_teacher_changes_nothing(hands: Hands) -> None:
+    hands.authority.run("a", NOW, 1000)
+    assert not hands.authority.is_manual(NOW)
+    hands.authority.watch("Ann", NOW, NOW)
+    assert hands.authority.is_manual(NOW)
+
+
+def test_expire_within_the_lease_keeps_the_press(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    hands.authority.expire(NOW + LEASE - 1)
+    assert hands.authority.is_manual(NOW + LEASE - 1)
+    assert not hands.authority.is_over(press(7))
 
 
 def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> None:
@@ -143,7 +169,7 @@ def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -
 def test_who_takes_what_he_has_loses_nothing(hands: Hands) -> None:
     hands.drive(NOW)
     assert hands.authority.take("Ann", NOW) is None
-    assert hands.authority.hand_on_wheel(NOW)
+    assert hands.authority.is_manual(NOW)
     assert hands.authority.present(NOW)
 
 
@@ -165,7 +191,7 @@ def test_handing_over_ends_hand_and_presence(hands: Hands, to: str | None) -> No
     hands.drive(NOW, hold=3)
     hands.authority.hand_over(to)
     assert hands.authority.teacher == to
-    assert not hands.authority.hand_on_wheel(NOW)
+    assert not hands.authority.is_manual(NOW)
     assert not hands.authority.present(NOW)
     assert hands.authority.is_over(press(3))
 
@@ -185,7 +211,7 @@ def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> Non
     hands.authority.run("a", NOW, 1000)
     assert hands.driven_ticks(NOW, NOW + 60) == list(range(NOW, NOW + LEASE))
     hands.authority.watch("Ann", NOW + 60, NOW + 60)
-    assert not hands.authority.hand_on_wheel(NOW + 60)
+    assert not hands.authority.is_manual(NOW + 60)
 
 
 def test_a_hand_on_the_wheels_ends_a_behaviour_and_a_behaviour_the_hand() -> None:

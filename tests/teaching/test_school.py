@@ -89,7 +89,7 @@ class Lesson:
         """A press arrives in the next tick; why it does not drive the robot."""
         self.tick += 1
         refusal = self.school.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
-        assert (refusal is None) == self.school.authority.hand_on_wheel(self.tick)
+        assert (refusal is None) == self.school.authority.is_manual(self.tick)
         return refusal
 
     @property
@@ -495,7 +495,7 @@ def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
 def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> None:
     lesson = Lesson()
     assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).text == "b for 10 ticks"
-    hand = lesson.school.authority.hand_on_wheel
+    hand = lesson.school.authority.is_manual
     assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
     assert lesson.school.stopped_because == "b is over"
 
@@ -511,7 +511,7 @@ def test_resume_ends_what_the_hand_was_doing() -> None:
     lesson = Lesson()
     lesson.drive(hold=4)
     lesson.say(resume())
-    assert not lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert not lesson.school.authority.is_manual(lesson.tick)
     assert lesson.drive(hold=4) == "this press is over; let go and press anew"
 
 
@@ -540,9 +540,9 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     release = Stop("1", "Ann", hold=1)
     lesson.drive(hold=2)
     assert lesson.say(release).text == "that press is over; a later one drives"
-    assert lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert lesson.school.authority.is_manual(lesson.tick)
     assert lesson.say(Stop("2", "Ann", hold=2)).accepted
-    assert not lesson.school.authority.hand_on_wheel(lesson.tick)
+    assert not lesson.school.authority.is_manual(lesson.tick)
     assert lesson.school.stopped_because == "Ann drove by hand and let go"
     lesson.say(resume())
     assert lesson.say(Stop("2", "Ann", hold=2)).text == "had been taken already; counted once"
