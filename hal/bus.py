@@ -7,6 +7,7 @@ from pathlib import Path
 import can
 
 from hal.bus_end import BusEnd
+from hal.errors import UserError
 from hal.in_process_bus import InProcessBus
 from hal.shared_bus import SharedBus
 from hal.socketcan_bus import SocketCanBus
@@ -30,8 +31,8 @@ _CONTROLLER_RESET = 0x040 | 0x100
 _KINDS = "virtual:NAME, shared:NAME or a SocketCAN interface such as can0"
 
 
-class BusError(OSError):
-    """The bus cannot be opened or used. The message is one line: bus, what happened, what to do."""
+class BusError(UserError, OSError):
+    """The bus cannot be opened or used."""
 
 
 class CanBus:

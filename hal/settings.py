@@ -16,10 +16,11 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from config import CONFIG_DIR
+from hal.errors import UserError
 
 
-class SettingsError(ValueError):
-    """A settings file cannot be used. The message is one line: file, key, what is wrong, what is allowed."""
+class SettingsError(UserError, ValueError):
+    """A settings file cannot be used."""
 
 
 class Settings(BaseModel):

@@ -12,7 +12,7 @@ from typing import Self
 
 from kurt2rt.channel.exam_standing import EXAM, NO_EXAM, ExamStanding
 from kurt2rt.channel.schema import WireError
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 Command = Callable[[Path, Path], Sequence[str]]
 """The words that start an exam of a knowledge file, with the path of its picture."""

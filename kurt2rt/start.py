@@ -9,10 +9,12 @@ import anyio
 import anyio.to_thread
 
 from hal.bus import BusError
-from kurt2rt.channel.error import ChannelError
+from hal.errors import UserError
+from kurt2rt.channel.context_folder import CredentialsError
+from kurt2rt.channel.port import ChannelError
 from kurt2rt.durable import make_private_folder
-from kurt2rt.knowledge.error import KnowledgeError
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.systemd.notifier import Notifier
 
 AGAIN_S = 1.0
@@ -21,11 +23,11 @@ HOLD_S = 0.05
 """Between two brakes of a robot that waits; its controller forgets after 0.2 s."""
 
 
-class StartError(Exception):
-    """Something that the program needs is not there yet. The message is one line: what, where, what to do."""
+class StartError(UserError):
+    """Something that the program needs is not there yet."""
 
 
-_COMES_LATER = (StartError, BusError, KnowledgeError, ChannelError, RecordingError, OSError)
+_COMES_LATER = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ import sys
 from contextlib import ExitStack
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.error import ChannelError
+from kurt2rt.channel.port import ChannelError
 from kurt2rt.channel.state import State
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import RobotProcess, Teacher

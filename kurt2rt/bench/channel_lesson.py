@@ -10,7 +10,7 @@ from kurt2rt.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.bench.partner import partner
 from kurt2rt.bench.result import Goal, Reference, Result
 from kurt2rt.bench.subject import OnProgress, Subject
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.timing.ledger import share_of
 

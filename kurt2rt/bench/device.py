@@ -16,7 +16,7 @@ from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.client import TeacherClient
 
 
-class RefusedError(RuntimeError):
+class BenchmarkRefusedError(RuntimeError):
     """The robot does not do what the benchmark needs."""
 
 
@@ -80,7 +80,7 @@ class Device:
     @property
     def _robot(self) -> TeacherClient:
         if self._client is None:
-            raise RefusedError("look or watch comes first")
+            raise BenchmarkRefusedError("look or watch comes first")
         return self._client
 
     async def _join(self, *, watching: bool) -> None:
@@ -96,7 +96,7 @@ class Device:
 
 def _require(answer: Answer) -> None:
     if not answer.accepted:
-        raise RefusedError(f"{answer.why}: {answer.text}")
+        raise BenchmarkRefusedError(f"{answer.why}: {answer.text}")
 
 
 async def main(folder: Path, port: int) -> None:

@@ -10,7 +10,7 @@ from anyio import to_thread
 
 from kurt2rt.bench.result import Goal, Reference, Result
 from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.runtime import build_runtime
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord

@@ -8,9 +8,9 @@ from pathlib import Path
 from kurt2rt.care.trial import Known, Report, answers, runs_to_try, told
 from kurt2rt.knowledge.changing import new_origin, open_again, worths_after, write
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import BASIC, Rla, RlaDeleted
 from kurt2rt.rla.rla_system import RlaSystem

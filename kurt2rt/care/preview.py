@@ -7,7 +7,7 @@ from typing import Final
 from kurt2rt.care.trial import Known, Report, Runs, newest_to_try, runs_to_try, telling
 from kurt2rt.knowledge.changing import worths_after
 from kurt2rt.knowledge.undo import Planned
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.shadow import Shadow

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from hal.settings import SettingsError
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import binding_of
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay, ReplayedTick

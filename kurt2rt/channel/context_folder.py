@@ -5,7 +5,7 @@ import json
 import os
 from pathlib import Path
 
-from kurt2rt.channel.error import CredentialsError
+from hal.errors import UserError
 
 UNKNOWN = "unknown"
 """Replay window as it is stored: the other side has to prove that it is fresh (RFC 8613, B.1.2)."""
@@ -17,6 +17,10 @@ SEQUENCE = "sequence.json"
 SECRET = "secret.json"
 _LOCK = "lock"
 _UNBORN = ".sequence.unborn"
+
+
+class CredentialsError(UserError):
+    """A pairing is missing, damaged, in use by another program, or not allowed."""
 
 
 class ContextFolder:

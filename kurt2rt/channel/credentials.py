@@ -18,8 +18,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from kurt2rt.channel.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN
-from kurt2rt.channel.error import CredentialsError
+from kurt2rt.channel.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN, CredentialsError
 from kurt2rt.durable import make_private_folder, sync_folder
 from kurt2rt.rla.rla import CRITIC
 

@@ -31,7 +31,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.channel.simulation import SIMULATION, Measure, Simulation, TeacherNow
 from kurt2rt.channel.upload import Upload
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.runtime import Runtime

@@ -15,8 +15,7 @@ from typing import Any
 
 from aiocoap import oscore
 
-from kurt2rt.channel.context_folder import PAIRED_AT, SEQUENCE, SETTINGS, ContextFolder
-from kurt2rt.channel.error import CredentialsError
+from kurt2rt.channel.context_folder import PAIRED_AT, SEQUENCE, SETTINGS, ContextFolder, CredentialsError
 
 CHUNK = 10_000
 """Sequence numbers reserved at once: three minutes of pictures and drive commands. A crash wastes at most two chunks of

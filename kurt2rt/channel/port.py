@@ -4,7 +4,11 @@ import errno
 import ipaddress
 import socket
 
-from kurt2rt.channel.error import ChannelError
+from hal.errors import UserError
+
+
+class ChannelError(UserError):
+    """The teacher's channel cannot be opened."""
 
 
 def require_port(host: str, port: int) -> None:

@@ -8,9 +8,8 @@ from pathlib import Path
 import anyio.to_thread
 from aiocoap import oscore
 
-from kurt2rt.channel.context_folder import SECRET
+from kurt2rt.channel.context_folder import SECRET, CredentialsError
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, RESERVED, USED, pairing_names
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 
 _USED_EVERY_S = 60.0

@@ -8,8 +8,8 @@ import threading
 import anyio
 import anyio.to_thread
 
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import Device, read_device
-from kurt2rt.channel.error import CredentialsError
 
 _LOOK_AT_PAIRING_S = 1.0
 

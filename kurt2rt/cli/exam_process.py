@@ -20,7 +20,7 @@ from kurt2rt.experiments.drawing import draw_exams
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.report import label_of, not_judged, verdict_of
 from kurt2rt.experiments.route.teaching import with_route
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.simulated import SimulatedStage
 from kurt2rt.tasks.settings import load_task

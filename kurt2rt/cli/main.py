@@ -1,7 +1,7 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library and of kurt2rt.cli.interrupt only: Ctrl-C before `main` begins leaves a traceback, and
-`kurt2rt --help` takes as long as its imports.
+Imports of the standard library, hal.errors and kurt2rt.cli.interrupt only: Ctrl-C before `main` begins leaves a
+traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
 import errno
@@ -9,6 +9,7 @@ import os
 import sys
 from typing import NoReturn
 
+from hal.errors import UserError
 from kurt2rt.cli.interrupt import INTERRUPTED, end_at_interrupt
 
 _EXTRAS = {
@@ -23,26 +24,6 @@ _EXTRAS = {
     "websockets": "page",
 }
 """Packages that a robot can do without, and the extra that brings each."""
-
-_ONE_LINERS = (
-    ("hal.settings", "SettingsError"),
-    ("hal.bus", "BusError"),
-    ("kurt2rt.knowledge.error", "KnowledgeError"),
-    ("kurt2rt.layers.basic_level", "UnknownActionError"),
-    ("kurt2rt.layers.basic_level", "UnknownBehaviourError"),
-    ("kurt2rt.experiments.error", "JobKilledError"),
-    ("kurt2rt.experiments.error", "LessonLostError"),
-    ("kurt2rt.experiments.error", "StudyError"),
-    ("kurt2rt.channel.error", "ChannelError"),
-    ("kurt2rt.teaching.answer", "NoAnswerError"),
-    ("kurt2rt.teaching.answer", "RefusedError"),
-    ("kurt2rt.page.error", "PageError"),
-    ("kurt2rt.recording.error", "RecordingError"),
-    ("kurt2rt.systemd.error", "UnitError"),
-    ("kurt2rt.faults.error", "DidNotDriveError"),
-    ("kurt2rt.health.error", "StatusError"),
-)
-"""Errors whose message tells the user what, where and what to do: module and class, which only their user imports."""
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -88,26 +69,21 @@ def main() -> None:
         text = _in_one_line(error)
         if text is None:
             raise
-        _complain(text)
+        _complain(text, max((each.exit_code for each in _leaves(error) if isinstance(each, UserError)), default=2))
     except BaseExceptionGroup as error:
         if error.subgroup(KeyboardInterrupt) is None:
             raise
         sys.exit(INTERRUPTED)
 
 
-def _one_liners() -> tuple[type[BaseException], ...]:
-    """The classes of `_ONE_LINERS` whose modules are imported; no other can have been raised."""
-    return tuple(getattr(sys.modules[module], name) for module, name in _ONE_LINERS if module in sys.modules)
-
-
 def _in_one_line(error: BaseException) -> str | None:
-    """What is wrong and what to do; None when the user cannot mend it."""
+    """Return what is wrong and what to do; None if the user cannot mend it."""
     whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, BaseExceptionGroup):
         # A task group wraps even the one error that ended it. A disk that fails ends several tasks at once.
         texts = dict.fromkeys(_in_one_line(each) for each in _leaves(error))
         return None if None in texts else whose + "; ".join(map(str, texts))
-    if isinstance(error, _one_liners()):
+    if isinstance(error, UserError):
         return f"{whose}{error}"
     if isinstance(error, OSError) and error.errno in _MENDED_BY_ANOTHER_PATH:
         return f"{whose}{error}; give a path that can be written, on a disk with room"
@@ -116,11 +92,10 @@ def _in_one_line(error: BaseException) -> str | None:
     return None
 
 
-def _leaves(group: BaseExceptionGroup[BaseException]) -> list[BaseException]:
-    leaves: list[BaseException] = []
-    for error in group.exceptions:
-        leaves += _leaves(error) if isinstance(error, BaseExceptionGroup) else [error]
-    return leaves
+def _leaves(error: BaseException) -> list[BaseException]:
+    if not isinstance(error, BaseExceptionGroup):
+        return [error]
+    return [leaf for each in error.exceptions for leaf in _leaves(each)]
 
 
 def _complain(text: str, code: int = 2) -> NoReturn:

@@ -33,7 +33,7 @@ from kurt2rt.cli.status_line import alarms, doing, guarded, numbers, status_line
 from kurt2rt.ending import Ending, leave
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.live_exam import LiveExam

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.people import people_in
 
 _SUFFIX = ".auto"

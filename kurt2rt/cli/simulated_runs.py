@@ -16,7 +16,7 @@ from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.exchange.given import import_knowledge
 from kurt2rt.knowledge import journal_file
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.knowledge.writer import utc_now

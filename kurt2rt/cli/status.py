@@ -15,10 +15,9 @@ from rich.text import Text
 
 from kurt2rt.channel.credentials import Device, read_device
 from kurt2rt.cli.options import task_option
-from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
-from kurt2rt.health.status_socket import reports_at, socket_of
+from kurt2rt.health.status_socket import StatusError, reports_at, socket_of
 from kurt2rt.health.words import URGENT, WARNS, headline, rows_of, trouble_in
 from kurt2rt.service_settings import load_service
 from kurt2rt.tasks.settings import load_task

@@ -12,8 +12,8 @@ from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.page.access import Access
 from kurt2rt.page.device_server import Pairings, link_of, run_device_pages
-from kurt2rt.page.error import PageError
 from kurt2rt.page.hosts import own_address, own_names
+from kurt2rt.page.public_address import PageError
 from kurt2rt.page.public_address import public_address as read_public_address
 from kurt2rt.page.served_pages import PageAddress, ServedPages, to_line
 from kurt2rt.page.server import listen, run_page

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hal.errors import UserError
+
 LEAST_DISTANCES = 4
 _OFFSETS_M = np.linspace(0.005, 0.12, 231)
 _SIGMA_COUNTS, _SIGMA_SHARE = 2.5, 0.03
@@ -20,8 +22,8 @@ _NEAR_COUNTS, _FAR_COUNTS = (250.0, 1000.0), (0.0, 250.0)
 _LEAST_RATIO = 2.5
 
 
-class LawError(ValueError):
-    """The readings do not make a law. The message says in one line what is implausible."""
+class LawError(UserError, ValueError):
+    """The readings do not make a law."""
 
 
 class Reading(NamedTuple):

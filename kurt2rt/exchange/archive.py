@@ -15,7 +15,7 @@ from typing import Any
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 from kurt2rt.exchange.signing import is_signed, signature_of
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.recording.kept_files import LARGEST_BYTES, trouble_of
 
 FORMAT = 1

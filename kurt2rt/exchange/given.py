@@ -16,9 +16,9 @@ from kurt2rt.exchange.signing import fingerprint
 from kurt2rt.exchange.sound import require_fitting, require_times
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures, require_same
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.newborn import bear
 from kurt2rt.knowledge.opening import binding_of
 from kurt2rt.knowledge.saved_copy import SavedCopy, plain_part, save_new, save_whole, stamp_part
@@ -32,7 +32,7 @@ from kurt2rt.recording.attachments import (
     decode_statistics,
     read_lessons_of,
 )
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.kept_files import trouble_of
 from kurt2rt.tasks.settings import TaskSettings
 

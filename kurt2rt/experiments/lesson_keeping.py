@@ -4,12 +4,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from hal.errors import UserError
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.error import LessonLostError
 from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, utc_now
 from kurt2rt.tasks.settings import TaskSettings
+
+
+class LessonLostError(UserError):
+    """Lessons could not be saved, or were refused."""
 
 
 class LessonKeeping:

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol, TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from kurt2rt.experiments.error import JobKilledError
+from hal.errors import UserError
 
 Tell = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
@@ -25,6 +25,10 @@ ResultT_co = TypeVar("ResultT_co", covariant=True)
 
 _LOOK_EVERY_S = 0.5
 _TELL_EVERY_S = 5.0
+
+
+class JobKilledError(UserError):
+    """The process of a job was killed from outside; the message names the job."""
 
 
 class Job(Protocol[ResultT_co]):

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.layers.decision import Cause
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.tick import TickRecord

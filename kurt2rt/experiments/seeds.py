@@ -9,8 +9,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.experiments.arena import Stage
 from kurt2rt.experiments.curriculum import CurriculumResult, run_exams, run_lesson
-from kurt2rt.experiments.error import JobKilledError
-from kurt2rt.experiments.pool import Tell, run_jobs
+from kurt2rt.experiments.pool import JobKilledError, Tell, run_jobs
 from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.tasks.settings import TaskSettings
 

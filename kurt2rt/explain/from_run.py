@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.tipping import Tip, tips
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.replay.comparing import Difference, compare
 from kurt2rt.replay.replay import Replay
 from kurt2rt.replay.run import Run

@@ -8,8 +8,8 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import explained
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import explained
 from kurt2rt.knowledge.opening import open_knowledge, read_lessons
 from kurt2rt.knowledge.writer import JournalWriter, RetryDelays, utc_now
 from kurt2rt.rla.rla import TeachingEvent

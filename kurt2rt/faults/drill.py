@@ -4,11 +4,11 @@ import random
 from contextlib import ExitStack
 from pathlib import Path
 
+from hal.errors import UserError
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.clocks import DisturbedClock, DrillClock
 from kurt2rt.faults.disk import FailingDisk
 from kurt2rt.faults.envelope import Envelope
-from kurt2rt.faults.error import DidNotDriveError
 from kurt2rt.faults.hand_link import HandLink
 from kurt2rt.faults.levels import DisturbedLevel
 from kurt2rt.faults.outcome import LOST_FRAMES, Outcome, Standstill
@@ -25,6 +25,10 @@ from kurt2rt.timing.clock import Clock
 
 SERVICE_ENDS = "the service ends"
 """The word with which the service stops the robot when its loop ends, for whatever reason."""
+
+
+class DidNotDriveError(UserError):
+    """The robot stood before the fault began, so the fault's effect cannot be seen."""
 
 
 class _Memory:

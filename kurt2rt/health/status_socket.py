@@ -12,8 +12,8 @@ from pathlib import Path
 import anyio
 from anyio.abc import Listener, SocketStream
 
+from hal.errors import UserError
 from kurt2rt.channel.schema import WireError
-from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of, report_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.watch import HealthWatch
@@ -24,6 +24,10 @@ _REMOVED_WITHIN_S = 0.2
 _LONGEST_LINE = 65_536
 _WAITS_FOR = "waits_for"
 _PAGES = "pages"
+
+
+class StatusError(UserError):
+    """The status of a robot program cannot be read."""
 
 
 def socket_of(knowledge: Path) -> Path:

@@ -7,9 +7,9 @@ from datetime import datetime
 from pathlib import Path
 
 from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.newborn import bear
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
 from kurt2rt.rla.rla import BASIC, Rla

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 from kurt2rt.knowledge.changing import new_origin
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.kinship import NO_PILE, Mark, PileMark, Taught, mark_of, named
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import (
@@ -22,7 +22,7 @@ from kurt2rt.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +181,7 @@ class Bringing:
     def _add(self, event: TeachingEvent, stamp: str) -> None:
         try:
             self._system.apply(event)
-        except UnfitEventError as error:
+        except InvalidEventError as error:
             raise KnowledgeError(
                 f"{self._theirs.journal.path}: cannot be brought into {self._mine.journal.path.name}: {error}; "
                 "undo there what is in the way, or go on in one of them"

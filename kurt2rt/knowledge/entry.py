@@ -3,8 +3,8 @@
 import zlib
 from dataclasses import dataclass
 
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.rla.rla import TeachingEvent
 
 

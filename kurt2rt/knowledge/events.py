@@ -5,7 +5,7 @@ import math
 import sys
 from typing import Any
 
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import (
     BASIC,

@@ -3,10 +3,10 @@
 from collections.abc import Container, Iterable
 
 from kurt2rt.knowledge.entry import StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.rla.rla import BASIC, RlaCreated, SituationNamed
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Space
 
 
@@ -27,7 +27,7 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
             if isinstance(entry.event, SituationNamed):
                 _require_level(f"the situation {entry.event.name!r}", entry.event.level, others)
             system.apply(entry.event)
-        except UnfitEventError as error:
+        except InvalidEventError as error:
             raise KnowledgeError(
                 f"{journal.path}: row {entry.sequence}: does not fit the lessons before it: {error}; "
                 "keep the file, and go on with a backup copy"
@@ -49,4 +49,4 @@ def check_knowledge(journal: Journal) -> list[str]:
 
 def _require_level(what: str, level: str, levels: Container[str]) -> None:
     if level != BASIC and level not in levels:
-        raise UnfitEventError(f"{what} is of the level {level!r}, of which the file does not name the features")
+        raise InvalidEventError(f"{what} is of the level {level!r}, of which the file does not name the features")

@@ -11,8 +11,8 @@ from typing import BinaryIO, Self
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
-from kurt2rt.knowledge.error import KnowledgeError, explained
 from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.statistics_tables import Change, changes, read_statistics
 from kurt2rt.rla.rla import TeachingEvent

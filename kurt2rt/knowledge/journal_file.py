@@ -12,7 +12,6 @@ from typing import BinaryIO
 
 from kurt2rt.durable import sync_file, sync_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
-from kurt2rt.knowledge.error import KnowledgeError, explained
 from kurt2rt.knowledge.journal_schema import (
     APPLICATION_ID,
     new_database,
@@ -20,6 +19,7 @@ from kurt2rt.knowledge.journal_schema import (
     require_our_mark,
     require_our_schema,
 )
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES, has_table
 
 BUSY_TIMEOUT_S = 0.2

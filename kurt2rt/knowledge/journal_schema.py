@@ -6,7 +6,7 @@ from contextlib import closing
 from functools import lru_cache
 from pathlib import Path
 
-from kurt2rt.knowledge.error import KnowledgeError, explained
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES
 
 APPLICATION_ID = 0x4B525432

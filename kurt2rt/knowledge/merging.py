@@ -16,9 +16,9 @@ from kurt2rt.knowledge.bringing import Bringing, Wanted
 from kurt2rt.knowledge.changing import new_origin, write
 from kurt2rt.knowledge.difference import living
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import Mark, PileMark, Taught, read_taught, standing_piles
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.meeting import Parting, Side, Sides, Way
 from kurt2rt.knowledge.nearness import Borders, Contradictions
 from kurt2rt.knowledge.statistics import Statistics

@@ -10,9 +10,9 @@ from kurt2rt.durable import make_private_folder
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import save_new
 from kurt2rt.knowledge.statistics import Statistics
 

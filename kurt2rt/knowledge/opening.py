@@ -10,9 +10,9 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.durable import make_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.mid.features import features as mid_features
 from kurt2rt.mid.settings import load_mid

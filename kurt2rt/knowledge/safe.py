@@ -8,7 +8,7 @@ from typing import NamedTuple
 import anyio.to_thread
 
 from kurt2rt.knowledge.copy import SavedCopy, save_copy
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.table import export_table
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 

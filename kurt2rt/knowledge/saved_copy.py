@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from kurt2rt.durable import sync_folder
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 _LONGEST_PART = 32
 

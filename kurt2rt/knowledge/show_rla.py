@@ -8,9 +8,9 @@ from rich.text import Text
 
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.expectations.expectations import is_of
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show import TICK_S
 from kurt2rt.knowledge.shown import plain
 from kurt2rt.knowledge.statistics import follow_ups

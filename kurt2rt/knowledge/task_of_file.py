@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from hal.settings import SettingsError
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.tasks.settings import load_task
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.changing import new_origin, open_again, write
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import LessonRedone, LessonUndone, TeachingEvent

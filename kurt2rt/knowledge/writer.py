@@ -11,9 +11,9 @@ from types import TracebackType
 from typing import Self
 
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import KnowledgeError, StuckError
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
 
@@ -206,7 +206,7 @@ class JournalWriter:
                 self._write()
             except KnowledgeError as error:
                 self._failure = str(error)
-                self._stuck = self._stuck or isinstance(error, StuckError)
+                self._stuck = self._stuck or isinstance(error, ReconnectRequiredError)
                 pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
             else:
                 self._failure = None

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
+from hal.errors import UserError
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.held_action import HeldAction
@@ -26,11 +27,11 @@ from kurt2rt.rla.rla import (
 from kurt2rt.rla.rla_system import RlaSystem
 
 
-class UnknownActionError(ValueError):
+class UnknownActionError(UserError, ValueError):
     """Knowledge, or a policy, names an action that the repertoire does not have."""
 
 
-class UnknownBehaviourError(ValueError):
+class UnknownBehaviourError(UserError, ValueError):
     """Knowledge names a taught behaviour that the task does not have."""
 
 

@@ -7,9 +7,9 @@ from typing import NoReturn, TypeAlias
 import networkx as nx
 
 from kurt2rt.expectations.expectations import is_of
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics, follow_ups
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.rla.rla_system import RlaSystem

@@ -12,8 +12,8 @@ from starlette.requests import HTTPConnection
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, Device
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.page.access import Access
 from kurt2rt.page.app import build_app
 from kurt2rt.page.bridge import Bridge

@@ -7,11 +7,11 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import LOCAL, OF_THIS_MACHINE, Device, pairing_names, read_device
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.page.device_pages import DevicePages, OpenLink
-from kurt2rt.page.error import PageError
 from kurt2rt.page.hosts import own_address
+from kurt2rt.page.public_address import PageError
 from kurt2rt.page.served_pages import PageAddress, ServedPages
 from kurt2rt.page.server import Doorway
 

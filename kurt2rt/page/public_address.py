@@ -3,9 +3,13 @@
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
-from kurt2rt.page.error import PageError
+from hal.errors import UserError
 
 _HTTPS_PORT = 443
+
+
+class PageError(UserError):
+    """The page cannot be served."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,9 @@ from kurt2rt.page.access import Access
 from kurt2rt.page.app import build_app
 from kurt2rt.page.bridge import Bridge
 from kurt2rt.page.crowd import Crowd
-from kurt2rt.page.error import PageError
 from kurt2rt.page.guarded_http import REQUEST_WITHIN_S, guarded_http
 from kurt2rt.page.guarded_websocket import GuardedWebSocket
+from kurt2rt.page.public_address import PageError
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.teaching.answer import NoAnswerError
 

@@ -13,12 +13,11 @@ from hal.robot_settings import RobotSettings
 from hal.settings import FILES, Settings, find_beside, find_config, kept_name, load_settings
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.entry import StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.recording.checked import number_of, text_of, whole_of
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError, number_of, text_of, whole_of
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings, load_task
 

@@ -2,7 +2,13 @@
 
 import math
 
+from hal.errors import UserError
+
 _HIGHEST = 2**63 - 1
+
+
+class RecordingError(UserError):
+    """A recording cannot be made or read."""
 
 
 def text_of(value: object) -> str:

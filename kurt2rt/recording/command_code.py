@@ -5,7 +5,7 @@ from typing import Any, get_args
 
 from pydantic import TypeAdapter, ValidationError
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.teaching.commands import Command
 from kurt2rt.teaching.happenings import Happening, Input
 

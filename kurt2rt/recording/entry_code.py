@@ -7,14 +7,14 @@ from typing import Any, TypeVar
 
 from hal.robot import Grant, Senses, WheelSpeeds
 from kurt2rt.expectations.surprise import Surprise
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.step import Course, PlanStep
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.command_code import decode_command, encode_command
 from kurt2rt.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, TickEntry
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.teaching.commands import CommandResult
 

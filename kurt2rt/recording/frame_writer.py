@@ -7,7 +7,7 @@ from typing import Protocol
 import can
 
 from kurt2rt.knowledge.politely import politely
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 
 ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
 """File formats, by ending: candump, Vector ASC and BLF, table, PEAK trace, ASAM MF4. Not python-can's SQLite, whose

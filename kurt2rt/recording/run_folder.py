@@ -5,8 +5,8 @@ import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.disk import is_held
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.segment_reader import TICK_TOPIC, SegmentReader
 
 SEGMENT_ENDING = ".mcap"

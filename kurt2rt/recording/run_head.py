@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 
 RUN_VERSION = 2
 """Raise it when head, entries or attachments change so that an older program would misread them.

@@ -14,8 +14,8 @@ from kurt2rt.channel.ground import Ground
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.disk import Disk
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.live_view import LiveView
 from kurt2rt.recording.notes import Asked, Note, NoteLog, Ticked
 from kurt2rt.recording.run_files import Budget, RunFiles

@@ -11,7 +11,7 @@ from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 
 TICK_TOPIC = "/tick"
 """Topic of the ticks, of which a run is made."""

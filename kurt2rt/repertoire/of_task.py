@@ -7,7 +7,7 @@ from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, find_beside
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.place import PlaceSettings

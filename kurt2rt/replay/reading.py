@@ -5,9 +5,9 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.entry_code import decode_tick
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from hal.settings import SettingsError
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.replay.run import Run
 from kurt2rt.replay.surroundings import Replayed
-from kurt2rt.rla.rla_system import UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tick import TickRecord
@@ -73,7 +73,7 @@ class Replay:
                     tolerates_stalls=head.tolerates_stalls,
                     asks_when_held=head.asks_when_held,
                 )
-        except (SettingsError, KnowledgeError, UnfitEventError, UnknownActionError, UnknownBehaviourError) as error:
+        except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error
         except ValueError as error:
             raise RecordingError(f"{run.name}: cannot be replayed: {error}") from error

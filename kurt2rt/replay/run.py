@@ -19,8 +19,8 @@ from kurt2rt.recording.attachments import (
     fingerprints_of,
     read_lessons_of,
 )
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.kept_files import laid_out, trouble_of
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.tasks.settings import TaskSettings

@@ -16,13 +16,13 @@ from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.definition import load_situation
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.replay.run import Run
 from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import BASIC, MID, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.runtime import Runtime, empty_system
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.tick import TickRecord
@@ -76,7 +76,7 @@ class Shadow:
             recent = RecentDecisions(definition.dimensions)
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
             self._worths.recall(tuple(events), statistics)
-        except (SettingsError, UnfitEventError) as error:
+        except (SettingsError, InvalidEventError) as error:
             raise RecordingError(f"{run.name}: this knowledge cannot decide there: {error}") from error
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> Answer:

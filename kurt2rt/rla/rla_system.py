@@ -41,7 +41,7 @@ from kurt2rt.rla.rla import (
 from kurt2rt.rla.space import Space
 
 
-class UnfitEventError(ValueError):
+class InvalidEventError(ValueError):
     """A teaching event does not fit the knowledge it should change."""
 
 
@@ -190,17 +190,17 @@ class RlaSystem:
         return self._living.neighbours(rla, count)
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge as the event says. Raises UnfitEventError, and changes nothing, when it does not fit."""
+        """Change the knowledge by an event. Raises InvalidEventError, changing nothing, if the event does not fit."""
         match event:
             case LessonUndone(lesson, _):
                 problem = self._book.why_not_undo(lesson)
                 if problem is not None:
-                    raise UnfitEventError(problem)
+                    raise InvalidEventError(problem)
                 self._take_back(self._book.strike(lesson))
             case LessonRedone(lesson, _):
                 problem = self._book.why_not_redo(lesson)
                 if problem is not None:
-                    raise UnfitEventError(problem)
+                    raise InvalidEventError(problem)
                 self._learn(self._book.put_back(lesson), again=True)
             case SessionBegun() | Appraised() | KnowledgeMerged():
                 pass
@@ -209,7 +209,7 @@ class RlaSystem:
             case _:
                 command_id = event.origin.command_id
                 if self._book.get(command_id) is not None:
-                    raise UnfitEventError(f"command {command_id!r} has taught a lesson already")
+                    raise InvalidEventError(f"command {command_id!r} has taught a lesson already")
                 self._learn(event)
                 self._book.enter(event)
         self.changes += 1
@@ -228,12 +228,12 @@ class RlaSystem:
         match lesson:
             case RlaCreated(rla):
                 if rla.rla_id <= self._last_id and not again:
-                    raise UnfitEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
+                    raise InvalidEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
                 _require_an_action(rla.action)
                 try:
                     self._living.enter(rla)
                 except ValueError as error:
-                    raise UnfitEventError(f"RLA {rla.rla_id}: {error}") from error
+                    raise InvalidEventError(f"RLA {rla.rla_id}: {error}") from error
                 self._last_id = max(self._last_id, rla.rla_id)
             case ActionReplaced(rla_id, action, _, origin):
                 _require_an_action(action)
@@ -241,7 +241,7 @@ class RlaSystem:
             case ActionWithdrawn(rla_id, _, origin):
                 rla = self._that_lives(rla_id)
                 if rla.asks:
-                    raise UnfitEventError(f"{rla.title} asks already; its action cannot be withdrawn twice")
+                    raise InvalidEventError(f"{rla.title} asks already; its action cannot be withdrawn twice")
                 self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
                 self._deleted[origin.command_id] = self._living.leave(self._that_lives(rla_id))
@@ -251,7 +251,7 @@ class RlaSystem:
             case RlaRewarded(rla_id, value):
                 self._that_lives(rla_id)
                 if value not in (1, -1):
-                    raise UnfitEventError(f"a reward of {value} for RLA {rla_id}: it must be 1 or -1")
+                    raise InvalidEventError(f"a reward of {value} for RLA {rla_id}: it must be 1 or -1")
                 self._appraisals.enter(rla_id, value)
 
     def _take_back(self, lesson: Lesson) -> None:
@@ -273,9 +273,9 @@ class RlaSystem:
         """A situation of a level that nothing is matched at here may be named all the same, as its RLAs are kept."""
         space = self._spaces.get(level)
         if not all(map(math.isfinite, situation)):
-            raise UnfitEventError(f"the situation named {name!r} holds a value that is not finite")
+            raise InvalidEventError(f"the situation named {name!r} holds a value that is not finite")
         if space is not None and len(situation) != space.dimensions:
-            raise UnfitEventError(
+            raise InvalidEventError(
                 f"the situation named {name!r} has {len(situation)} values, level {level} matches {space.dimensions}"
             )
 
@@ -304,10 +304,10 @@ class RlaSystem:
     def _that_lives(self, rla_id: int) -> Rla:
         rla = self._living.get(rla_id)
         if rla is None:
-            raise UnfitEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
+            raise InvalidEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
         return rla
 
 
 def _require_an_action(action: str) -> None:
     if action == ASK:
-        raise UnfitEventError(f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead")
+        raise InvalidEventError(f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.table import FaultTable
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.recording.recording import Recording
 from kurt2rt.repertoire.of_task import repertoire_of
 from kurt2rt.service_settings import ServiceSettings

@@ -7,8 +7,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.systemd.error import UnitError
-from kurt2rt.systemd.unit import Unit
+from kurt2rt.systemd.unit import Unit, UnitError
 
 TOOL = "systemd-analyze"
 MOST_EXPOSURE = 2.0

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.durable import write_durably
-from kurt2rt.systemd.error import UnitError
-from kurt2rt.systemd.unit import MARK, USER, Unit, require_name
+from kurt2rt.systemd.unit import MARK, USER, Unit, UnitError, require_name
 
 Do = Callable[[Sequence[str]], None]
 """Runs one of systemd's commands. Raises UnitError."""

@@ -7,8 +7,8 @@ from pathlib import Path
 from string import Template
 
 from config import CONFIG_DIR
+from hal.errors import UserError
 from kurt2rt.systemd.access import sees_homes
-from kurt2rt.systemd.error import UnitError
 
 MARK = "# Made by kurt2rt service install:"
 """How our files begin; others are not touched."""
@@ -19,6 +19,10 @@ STATE = Path("/var/lib")
 _TEMPLATES = CONFIG_DIR / "service"
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,30}")
 _PLAIN = re.compile(r"[\w@+,./:=-]+")
+
+
+class UnitError(UserError):
+    """A unit cannot be made, installed or checked."""
 
 
 @dataclass(frozen=True, slots=True)

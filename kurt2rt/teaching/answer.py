@@ -4,12 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from hal.errors import UserError
 
-class NoAnswerError(Exception):
+
+class NoAnswerError(UserError):
     """Nobody answered in time. It is not known whether the command counted: look at the lessons."""
 
 
-class RefusedError(Exception):
+class RefusedError(UserError):
     """The robot does not take what the scripted teacher cannot do without. One line."""
 
 

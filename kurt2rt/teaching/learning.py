@@ -10,7 +10,7 @@ from kurt2rt.layers.decision import Decision
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.rla.rla import Phase, TeachingEvent
-from kurt2rt.rla.rla_system import UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError
 
 
 class Learning:
@@ -47,7 +47,7 @@ class Learning:
         return None if self._self_teaching is None else self._self_teaching.bad_share
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge, and tell all that follow it. Raises UnfitEventError, and then nothing has changed."""
+        """Change the knowledge, and tell all that follow it. Raises InvalidEventError, and then nothing has changed."""
         self._level.apply(event)
         self.taken.add(event.origin.command_id)
         if self._reinforcement is not None:
@@ -87,7 +87,7 @@ class Learning:
         """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
         try:
             self.apply(event)
-        except UnfitEventError as error:
+        except InvalidEventError as error:
             self._skipped += 1
             self.trouble = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
         else:

@@ -17,9 +17,9 @@ from aiocoap.numbers.constants import TransportTuning
 from aiocoap.pipe import Pipe
 from aiocoap.util import hostportjoin
 
-from kurt2rt.channel.context_folder import SECRET
-from kurt2rt.channel.error import ChannelError, CredentialsError
+from kurt2rt.channel.context_folder import SECRET, CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
+from kurt2rt.channel.port import ChannelError
 from kurt2rt.channel.wire import CONTENT_FORMAT
 
 _LOGGER = "kurt2rt.teacher-client"

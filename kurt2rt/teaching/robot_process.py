@@ -14,7 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.channel.error import ChannelError
+from kurt2rt.channel.port import ChannelError
 from kurt2rt.teaching.teacher import LOCAL_DEVICE
 
 _START_S = 30.0

@@ -11,7 +11,7 @@ from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
@@ -215,7 +215,7 @@ class School:
             if event is not None:
                 self.learning.apply(event)
             self._heed(command)
-        except (RefusedError, UnfitEventError) as error:
+        except (RefusedError, InvalidEventError) as error:
             if nobody_taught and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # who was refused has not become the teacher by it
             return CommandResult(command.command_id, False, str(error)), None

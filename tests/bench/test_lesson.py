@@ -6,7 +6,7 @@ import pytest
 
 from kurt2rt.bench.lesson import measure_lessons
 from kurt2rt.bench.subject import Subject
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import open_knowledge
 
 

@@ -21,9 +21,9 @@ from kurt2rt.care.preview import preview, preview_on_newest
 from kurt2rt.care.trial import Known, answers, newest_to_try, runs_to_try
 from kurt2rt.cli.main import main
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo

@@ -27,7 +27,7 @@ from kurt2rt.channel.site import Keys, RobotSite
 from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement

@@ -14,8 +14,8 @@ import pytest
 from aiocoap.messagemanager import MessageManager
 
 from kurt2rt.channel.endpoint import Endpoint, open_endpoint
-from kurt2rt.channel.error import ChannelError
 from kurt2rt.channel.gate import Counters, Limits
+from kurt2rt.channel.port import ChannelError
 from tests.channel.clock import Clock
 
 UNLIMITED = Limits(strangers_at_once=1e9)

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from aiocoap import oscore
 
-from kurt2rt.channel.context_folder import ContextFolder
+from kurt2rt.channel.context_folder import ContextFolder, CredentialsError
 from kurt2rt.channel.credentials import Pairing, pair, renew
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import CHUNK, OscoreContext
 from tests.channel.sides import answer_challenge, ask, ask_until_fresh, sequence_of
 from tests.cli.helpers import ROOT, started

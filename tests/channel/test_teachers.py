@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from aiocoap import oscore
 
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import local_pairing, pair, paired, renew, revoke
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
 from kurt2rt.channel.teachers import Change, Teachers
 from tests.channel.clock import Clock

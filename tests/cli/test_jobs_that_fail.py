@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.cli import main
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.run_folder import runs_in, segments_in
 from kurt2rt.replay.comparing import compare
 from kurt2rt.replay.reading import read_run

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays
 from tests.crash.operations import Told

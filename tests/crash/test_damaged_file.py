@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Rla, RlaCreated

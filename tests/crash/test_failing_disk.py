@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import KnowledgeError, StuckError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from tests.crash.patience import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
@@ -67,7 +67,7 @@ class StuckJournal(Journal):
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         if self.stuck:
-            raise StuckError(f"{self.path}: its locks are stuck")
+            raise ReconnectRequiredError(f"{self.path}: its locks are stuck")
         return super().append(entries)
 
     def reconnect(self) -> None:

@@ -18,10 +18,10 @@ from kurt2rt.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
 from kurt2rt.exchange.given import Taken, export_knowledge, import_knowledge, read_given
 from kurt2rt.exchange.signing import make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.credit import Credit

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.error import LessonLostError
+from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.knowledge.writer import JournalWriter
 from kurt2rt.rla.rla import Phase, RlaCreated

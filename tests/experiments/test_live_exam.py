@@ -11,7 +11,7 @@ from config import CONFIG_DIR
 from hal.robot_settings import load_robot
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.cli import exam_process
-from kurt2rt.knowledge.error import KnowledgeError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.live_exam import LiveExam
 from kurt2rt.tasks.settings import load_task

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.error import JobKilledError
-from kurt2rt.experiments.pool import Standing, Tell, run_jobs
+from kurt2rt.experiments.pool import JobKilledError, Standing, Tell, run_jobs
 
 
 @dataclass(frozen=True)

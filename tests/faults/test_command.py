@@ -12,8 +12,7 @@ import kurt2rt.service
 from config import CONFIG_DIR
 from hal.settings import content_of
 from kurt2rt.cli.faults import faults
-from kurt2rt.faults.drill import SERVICE_ENDS
-from kurt2rt.faults.error import DidNotDriveError
+from kurt2rt.faults.drill import SERVICE_ENDS, DidNotDriveError
 
 
 @pytest.fixture

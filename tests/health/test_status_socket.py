@@ -13,10 +13,9 @@ import anyio
 import anyio.to_thread
 import pytest
 
-from kurt2rt.health.error import StatusError
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
-from kurt2rt.health.status_socket import StatusSocket, reports_at, short_name, socket_of, tell_waiting
+from kurt2rt.health.status_socket import StatusError, StatusSocket, reports_at, short_name, socket_of, tell_waiting
 from kurt2rt.health.watch import HealthWatch
 from tests.health.reports import ILL, WELL
 

@@ -8,9 +8,9 @@ import pytest
 
 from kurt2rt.knowledge.branching import Branched, Whence, branch, whence_of
 from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
 

@@ -11,9 +11,9 @@ import pytest
 
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.copy import save_copy
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.table import export_table
 from kurt2rt.knowledge.writer import JournalWriter

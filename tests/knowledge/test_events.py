@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.events import decode_event, encode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import (

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.branching import whence_of
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.knowledge.lessons import BINDING, begun, entry, tamper
 
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"

@@ -8,9 +8,9 @@ import pytest
 
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.entry import JournalEntry, checksum
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent

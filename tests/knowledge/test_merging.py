@@ -14,16 +14,16 @@ from kurt2rt.expectations.expectation import Expectation, pack
 from kurt2rt.knowledge.branching import branch
 from kurt2rt.knowledge.difference import difference
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import read_taught
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.merging import Merge, Side, merge
 from kurt2rt.knowledge.nearness import Borders
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import BASIC, KnowledgeMerged, LessonRedone, RlaCreated, RlaRewarded, SituationNamed, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Space
 from tests.examples import examples
 from tests.knowledge.lessons import (
@@ -467,7 +467,7 @@ def teach(path: Path, whose: str, steps: Iterable[Step]) -> None:
                 event = LessonRedone(lesson, origin(name))
         try:
             system.apply(event)
-        except UnfitEventError:
+        except InvalidEventError:
             continue
         taught.append(event)
     append(path, *taught)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge, read_lessons
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics

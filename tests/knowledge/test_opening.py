@@ -12,9 +12,9 @@ from kurt2rt.critic.features import features
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
 from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge, read_knowledge
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed

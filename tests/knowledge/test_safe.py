@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.safe import Safe
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import JournalWriter

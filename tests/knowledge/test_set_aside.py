@@ -3,9 +3,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.set_aside import set_aside
 from tests.knowledge.lessons import BINDING, begun, created, entry
 

@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.expectations.expectation import Expectation, pack
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show_rla import render_rla
 from kurt2rt.knowledge.statistics import Statistics
 from tests.knowledge.lessons import BINDING, begun

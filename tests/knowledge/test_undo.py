@@ -7,9 +7,9 @@ import pytest
 
 from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import FIRST_VALUE, Statistics
 from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
 from kurt2rt.reinforcement.settings import ReinforcementSettings

@@ -11,8 +11,8 @@ import pytest
 
 from kurt2rt.knowledge import journal_file
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
 from kurt2rt.rla.rla import RlaCreated, TeachingEvent

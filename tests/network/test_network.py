@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from kurt2rt.expectations.expectation import Expectation, pack
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.network.file import write_network
 from kurt2rt.network.network import RlaNetwork, network_of, read_network, without_rare

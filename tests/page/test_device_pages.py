@@ -16,8 +16,8 @@ import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import LOCAL, TERMINAL, Device, local_pairing, pair, renew, revoke
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.page.device_pages import DevicePages, is_within_this_machine
 from kurt2rt.page.device_server import Pairings, devices_here, run_device_pages
 from kurt2rt.page.robot_link import RobotLink

@@ -1,7 +1,6 @@
 import pytest
 
-from kurt2rt.page.error import PageError
-from kurt2rt.page.public_address import public_address
+from kurt2rt.page.public_address import PageError, public_address
 
 
 @pytest.mark.parametrize(

@@ -17,8 +17,7 @@ from websockets.exceptions import InvalidStatus
 
 from kurt2rt.page.access import Access
 from kurt2rt.page.app import STATIC
-from kurt2rt.page.error import PageError
-from kurt2rt.page.public_address import PublicAddress
+from kurt2rt.page.public_address import PageError, PublicAddress
 from kurt2rt.page.server import listen, run_page
 from tests.page.fake_robot import FakeRobot
 

@@ -21,7 +21,7 @@ from kurt2rt.recording.attachments import (
     fingerprints_of,
     read_lessons_of,
 )
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.run_head import RunHead, decode_head, encode_head
 from kurt2rt.rla.rla import Origin, Phase, Rla, RlaCreated
 from kurt2rt.tasks.settings import TaskSettings, load_task

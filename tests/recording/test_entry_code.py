@@ -12,6 +12,7 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.planning.step import Course, PlanStep
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.command_code import decode_command, encode_command
 from kurt2rt.recording.entries import (
     DecisionEntry,
@@ -21,7 +22,6 @@ from kurt2rt.recording.entries import (
     TickEntry,
 )
 from kurt2rt.recording.entry_code import decode_tick, encode_tick
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.teaching.commands import Command, CommandResult, Seek, SetPhase

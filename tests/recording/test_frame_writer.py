@@ -5,7 +5,7 @@ from pathlib import Path
 import can
 import pytest
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.frame_writer import ENDINGS, LogFile
 
 FRAMES = (

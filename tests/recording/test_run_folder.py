@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.run_folder import find_run, later_name, make_room, run_name, runs_in, segment_name, used_bytes
 from tests.recording.desk_recording import RecordedDesk
 

@@ -12,8 +12,8 @@ from mcap.data_stream import RecordBuilder
 from mcap.records import Chunk, Header
 from mcap.writer import MCAP0_MAGIC
 
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.disk import RealDisk, WritableFile
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.segment import KEPT_BYTES, Segment
 from kurt2rt.recording.segment_reader import SegmentReader
 

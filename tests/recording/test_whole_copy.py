@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.recording.whole_copy import TORN_METADATA, copy_whole

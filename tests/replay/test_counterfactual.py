@@ -9,7 +9,7 @@ import pytest
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.layers.decision import Cause
-from kurt2rt.recording.error import RecordingError
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.replay.replay import Replay, ReplayedTick
 from kurt2rt.replay.run import Run

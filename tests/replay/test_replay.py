@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from hal.robot import WheelSpeeds
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.replay.comparing import compare

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.explain.timeline import summary, timeline_of
+from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.error import RecordingError
 from kurt2rt.recording.run_folder import segments_in
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay, replay_until

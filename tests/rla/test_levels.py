@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Space
 from tests.examples import examples
 from tests.rla.helpers import created, deleted, origin, replaced, undone, withdrawn
@@ -62,7 +62,7 @@ def test_ids_lessons_and_undo_run_through_all_levels_and_the_rest_is_the_basic_o
 def test_a_condition_must_have_the_length_of_its_level() -> None:
     system = system_of()
     for event in (created(1, (0.0, 0.0), level=CRITIC), created(1, (0.0, 0.0, 0.0))):
-        with pytest.raises(UnfitEventError, match=r"RLA 1: condition has . values, this system matches"):
+        with pytest.raises(InvalidEventError, match=r"RLA 1: condition has . values, this system matches"):
             system.apply(event)
     assert (system.next_id, system.lessons) == (1, ())
 
@@ -118,7 +118,7 @@ def test_where_an_action_was_withdrawn_the_nearest_rla_is_told_and_nothing_is_kn
 def test_asking_is_no_action_and_comes_only_by_a_withdrawal(event: TeachingEvent, why: str) -> None:
     system = system_of(created(1, (0.0, 0.0)), withdrawn(1))
     before = system.knowledge_hash(), system.lessons, system.next_id
-    with pytest.raises(UnfitEventError, match=why):
+    with pytest.raises(InvalidEventError, match=why):
         system.apply(event)
     assert (system.knowledge_hash(), system.lessons, system.next_id) == before
 

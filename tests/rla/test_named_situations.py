@@ -5,7 +5,7 @@ import math
 import pytest
 
 from kurt2rt.rla.rla import BASIC, CRITIC, MID
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Space
 from tests.rla.helpers import created, named, undone
 
@@ -45,9 +45,9 @@ def test_naming_changes_no_rla_and_no_fingerprint() -> None:
 
 def test_a_situation_that_is_none_of_the_level_cannot_be_named() -> None:
     knows = system()
-    with pytest.raises(UnfitEventError, match="has 2 values, level mid matches 3"):
+    with pytest.raises(InvalidEventError, match="has 2 values, level mid matches 3"):
         knows.apply(named("door", (1.0, 2.0), MID))
-    with pytest.raises(UnfitEventError, match="not finite"):
+    with pytest.raises(InvalidEventError, match="not finite"):
         knows.apply(named("door", (1.0, math.nan, 0.0), MID))
     assert knows.lessons == ()
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import ASK, Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from tests.examples import examples
 from tests.rla.helpers import created, deleted, named, origin, replaced, rewarded, undone, withdrawn
 
@@ -52,7 +52,7 @@ def test_several_come_back_in_the_order_in_which_they_were_taught() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"))
     for lesson in ("b", "a", "lesson-1"):
         system.apply(undone(lesson))
-    with pytest.raises(UnfitEventError, match=r"'b' was taught after 'a' \(RLA 1 corrected: back .*; redo that one"):
+    with pytest.raises(InvalidEventError, match=r"'b' was taught after 'a' \(RLA 1 corrected: back .*; redo that one"):
         system.apply(redone("b"))
     for lesson in ("lesson-1", "a", "b"):
         assert system.last_undone_lesson == lesson
@@ -62,7 +62,7 @@ def test_several_come_back_in_the_order_in_which_they_were_taught() -> None:
 
 def test_where_another_lesson_has_taken_its_place_the_refusal_names_it() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "a"), undone("a"), replaced(1, ASK + "ed", "forward", "b"))
-    with pytest.raises(UnfitEventError, match=r"lesson 'b' came in the place of 'a' \(RLA 1 .*; undo that one first"):
+    with pytest.raises(InvalidEventError, match=r"lesson 'b' came in the place of 'a' \(RLA 1 .*; undo that one first"):
         system.apply(redone("a"))
     system.apply(undone("b"))
     system.apply(redone("a"))
@@ -107,7 +107,7 @@ def test_after_any_undoing_and_redoing_the_standing_lessons_alone_make_the_same_
             event = redone(lessons[which % len(lessons)])
         try:
             system.apply(event)
-        except UnfitEventError:
+        except InvalidEventError:
             assert isinstance(event, type(undone("x")) | LessonRedone)
     standing = RlaSystem(2, 5.0)
     standing.apply_all(record.event for record in system.lessons if not record.undone)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.rla.matching import exact_distances
 from kurt2rt.rla.rla import Phase, Rla, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from tests.rla.helpers import created, deleted, origin, replaced, rewarded, session, undone
 
 
@@ -107,7 +107,7 @@ def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
     system.apply(deleted(3))
     assert system.next_id == 4
     assert system.get(3) is None
-    with pytest.raises(UnfitEventError, match="ids up to 3 are taken"):
+    with pytest.raises(InvalidEventError, match="ids up to 3 are taken"):
         system.apply(created(3, (9.5, 0.0), command_id="again"))
     system.apply(deleted(1))
     match = system.match(np.array([0.0, 0.0]))
@@ -144,7 +144,7 @@ def test_an_event_that_does_not_fit_is_refused_and_changes_nothing(event: Teachi
         created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), deleted(1), rewarded(2), undone("reward-2"), *session(7)
     )
     before = everything(system)
-    with pytest.raises(UnfitEventError, match=problem):
+    with pytest.raises(InvalidEventError, match=problem):
         system.apply(event)
     assert everything(system) == before
 
@@ -277,8 +277,8 @@ def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: l
             continue
         try:
             together.apply(event)
-        except UnfitEventError:  # an undo that may not be: nor may it there
-            with pytest.raises(UnfitEventError):
+        except InvalidEventError:  # an undo that may not be: nor may it there
+            with pytest.raises(InvalidEventError):
                 alone[behaviour].apply(event)
         else:
             alone[behaviour].apply(event)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from kurt2rt.rla.rla import MID, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Metric, Space
 from kurt2rt.rla.symbol_index import SymbolIndex, edit_distances, hamming_distances
 from tests.rla.helpers import created, deleted, replaced, undone
@@ -139,7 +139,7 @@ def test_every_event_that_is_applied_counts_as_a_change_and_one_that_does_not_fi
     before = system.changes
     system.apply(replaced(1, "turn_left", "forward"))
     assert system.changes == before + 1
-    with pytest.raises(UnfitEventError):
+    with pytest.raises(InvalidEventError):
         system.apply(deleted(7))
     assert system.changes == before + 1
 

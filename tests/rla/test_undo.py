@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem, UnfitEventError
+from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from tests.examples import examples
 from tests.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
 
@@ -78,7 +78,7 @@ def test_an_undone_withdrawal_gives_the_action_back() -> None:
 
 def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "phone-7"), SECOND)
-    with pytest.raises(UnfitEventError) as refused:
+    with pytest.raises(InvalidEventError) as refused:
         system.apply(undone("lesson-1"))
     assert str(refused.value) == (
         "lesson 'phone-7' came after 'lesson-1' (RLA 1 corrected: back instead of forward); undo that one first"
@@ -91,9 +91,9 @@ def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -
 
 def test_a_lesson_is_undone_once() -> None:
     system = system_of(FIRST, undone("lesson-1"))
-    with pytest.raises(UnfitEventError, match="lesson 'lesson-1' was undone already"):
+    with pytest.raises(InvalidEventError, match="lesson 'lesson-1' was undone already"):
         system.apply(undone("lesson-1"))
-    with pytest.raises(UnfitEventError, match="there is no lesson 'undo-lesson-1'"):
+    with pytest.raises(InvalidEventError, match="there is no lesson 'undo-lesson-1'"):
         system.apply(undone("undo-lesson-1"))
 
 
@@ -200,7 +200,7 @@ def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps
     for event in lessons_and_undos(steps, system):
         try:
             system.apply(event)
-        except UnfitEventError:
+        except InvalidEventError:
             continue
         for record in system.lessons:
             name = record.event.origin.command_id
@@ -228,5 +228,5 @@ def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps
 def test_a_lesson_can_be_taught_again_after_its_undo_under_another_command() -> None:
     system = system_of(FIRST, undone("lesson-1"), created(2, (0.0, 0.0)))
     assert [rla.rla_id for rla in system.rlas] == [2]
-    with pytest.raises(UnfitEventError, match="command 'lesson-1' has taught a lesson already"):
+    with pytest.raises(InvalidEventError, match="command 'lesson-1' has taught a lesson already"):
         system.apply(created(3, (1.0, 0.0), command_id="lesson-1"))

@@ -22,8 +22,7 @@ from hal.tap import Tap
 from kurt2rt.app import OpenedRobot
 from kurt2rt.channel.credentials import LOCAL, local_pairing
 from kurt2rt.cli.robot_program import Orders, RobotProgram
-from kurt2rt.health.error import StatusError
-from kurt2rt.health.status_socket import reports_at, socket_of
+from kurt2rt.health.status_socket import StatusError, reports_at, socket_of
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.systemd.error import UnitError
 from kurt2rt.systemd.installation import program
 from kurt2rt.systemd.installing import Places, install, require_free, uninstall
-from kurt2rt.systemd.unit import MARK, Unit, unit_of
+from kurt2rt.systemd.unit import MARK, Unit, UnitError, unit_of
 
 SSH = "[Unit]\nDescription=OpenBSD Secure Shell server\n"
 

@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 
 from config import CONFIG_DIR
-from kurt2rt.systemd.error import UnitError
 from kurt2rt.systemd.examination import MOST_EXPOSURE, examine, has_tool
 from kurt2rt.systemd.installation import program
-from kurt2rt.systemd.unit import Unit, quoted, unit_of
+from kurt2rt.systemd.unit import Unit, UnitError, quoted, unit_of
 
 needs_systemd = pytest.mark.skipif(
     not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"

@@ -15,8 +15,8 @@ import anyio
 import pytest
 
 import kurt2rt.teaching
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import Pairing, pair, renew
-from kurt2rt.channel.error import CredentialsError
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, unsaved
 from kurt2rt.channel.requests import (
     PACKAGE,

@@ -11,8 +11,9 @@ import anyio.to_thread
 import pytest
 
 import kurt2rt.teaching
+from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import ONLOOKER, Pairing, pair
-from kurt2rt.channel.error import ChannelError, CredentialsError
+from kurt2rt.channel.port import ChannelError
 from kurt2rt.channel.requests import AppraiseRequest, Request, StopRequest, WatchRequest
 from kurt2rt.channel.wire import WireError
 from kurt2rt.teaching import RobotProcess, Teacher

@@ -10,9 +10,9 @@ from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.printed import console_of
 from kurt2rt.exchange.given import COME_FROM
 from kurt2rt.knowledge.branching import whence_of
-from kurt2rt.knowledge.error import KnowledgeError
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import read_taught
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.shown import plain
 from kurt2rt.text_table import TextTable, print_whole
 

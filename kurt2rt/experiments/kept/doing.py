@@ -3,9 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from kurt2rt.experiments.error import JobKilledError, StudyError
-from kurt2rt.experiments.kept.results import Kept, Results
-from kurt2rt.experiments.pool import Job, Standing, run_jobs
+from kurt2rt.experiments.kept.results import Kept, Results, StudyError
+from kurt2rt.experiments.pool import Job, JobKilledError, Standing, run_jobs
 
 
 class KeptJob(Kept, Job[None], Protocol):

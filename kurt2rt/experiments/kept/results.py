@@ -10,15 +10,19 @@ from typing import Protocol, TypeVar
 
 from pydantic import ValidationError
 
+from hal.errors import UserError
 from hal.settings import Settings
 from kurt2rt.durable import write_durably
-from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.kept.made_of import MadeOf
 
 _UNFINISHED = "unfinished-"
 _NEW_FOLDER = "give a new folder with --out, or delete the results in this one"
 
 OutcomeT = TypeVar("OutcomeT", bound=Settings)
+
+
+class StudyError(UserError):
+    """Stored results cannot be used, or experiments do not fit together."""
 
 
 class Kept(Protocol):

@@ -11,10 +11,10 @@ import anyio
 from hal.robot_settings import RobotSettings
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.error import LessonLostError, StudyError
 from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.kept.stage import StudyStage
+from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.examining import Examiner

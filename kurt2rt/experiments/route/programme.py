@@ -7,10 +7,9 @@ from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.route.job import BasicJob, RouteJob
 from kurt2rt.experiments.route.teaching import route_of_task, with_route

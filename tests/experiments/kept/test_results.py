@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.error import StudyError
 from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.paper.outcome import TaughtOutcome
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot
 

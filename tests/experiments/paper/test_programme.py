@@ -9,8 +9,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
-from kurt2rt.experiments.error import StudyError
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.programme import Programme, plan, unseen_of

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.experiments.error import StudyError
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,

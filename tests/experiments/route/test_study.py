@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.experiments.error import StudyError
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.experiments.kept.results import Results, StudyError
 from kurt2rt.experiments.pool import Standing
 from kurt2rt.experiments.route.programme import Programme, basic_file, basic_task_of, plan
 from kurt2rt.experiments.route.report import draw_pictures, write_report

@@ -1,15 +1,17 @@
-"""The one error of this package, and what SQLite's complaints mean for whoever runs the robot."""
+"""Errors of knowledge files, and the advice for each of SQLite's error codes."""
 
 import sqlite3
 from pathlib import Path
 
-
-class KnowledgeError(Exception):
-    """Knowledge cannot be read or written. The message is one line: what, where, what to do."""
+from hal.errors import UserError
 
 
-class StuckError(KnowledgeError):
-    """SQLite does not come out of it by itself, whatever the disk does: only a new connection helps."""
+class KnowledgeError(UserError):
+    """Knowledge cannot be read or written."""
+
+
+class ReconnectRequiredError(KnowledgeError):
+    """SQLite cannot recover on this connection, even when the disk does; open a new connection."""
 
 
 _ADVICE = {
@@ -27,11 +29,11 @@ _ADVICE = {
 
 
 def explained(error: sqlite3.Error, path: Path) -> KnowledgeError:
-    """The same error in our words: file, what is wrong, what to do, and SQLite's own words for the search engine."""
+    """Return the error with file, advice and SQLite's own message, which a search engine finds."""
     code: int | None = getattr(error, "sqlite_errorcode", None)  # absent where Python itself raised the error
     primary = None if code is None else code & 0xFF  # the upper bits tell which read, write or sync it was
     advice = "SQLite refuses it; keep the file, and go on with a backup copy"
     if primary is not None:
         advice = _ADVICE.get(primary, advice)
-    kind = StuckError if primary == sqlite3.SQLITE_PROTOCOL else KnowledgeError
-    return kind(f"{path}: {advice} (SQLite: {error})")
+    kind = ReconnectRequiredError if primary == sqlite3.SQLITE_PROTOCOL else KnowledgeError
+    return kind(f"{advice} (SQLite: {error})", where=path)

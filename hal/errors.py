@@ -1,0 +1,27 @@
+"""Base of the errors that a user sees, in one line each."""
+
+from typing import ClassVar
+
+
+class UserError(Exception):
+    """An error that the user can mend. `str` of it is the line `<where>: <what is wrong>; <what to do>`."""
+
+    exit_code: ClassVar[int] = 2
+    """Exit code of a command that ends with an error of this class."""
+
+    def __init__(self, what: str, *, where: object = "", do: str = "") -> None:
+        """Keep the parts of the line.
+
+        Args:
+            what: what is wrong, with what was found and what is allowed.
+            where: file, device, task or key; empty where `what` names it.
+            do: what mends it; empty where `what` says it.
+        """
+        super().__init__(what)  # `what` alone: an error that comes from another process is built from its args
+        self.what = what
+        self.where = str(where)
+        self.do = do
+
+    def __str__(self) -> str:
+        """Return the line."""
+        return (f"{self.where}: " if self.where else "") + self.what + (f"; {self.do}" if self.do else "")
