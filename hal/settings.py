@@ -169,11 +169,16 @@ def find_config(kind: str, name_or_path: str) -> Path:
     shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
     if shipped.is_file():
         return shipped
-    names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
+    names = shipped_names(kind)
     meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
     raise SettingsError(
         f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {', '.join(names)}{meant}"
     )
+
+
+def shipped_names(kind: str) -> list[str]:
+    """Return the names of the shipped settings files in `config/<kind>`, sorted."""
+    return sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
 
 
 def content_of(path: Path) -> Any:

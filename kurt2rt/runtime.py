@@ -37,7 +37,7 @@ from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.progress_meter import ProgressMeter
 from kurt2rt.teaching.recent import RecentDecisions
 from kurt2rt.teaching.school import School
-from kurt2rt.tick import LessonKeeper, Tick
+from kurt2rt.tick import LessonKeeper, Tick, TickRecord
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.ledger import Ledger
 from kurt2rt.timing.scheduler import Scheduler
@@ -66,7 +66,7 @@ class Runtime:
     progress: ProgressMeter
     """Counts what its owner hands it after each tick."""
     tick: Tick
-    scheduler: Scheduler
+    scheduler: Scheduler[TickRecord]
 
     def set_down(self) -> None:
         """Somebody has set the robot down elsewhere, between two ticks: the next one begins anew there."""
@@ -187,7 +187,7 @@ def build_runtime(
         tolerates_stalls=tolerates_stalls,
         asks_when_held=asks_when_held,
     )
-    scheduler = Scheduler(clock, tick, period_s, ledger)
+    scheduler = Scheduler(clock, tick.run, period_s, ledger)
     return Runtime(
         settings,
         task,

@@ -21,7 +21,8 @@ from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.wire.line import NO_WIRE, open_line, require_wire
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_loading import load_world
+from simbridge.world_settings import WorldSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

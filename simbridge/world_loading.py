@@ -1,10 +1,10 @@
-"""From a name or a path to a world that the robot can drive in."""
+"""Loader of worlds by name or path, with a check that the robot can drive in them."""
 
 from pathlib import Path
 
 import shapely
 
-from hal.robot_settings import GeometrySettings
+from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
 from hal.settings import SettingsError, content_of, find_config, load_settings
 from simbridge.geometry import polygons_of
 from simbridge.world_generator.names import GENERATED, generated
@@ -18,8 +18,14 @@ _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".ti
 """Endings of files that are never opened as a world, whatever they are."""
 
 
-def load(name_or_path: str, geometry: GeometrySettings) -> WorldSettings:
-    """What simbridge.world_settings.load_world promises, for a robot of this shape."""
+def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
+    """Return a world that the robot (KURT2 unless given) can drive in: shipped or generated, by name, or from a file.
+
+    Names: those in config/worlds, `rooms-17` and `streets-17` for any number (simbridge.world_generator). Files: a
+    world, a map of ROS's map_server, or a world on such a map (simbridge.map_server).
+    Raises hal.settings.SettingsError that names file and key.
+    """
+    geometry = (robot or load_robot()).geometry
     world = generated(name_or_path)
     source = name_or_path
     if world is None:

@@ -24,7 +24,8 @@ from kurt2rt.perception.definition import SituationDefinition, load_situation
 from kurt2rt.rla.rla import ASK
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from simbridge.wire.settings import WireSettings
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_loading import load_world
+from simbridge.world_settings import WorldSettings
 
 SCHEMAS: dict[str, type[Settings]] = {
     "robots": RobotSettings,

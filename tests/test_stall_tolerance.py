@@ -17,7 +17,7 @@ from kurt2rt.layers.decision import Cause
 from kurt2rt.stall_tolerant_kurt2 import StallTolerantKurt2
 from kurt2rt.teaching.commands import Watch
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.teaching.helpers import teach
 from tests.test_tick import Corridor
 from tests.test_tick_by_hand import watch

@@ -10,7 +10,7 @@ from kurt2rt.timing.scheduler import Scheduler
 class Pace:
     """Runs the scheduler until `end`."""
 
-    def __init__(self, scheduler: Scheduler, clock: Clock) -> None:
+    def __init__(self, scheduler: Scheduler[TickRecord], clock: Clock) -> None:
         self._scheduler = scheduler
         self._clock = clock
         self._shift_s = 0.0

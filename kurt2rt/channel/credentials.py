@@ -20,12 +20,11 @@ from typing import Any
 
 from kurt2rt.channel.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN, CredentialsError
 from kurt2rt.durable import make_private_folder, sync_folder
+from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import CRITIC
 
 LOCAL = "local"
 """Name of whoever teaches at the robot's own machine, with the page or a program of his own."""
-AUTO = "auto"
-"""Name of the scripted teacher."""
 TERMINAL = "terminal"
 """Name of whoever teaches from a terminal of the robot's own machine, so that the page can be open beside it."""
 ONLOOKER = "onlooker"

@@ -80,7 +80,7 @@ def sim(
     from kurt2rt.cli.sim_desk import Desk, News, StatusLine, TypedLines
     from kurt2rt.simulated_ground import SimulatedGround
     from simbridge.standalone import StandaloneRobot
-    from simbridge.world_settings import load_world
+    from simbridge.world_loading import load_world
 
     settings = load_robot(robot)
     ground_plan = load_world(world, settings)

@@ -9,9 +9,8 @@ from tempfile import TemporaryDirectory
 
 import anyio.to_thread
 
-from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
+from hal.settings import SettingsError, shipped_names
 from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.exchange.given import import_knowledge
@@ -20,7 +19,8 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
 from kurt2rt.knowledge.set_aside import set_aside
 from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
+from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.layers.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.settings import load_mid
@@ -30,7 +30,7 @@ from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import empty_system
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import BeginSession, Command, SetPhase, Take
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 
 _GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
@@ -179,9 +179,8 @@ class SimulatedRuns:
         return len(opened.entries)
 
     def _look(self) -> SimulationView:
-        names = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
-        tasks = tuple(TaskName(name, load_task(name).sentence) for name in names)
-        worlds = tuple(sorted(path.stem for path in (CONFIG_DIR / "worlds").glob("*.yaml")))
+        tasks = tuple(TaskName(name, load_task(name).sentence) for name in shipped_names("tasks"))
+        worlds = tuple(shipped_names("worlds"))
         return SimulationView(self.present.world, self.present.task_name, worlds, tasks)
 
 

@@ -12,7 +12,6 @@ from rich.console import Console
 
 from hal.robot_settings import load_robot
 from kurt2rt.channel.credentials import (
-    AUTO,
     LOCAL,
     OF_THIS_MACHINE,
     TERMINAL,
@@ -25,7 +24,7 @@ from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import task_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.terminal import TerminalTeacher
-from kurt2rt.knowledge.people import NOT_PEOPLE
+from kurt2rt.rla.programs import AUTO, PROGRAMS
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.answer import NoAnswerError
@@ -230,7 +229,7 @@ async def _by_script(
         lessons = () if agreed else await client.lessons(_NEWEST_LESSONS)
     except NoAnswerError as error:
         raise no_robot(way.host, way.port, way.device.name) from error
-    people = dict.fromkeys(each.teacher for each in reversed(lessons) if each.teacher not in NOT_PEOPLE)
+    people = dict.fromkeys(each.teacher for each in reversed(lessons) if each.teacher not in PROGRAMS)
     instead = "run the robot on another file, or let kurt2rt run --auto do so"
     if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):
         return

@@ -11,6 +11,7 @@ from pydantic import Field, field_validator, model_validator
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.settings import Settings, find_config, load_settings
+from kurt2rt.rla.feature_set import LevelFeatures
 
 Seconds = Annotated[float, Field(gt=0, le=100_000)]
 Metres = Annotated[float, Field(gt=0, le=10)]
@@ -183,6 +184,11 @@ class CriticSettings(Settings):
         if self.learning.weights.surprised and self.perception.surprise_held_s is None:
             raise ValueError("learning.weights.surprised weighs nothing; say perception.surprise_held_s, too")
         return self
+
+    @property
+    def level_features(self) -> LevelFeatures:
+        """Names and fingerprint of the circumstances, for a knowledge file."""
+        return LevelFeatures(self.feature_hash, self.names)
 
     @property
     def names(self) -> tuple[str, ...]:

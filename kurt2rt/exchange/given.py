@@ -14,7 +14,7 @@ from kurt2rt.exchange.features import differing_features
 from kurt2rt.exchange.manifest import read_manifest
 from kurt2rt.exchange.signing import fingerprint
 from kurt2rt.exchange.sound import require_fitting, require_times
-from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures, require_same
+from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
@@ -34,6 +34,7 @@ from kurt2rt.recording.attachments import (
 )
 from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.kept_files import trouble_of
+from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.tasks.settings import TaskSettings
 
 COME_FROM = "imported from"

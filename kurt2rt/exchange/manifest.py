@@ -5,8 +5,9 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
-from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.recording.checked import text_of
+from kurt2rt.rla.feature_set import LevelFeatures
 
 _Text = Annotated[str, AfterValidator(text_of)]
 

@@ -5,16 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-
-
-@dataclass(frozen=True, slots=True)
-class LevelFeatures:
-    """What the conditions of one level are made of."""
-
-    feature_hash: str
-    """Fingerprint of all that makes these features what they are."""
-    feature_names: tuple[str, ...]
-    """One per dimension of a condition."""
+from kurt2rt.rla.feature_set import LevelFeatures
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from kurt2rt.durable import sync_file, sync_folder
-from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal_schema import (
     APPLICATION_ID,
     new_database,
@@ -21,6 +21,7 @@ from kurt2rt.knowledge.journal_schema import (
 )
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
 from kurt2rt.knowledge.statistics_tables import LATER_TABLES, has_table
+from kurt2rt.rla.feature_set import LevelFeatures
 
 BUSY_TIMEOUT_S = 0.2
 """How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""

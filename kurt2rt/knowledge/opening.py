@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.features import features as critic_features
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.durable import make_folder
 from kurt2rt.knowledge.binding import KnowledgeBinding, require_same
@@ -14,7 +13,6 @@ from kurt2rt.knowledge.fold import fold_entries
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.mid.features import features as mid_features
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.rla.rla import CRITIC, MID, TeachingEvent
@@ -109,7 +107,7 @@ def binding_of(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
     """What knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    levels = {CRITIC: critic_features(load_critic(task.critic))}
+    levels = {CRITIC: load_critic(task.critic).level_features}
     if task.mid is not None:
-        levels[MID] = mid_features(load_mid(task.mid))
+        levels[MID] = load_mid(task.mid).level_features
     return KnowledgeBinding(definition.hash(sensors), definition.names, task.system_name, settings.name, levels)

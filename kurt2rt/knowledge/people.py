@@ -2,17 +2,12 @@
 
 from pathlib import Path
 
-from kurt2rt.channel.credentials import AUTO
 from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla import CRITIC
-from kurt2rt.teaching.scripted_teacher import SCRIPTED
-
-NOT_PEOPLE = frozenset({AUTO, SCRIPTED, CRITIC})
-"""Teachers in a journal that are programs."""
+from kurt2rt.rla.programs import PROGRAMS
 
 
 def people_in(path: Path) -> tuple[str, ...]:
     """Return the names of the people who taught in the file at `path`, the first one first. Raises KnowledgeError."""
     with Journal.read_only(path) as journal:
         names = dict.fromkeys(event.origin.teacher for event in journal.events())
-    return tuple(name for name in names if name not in NOT_PEOPLE)
+    return tuple(name for name in names if name not in PROGRAMS)

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterable, Mapping
 
-from kurt2rt.knowledge.binding import LevelFeatures
+from hal.settings import shipped_names
 from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.shown import answer, instead_of, plain, when_and_who
-from kurt2rt.mid.settings import MidSettings
-from kurt2rt.mid.shipped import shipped_mid
+from kurt2rt.mid.settings import MidSettings, load_mid
 from kurt2rt.rla.condition import Condition
+from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.rla.rla import Rla
 from kurt2rt.text_table import TextTable
 
@@ -25,7 +25,7 @@ def mid_table(
 
     A history is told in words, the newest symbol first, where its settings are shipped; else in numbers.
     """
-    settings = shipped_mid(features.feature_hash)
+    settings = _shipped_mid(features.feature_hash)
     table = TextTable()
     table.add_column("mid-level RLA", number=True)
     for heading in ("behaviour", "instead of", "taught (UTC), by"):
@@ -50,13 +50,22 @@ def mid_table(
 
 def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> TextTable:
     """The situations that have a name, in the order of the alphabet; in words or numbers as above."""
-    settings = shipped_mid(features.feature_hash)
+    settings = _shipped_mid(features.feature_hash)
     table = TextTable()
     for heading in ("named", "where: the newest first"):
         table.add_column(heading)
     for name in sorted(named):
         table.add_row(plain(name), plain(_where(named[name], settings, features.feature_names)))
     return table
+
+
+def _shipped_mid(feature_hash: str) -> MidSettings | None:
+    """Return the shipped mid level with these features, since a knowledge file holds no more than their fingerprint.
+
+    None: settings of a user, or of another kurt2rt. Raises SettingsError.
+    """
+    shipped = map(load_mid, shipped_names("mid_levels"))
+    return next((each for each in shipped if each.feature_hash == feature_hash), None)
 
 
 def _where(situation: Condition, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
-from hal.errors import UserError
 from hal.robot import STANDSTILL, Senses
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation
@@ -25,14 +25,6 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.rla.rla_system import RlaSystem
-
-
-class UnknownActionError(UserError, ValueError):
-    """Knowledge, or a policy, names an action that the repertoire does not have."""
-
-
-class UnknownBehaviourError(UserError, ValueError):
-    """Knowledge names a taught behaviour that the task does not have."""
 
 
 def _named(behaviour: str) -> str:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.robot import Senses
-from kurt2rt.layers.basic_level import UnknownBehaviourError
 from kurt2rt.layers.decision import Decision, MidDecision
+from kurt2rt.layers.errors import UnknownBehaviourError
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.mid.settings import MidSettings
 from kurt2rt.mid.situation import MidSituation

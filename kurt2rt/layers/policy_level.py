@@ -3,8 +3,8 @@
 from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, Senses
-from kurt2rt.layers.basic_level import UnknownActionError
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.errors import UnknownActionError
 from kurt2rt.layers.held_action import HeldAction
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Situation

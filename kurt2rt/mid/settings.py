@@ -12,6 +12,7 @@ from hal.settings import Settings, find_config, load_settings
 from kurt2rt.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.mid.situation import AnyMidSituationSettings, MidSituation
 from kurt2rt.mid.symbols.source import Transitions
+from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.rla.space import Space
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
@@ -34,6 +35,11 @@ class MidSettings(Settings):
     junctions: JunctionDetectorSettings
     situation: AnyMidSituationSettings
     learning: MidLearningSettings
+
+    @property
+    def level_features(self) -> LevelFeatures:
+        """Names and fingerprint of the mid-level features, for a knowledge file."""
+        return LevelFeatures(self.feature_hash, self.features)
 
     @property
     def features(self) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hal.settings import SettingsError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.layers.basic_level import UnknownActionError, UnknownBehaviourError
+from kurt2rt.layers.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.entries import TickEntry

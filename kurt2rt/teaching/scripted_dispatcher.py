@@ -4,12 +4,12 @@ import random
 from collections.abc import Sequence
 
 from kurt2rt.experiments.courses.course import WayAhead
+from kurt2rt.rla.programs import SCRIPTED
 from kurt2rt.rla.rla import MID, Phase
 from kurt2rt.tasks.settings import TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.tick import TickRecord
 
-_NAME = "scripted teacher"
 _NOTICES_WITHIN_S = 3.0
 """From a junction that it has left behind to where the robot says so; later it has missed the junction."""
 
@@ -58,7 +58,7 @@ class ScriptedDispatcher:
             if self._asked_ticks < self._reaction_ticks:
                 return None
             self._asked_ticks = 0
-            return Teach(self._next_id(), _NAME, self._choose(right), level=MID)
+            return Teach(self._next_id(), SCRIPTED, self._choose(right), level=MID)
         self._asked_ticks = 0
         if self.phase is not Phase.CORRECTIONS or mid.overridden or mid.behaviour == right:
             self._otherwise_ticks = 0
@@ -67,7 +67,7 @@ class ScriptedDispatcher:
         if self._otherwise_ticks < self._patience_ticks:
             return None
         self._otherwise_ticks = 0
-        return Correct(self._next_id(), _NAME, self._choose(right), level=MID)
+        return Correct(self._next_id(), SCRIPTED, self._choose(right), level=MID)
 
     def _follow(self, ahead: WayAhead, *, noticed: bool) -> None:
         """Which junction the robot's mid level is about."""
@@ -87,7 +87,7 @@ class ScriptedDispatcher:
             return None
         self._unnoticed_ticks = 0
         self.missed += 1
-        return Pursue(self._next_id(), _NAME, right)
+        return Pursue(self._next_id(), SCRIPTED, right)
 
     def _choose(self, right: str) -> str:
         if self._chance.random() >= self._error_rate:

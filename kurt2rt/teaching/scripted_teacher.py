@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
+from kurt2rt.rla.programs import SCRIPTED
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.tasks.settings import TaskSettings, TeacherSettings
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
 from kurt2rt.tick import TickRecord
-
-SCRIPTED = "scripted teacher"
 
 
 class Picture(NamedTuple):

@@ -1,21 +1,27 @@
-"""The 100 Hz scheduler: one tick per period, late ones skipped whole."""
+"""Scheduler of the 100 Hz tick: one call per period, late ones skipped whole."""
 
 from collections.abc import Callable
+from typing import Generic, TypeVar
 
-from kurt2rt.tick import Tick, TickRecord
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.ledger import Ledger
 
+RecordT = TypeVar("RecordT")
 
-class Scheduler:
-    """Runs a Tick at each multiple of the period.
+
+class Scheduler(Generic[RecordT]):
+    """Pacer that runs a tick at each multiple of the period.
 
     A tick that cannot begin within its period is missed: skipped whole and counted, never caught up in a burst.
+    Each tick waits for the clock exactly once. A clock in lockstep takes one step of the world in each wait.
     """
 
-    def __init__(self, clock: Clock, tick: Tick, period_s: float, ledger: Ledger) -> None:
+    def __init__(
+        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, ledger: Ledger
+    ) -> None:
+        """`run_tick`: takes the tick's number, from 1, and its time in seconds; returns the tick's record."""
         self._clock = clock
-        self._tick = tick
+        self._run_tick = run_tick
         self._period_s = period_s
         self._ledger = ledger
         self._number = 0
@@ -25,7 +31,7 @@ class Scheduler:
         """Let `run` return after the tick it is in."""
         self._ending = True
 
-    async def run(self, ticks: int | None, after_tick: Callable[[TickRecord], None]) -> None:
+    async def run(self, ticks: int | None, after_tick: Callable[[RecordT], None]) -> None:
         """Run until `end` is called, or for so many ticks of the clock, missed ones included.
 
         `after_tick` sees each record when the wheels have been told; it counts against the period.
@@ -45,6 +51,6 @@ class Scheduler:
                 self._number += missed
                 deadline_s += missed * period_s
             self._ledger.begin(now_s - deadline_s)
-            after_tick(self._tick.run(self._number, now_s))
+            after_tick(self._run_tick(self._number, now_s))
             self._ledger.end()
         self._ending = False

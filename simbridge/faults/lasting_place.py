@@ -26,7 +26,7 @@ from simbridge.wire.end import WireInterface
 from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 
 
 class LongRunRig:

@@ -11,8 +11,9 @@ import anyio
 from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel
-from kurt2rt.channel.credentials import AUTO, LOCAL, Pairing, local_pairing
+from kurt2rt.channel.credentials import LOCAL, Pairing, local_pairing
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rounds import Screen
 from kurt2rt.runtime import Runtime

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.context_folder import CredentialsError
-from kurt2rt.channel.credentials import AUTO, Device, local_pairing, pair, paired, read_device, renew, revoke
+from kurt2rt.channel.credentials import Device, local_pairing, pair, paired, read_device, renew, revoke
 from kurt2rt.channel.oscore_context import OscoreContext
+from kurt2rt.rla.programs import AUTO
 from tests.channel.sides import ask, ask_until_fresh
 
 

@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import AUTO
 from kurt2rt.cli.scripted_file import own_file, people_agree
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.people import people_in
 from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import Origin, Phase, SessionBegun
 from kurt2rt.tasks.settings import load_task
 from tests.cli.helpers import CommandLine

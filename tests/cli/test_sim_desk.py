@@ -12,7 +12,7 @@ from hal.control import Mode, SpeedControl, SystemControl, control_frame
 from kurt2rt.cli.sim_desk import HELP, Desk, News, StatusLine, TypedLines
 from kurt2rt.simulated_ground import SimulatedGround
 from simbridge.standalone import StandaloneRobot
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.simbridge.rig import ROBOT
 
 WORLD = load_world("a")

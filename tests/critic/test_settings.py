@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError, load_settings
-from kurt2rt.critic.features import features
 from kurt2rt.critic.settings import NAMES, SURPRISED, CircumstanceWeights, CriticSettings, load_critic
 from kurt2rt.tasks.settings import load_task
 
@@ -43,13 +42,13 @@ def test_a_name_that_is_not_there_is_told() -> None:
 
 
 def test_appraisals_are_bound_to_what_the_circumstances_are_and_to_nothing_else() -> None:
-    bound = features(load_critic())
+    bound = load_critic().level_features
     assert bound.feature_names == NAMES
     assert bound.feature_hash == load_critic().feature_hash
     for same in (changed("agreement", bound=0.5), changed("learning", radius=3.0), changed("best", margin=0.5)):
-        assert features(checked(same)) == bound
+        assert checked(same).level_features == bound
     for other in (changed("perception", smoothing_s=0.7), changed("perception", wall_m=0.5)):
-        assert features(checked(other)).feature_hash != bound.feature_hash
+        assert checked(other).level_features.feature_hash != bound.feature_hash
 
 
 @pytest.mark.parametrize(

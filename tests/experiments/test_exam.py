@@ -16,7 +16,7 @@ from kurt2rt.tasks.settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.teaching.commands import Teach
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teachers_drive
 from tests.experiments.results import exam_result
 

@@ -13,7 +13,7 @@ from kurt2rt.experiments.courses.course import Course, CourseSettings
 from kurt2rt.experiments.courses.way import WaySettings
 from kurt2rt.experiments.curriculum import run_exams
 from kurt2rt.experiments.lesson_keeping import LessonLostError
-from kurt2rt.layers.basic_level import UnknownActionError
+from kurt2rt.layers.errors import UnknownActionError
 from kurt2rt.tasks.settings import TaskSettings
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
 

@@ -21,7 +21,7 @@ from kurt2rt.tasks.settings import load_task
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.hal.fuzz_frames import FuzzFrames
 from tests.hal.helpers import ROBOT, TICK_S
 from tests.hal.onlooker import Onlooker

@@ -6,10 +6,11 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.journal import Journal
+from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.rla.rla import (
     CRITIC,
     ActionReplaced,

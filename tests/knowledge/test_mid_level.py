@@ -12,7 +12,6 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge, read_lessons
 from kurt2rt.knowledge.show import render_knowledge, render_lessons
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.mid.features import features
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.tasks.settings import load_task
@@ -49,7 +48,7 @@ def test_knowledge_of_the_streets_is_gone_on_with_on_a_route(path: Path) -> None
     write(path, way(2, 1))
     with Journal.read_only(path) as journal:
         assert journal.binding.system == "streets"
-        assert journal.binding.levels[MID] == features(TURNS)
+        assert journal.binding.levels[MID] == TURNS.level_features
 
 
 def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
@@ -57,7 +56,7 @@ def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
     opened = go_on_teaching(path, ROBOT, STREETS)
     with opened.journal as journal:
         assert opened.events == [basic(1), way(2, 1, 2)]
-        assert journal.binding.levels[MID] == features(TURNS)  # stays for who comes with a mid level
+        assert journal.binding.levels[MID] == TURNS.level_features  # stays for who comes with a mid level
 
 
 def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Path) -> None:
@@ -67,7 +66,7 @@ def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Pa
     with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
         journal.append([JournalEntry(place, STAMP)])
     with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
-        assert journal.binding.levels[MID] == features(load_mid("places"))
+        assert journal.binding.levels[MID] == load_mid("places").level_features
         assert journal.events() == [basic(1), place]
     with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
         open_knowledge(path, ROBOT, ROUTE)
@@ -151,7 +150,9 @@ def test_situations_that_have_a_name_are_shown_with_what_they_mean_now(path: Pat
 
 
 def test_ways_in_features_that_nobody_here_knows_are_shown_in_numbers(path: Path) -> None:
-    with Journal.open(path, replace(BINDING, levels={MID: replace(features(TURNS), feature_hash="0123")})) as journal:
+    with Journal.open(
+        path, replace(BINDING, levels={MID: replace(TURNS.level_features, feature_hash="0123")})
+    ) as journal:
         journal.append([JournalEntry(event, STAMP) for event in (created(1), way(2, 3, 1))])
         lines = printed(render_knowledge(journal, wide=False))
     assert any(re.search(r"^ +2 +turn_left .* symbol 1 3, symbol 2 1\s*$", line) for line in lines)

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.critic.features import features
 from kurt2rt.critic.settings import load_critic
-from kurt2rt.knowledge.binding import KnowledgeBinding, LevelFeatures
+from kurt2rt.knowledge.binding import KnowledgeBinding
 from kurt2rt.knowledge.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge, read_knowledge
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed
 from tests.experiments.helpers import ROBOT, short_task
 from tests.knowledge.lessons import (
@@ -296,7 +296,7 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
     task = short_task()
     with open_knowledge(path, ROBOT, task) as journal:
         assert journal.binding.system == task.name
-        assert journal.binding.levels == {CRITIC: features(load_critic(task.critic))}
+        assert journal.binding.levels == {CRITIC: load_critic(task.critic).level_features}
         lessons = [
             RlaCreated(Rla(number, (0.0,) * len(journal.binding.feature_names), "forward", None, origin(f"c{number}")))
             for number in (1, 2)

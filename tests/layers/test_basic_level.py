@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.layers.basic_level import BasicLevel, UnknownActionError, UnknownBehaviourError
+from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.layers.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.reinforcement.choice import Choice
 from kurt2rt.rla.rla import CRITIC, RlaCreated

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.layers.basic_level import UnknownBehaviourError
+from kurt2rt.layers.errors import UnknownBehaviourError
 from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla_system import RlaSystem
 from tests.layers.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.mid.features import features
 from kurt2rt.mid.settings import MidSettings, load_mid
 
 CONTENT: dict[str, Any] = load_mid("turns").model_dump(mode="json", serialize_as_any=True)
@@ -31,16 +30,16 @@ def test_a_name_that_is_not_there_is_told() -> None:
 
 
 def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> None:
-    bound = features(load_mid("turns"))
+    bound = load_mid("turns").level_features
     assert bound.feature_names == load_mid("turns").features
     for same in (checked(learning={"radius": 3.0}), checked(situation={"distance": "edit"})):
-        assert features(same) == bound
+        assert same.level_features == bound
     others = (
         checked(junctions={"wall_m": 0.41}),
         checked(situation={"length": 8}),
         checked(situation={"symbols": {"kind": "actions", "actions": ["forward"]}}),
     )
-    assert len({features(each).feature_hash for each in (load_mid("turns"), *others)}) == 4
+    assert len({each.level_features.feature_hash for each in (load_mid("turns"), *others)}) == 4
 
 
 @pytest.mark.parametrize(

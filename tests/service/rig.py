@@ -24,7 +24,7 @@ from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 
 SETTINGS = load_robot()
 LONGEST_S = 60.0

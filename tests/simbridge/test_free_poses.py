@@ -8,7 +8,7 @@ from simbridge.free_poses import FreePoses
 from simbridge.nearest import Clearance
 from simbridge.pose import Pose
 from simbridge.world import World
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.simbridge.rig import Rig, quiet_robot
 
 ROBOT = load_robot()

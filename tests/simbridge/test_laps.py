@@ -14,7 +14,8 @@ from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSe
 from simbridge.pose import Pose
 from simbridge.wall_rings import WallRings
 from simbridge.world import World
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_loading import load_world
+from simbridge.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, Rig, room
 
 NAMES = ("a", "b", "c")

@@ -22,7 +22,8 @@ from simbridge.map_server.settings import MapSettings
 from simbridge.map_server.tracing import trace
 from simbridge.map_server.world import MOST_WALLS
 from simbridge.pose import Pose
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_loading import load_world
+from simbridge.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, Rig
 
 CELL_M = 0.05

@@ -8,7 +8,7 @@ from simbridge import free_poses
 from simbridge.free_poses import FreePoses
 from simbridge.obstacle_settings import RoundObstacleSettings
 from simbridge.world import World
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 
 
 def test_a_world_without_a_free_pose_in_sight_is_named_with_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,7 +9,8 @@ import shapely
 from hal.settings import SettingsError
 from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
-from simbridge.world_settings import WorldSettings, load_world
+from simbridge.world_loading import load_world
+from simbridge.world_settings import WorldSettings
 from tests.simbridge.left_wall import left_clearances_m
 from tests.simbridge.rig import ROBOT, Rig
 from tests.simbridge.test_laps import follow, lap_driven

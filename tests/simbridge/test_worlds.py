@@ -10,7 +10,7 @@ from config import CONFIG_DIR
 from hal.settings import SettingsError
 from simbridge.obstacle_settings import PolygonObstacleSettings
 from simbridge.world import World
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.simbridge.left_wall import left_clearances_m
 from tests.simbridge.rig import ROBOT, Rig, room
 

@@ -19,7 +19,7 @@ from kurt2rt.service import Openness, serve
 from kurt2rt.simulated_ground import SimulatedGround
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.answer import RefusedError
-from simbridge.world_settings import load_world
+from simbridge.world_loading import load_world
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
 

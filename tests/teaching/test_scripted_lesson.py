@@ -7,7 +7,7 @@ import anyio
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import AUTO, local_pairing
+from kurt2rt.channel.credentials import local_pairing
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal
 from kurt2rt.channel.requests import (
     HelloRequest,
@@ -20,6 +20,7 @@ from kurt2rt.channel.requests import (
     TakeRequest,
 )
 from kurt2rt.channel.state import SimulatedPlace
+from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching import TeacherClient

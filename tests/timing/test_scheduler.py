@@ -90,7 +90,7 @@ class Run:
             now=clock.now_s,
             stale_infrared_s=0.05,
         )
-        self.scheduler = Scheduler(clock, tick, PERIOD_S, self.ledger)
+        self.scheduler = Scheduler(clock, tick.run, PERIOD_S, self.ledger)
         self.records: list[TickRecord] = []
         self.delays_s: dict[int, float] = {}
         """How much longer than nothing the work after a tick takes, by the tick's number."""
