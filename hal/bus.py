@@ -14,7 +14,7 @@ from hal.socketcan_bus import SocketCanBus
 from hal.tap import Tap
 
 CONTROL_ID = 0x01
-"""Identifier of the only frame that moves the robot (reference 1.2)."""
+"""Identifier of the only frame that moves the robot (docs/the-robot.md#messages)."""
 
 _DRAIN_FRAMES = 4096
 """The most that one drain takes: a bus that is full for 10 ms carries about 200, so whatever waited when it began is

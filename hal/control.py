@@ -1,4 +1,4 @@
-"""The CONTROL frame: set points, brake and system commands in the modes of the firmware (reference 1.3).
+"""CONTROL frame: set points, brake and system commands of the firmware (docs/the-robot.md#control-modes).
 
 Only `hal.guard` may call the encoders: the first thing every set point meets is the guard.
 """
@@ -112,12 +112,12 @@ def control_frame(control: Control) -> Frame:
 
 
 def encode_control(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings) -> Frame:
-    """CONTROL frame of finite wheel speeds in the robot's speed mode; yaw 0 and keep 1 always (reference 4)."""
+    """Return the CONTROL frame of finite wheel speeds; yaw 0 and keep 1 always (docs/the-robot.md#yaw-and-keep)."""
     return control_frame(set_point(mode, wheel_speeds, motors))
 
 
 def encode_brake() -> Frame:
-    """Emergency stop: RAW, no drive, brake on both sides; the only mode with a brake (reference 4)."""
+    """Return RAW without drive, brake on both sides (docs/the-robot.md#emergency-stop)."""
     return control_frame(_BRAKE_BOTH)
 
 

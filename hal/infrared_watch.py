@@ -6,7 +6,7 @@ _NAMES = {"ADC": "first", "BDC": "second"}
 
 
 class Board:
-    """One controller's distance channels, known by the first letters of their names (reference 1.2)."""
+    """One controller's distance channels, known by the first letters of their names (docs/the-robot.md#messages)."""
 
     __slots__ = ("letters", "still_s")
 
@@ -22,9 +22,10 @@ class Board:
 class InfraredWatch:
     """Notices a board whose distance channels all stay the same for `frozen_infrared_s` in which the robot drives.
 
-    Each real sensor measures about 26 times a second and flickers, also with nothing in view (reference 3.3): eight of
-    them do not repeat themselves for a second. A robot that stands may have a board that hangs; but only a reading that
-    changes shows that it lives, so that neither a stop in between nor a resume makes it good for another second.
+    Each real sensor measures about 26 times a second and flickers, also with nothing in view: eight of them do not
+    repeat themselves for a second (docs/the-robot.md#noise-and-timing). A robot that stands may have a board that
+    hangs; but only a reading that changes shows that it lives, so that neither a stop in between nor a resume makes it
+    good for another second.
     """
 
     def __init__(self, channels: tuple[str, ...], frozen_infrared_s: float) -> None:

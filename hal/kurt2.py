@@ -251,7 +251,7 @@ class Kurt2:
         """Take over the frame's distance channels; True when one of them changed. Raises JunkFrameError."""
         raw = analog.codec.unpack(data)
         for at, _ in analog.places:
-            # The C167's result register keeps the channel number above the result (reference 5, point 7).
+            # The C167 keeps the channel number in the upper bits (docs/the-robot.md#range-of-a-channel).
             if raw[at] > HIGHEST_COUNTS:
                 raise JunkFrameError(f"{analog.codec.name}: {raw[at]} counts, a 10-bit converter has {HIGHEST_COUNTS}")
         changed = False

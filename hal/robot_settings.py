@@ -142,7 +142,7 @@ class InfraredSettings(Settings):
         return tuple(sensor.name for sensor in self.sensors)
 
     def counts_at(self, distance_m: float) -> float:
-        """Mean reading at a distance from the sensor's face, fold-back and floor included (reference 3.1, 3.2)."""
+        """Return the mean reading, fold-back and floor included, in counts (docs/the-robot.md#infra-red-law)."""
         if distance_m > self.far_m:
             return float(self.floor_counts)
         if distance_m >= self.near_m:

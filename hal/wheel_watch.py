@@ -7,7 +7,7 @@ from hal.robot_settings import RobotSettings
 
 SLOWEST = 2.0
 """An obedient side answers a set point at most this many times slower than the settings say. Acceleration, braking and
-the time of the speed loop are our choice (reference 4); nobody has measured the real ones."""
+the time of the speed loop are our choice (docs/the-robot.md#motors-and-speed)."""
 REVERSAL_SPEED_M_S = 0.02
 """Faster than this a side that is told to turn back slows down first (firmware's SLOW_SPEED)."""
 

@@ -1,4 +1,4 @@
-"""The infra-red distance sensors: free-running, noisy, each with its own gain and phase (reference 3)."""
+"""Infra-red distance sensors: free-running, noisy, each with own gain and phase (docs/the-robot.md#infra-red-law)."""
 
 import math
 from collections.abc import Sequence

@@ -1,7 +1,7 @@
 """What the controllers measure and compute besides distances: odometry, gyroscope, tilt, currents, temperature.
 
 Nobody simulates these in depth and the runtime does not drive by them. They follow the motion, so that a recording
-looks like one of a robot; sizes are our choice unless the reference gives them.
+looks like one of a robot; sizes that docs/the-robot.md does not give are our choice.
 """
 
 import math

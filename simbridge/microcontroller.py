@@ -12,8 +12,8 @@ from simbridge.instruments import Instruments
 from simbridge.telemetry import Telemetry
 
 CRASH_STEP_M_S = 0.45
-"""A set point that grows by more in one cycle crashes the controller. The real one was seen to crash from zero to full
-speed (reference 4); half of the full 0.9 m/s is our choice."""
+"""A set point that grows by more in one cycle crashes the controller. The real one crashed from zero to full speed
+(docs/the-robot.md#yaw-and-keep); half of the full 0.9 m/s is our choice."""
 
 
 class MotorCommands(NamedTuple):

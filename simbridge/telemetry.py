@@ -10,8 +10,8 @@ from simbridge.controller_bus import SendingPort
 from simbridge.instruments import Instruments
 
 SLOW_CYCLES = 10
-"""Period of frames that nobody drives by. The reference confirms 10 ms for ENCODER alone; sending all seventeen each
-cycle would double the load of the bus and the cost of a simulated second, and tell nothing more."""
+"""Period, in cycles, of frames that do not steer the robot. A source has 10 ms for ENCODER alone
+(docs/the-robot.md#messages). All seventeen frames in each cycle would double the bus load and the simulation's cost."""
 _FIRMWARE_VERSION = 1
 
 

@@ -30,6 +30,8 @@ from tests.replay.stored_runs import STORED
 from tests.replay.stories import slim
 
 ROOT = Path(__file__).parents[1]
+ROOMS = ("config", "hal", "behaviors", "simbridge", "kurt2rt", "tests")
+SOURCES = (".py", ".yaml", ".dbc", ".js")
 DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *ROOT.glob("docs/*.md")])
 
 SCHEMAS: dict[str, type[Settings]] = {
@@ -315,7 +317,7 @@ def test_links_and_paths_lead_to_files(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     links = [link.partition("#")[0] for link in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in link]
     missing = [link for link in links if link and not (path.parent / link).exists()]
-    folders = "config|hal|behaviors|kurt2rt|simbridge|tests|docs"
+    folders = "|".join((*ROOMS, "docs"))
     named = re.findall(rf"`((?:{folders})/[\w./-]*)`", text)
     missing += [name for name in named if not (ROOT / name).exists()]
     assert not missing, f"{path.name} names what is not there: {', '.join(missing)}"
@@ -337,6 +339,17 @@ def test_a_link_to_a_heading_finds_it(path: Path) -> None:
         if "://" not in link and anchor not in headings(path.parent / name if name else path):
             missing.append(link)
     assert not missing, f"{path.name} links to headings that are not there: {', '.join(missing)}"
+
+
+def test_pointers_of_code_to_documents_find_their_heading() -> None:
+    files = [path for room in ROOMS for path in (ROOT / room).rglob("*") if path.suffix in SOURCES]
+    missing = []
+    for path in files:
+        for name, anchor in re.findall(r"\bdocs/([\w-]+\.\w+)(?:#([\w-]+))?", path.read_text(encoding="utf-8")):
+            document = ROOT / "docs" / name
+            if not document.exists() or (anchor and anchor not in headings(document)):
+                missing.append(f"{path.relative_to(ROOT)}: docs/{name}#{anchor}")
+    assert not missing
 
 
 def test_readme_links_every_document() -> None:

@@ -12,7 +12,7 @@ from kurt2rt.faults.table import EnvelopeSettings
 _SPEED_CM, _RAW = 2, 0
 _SET_POINT = struct.Struct(">HhhH")
 _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
-"""RAW, both sides: brake, no drive (reference 1.3)."""
+"""RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
 """Frames that may be on their way to the robot; what is older was lost."""

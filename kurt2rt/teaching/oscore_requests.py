@@ -1,7 +1,7 @@
 """Protected requests to one robot: everything of aiocoap that a teacher's device needs is in here.
 
 Plain requests with `protect` and `unprotect` around them: aiocoap's own OSCORE client leaks two tasks for each answer
-that is lost, and its number limits end observations (reference: teacher-channel.md, pitfalls 3 and 4).
+that is lost, and its number limits end observations.
 """
 
 import logging

@@ -1,4 +1,4 @@
-"""Frames of CONTROL read byte by byte, in bulk, as the hardware reference lays them out; without hal.control."""
+"""Frames of CONTROL read byte by byte, in bulk, laid out as in docs/the-robot.md#control-modes; without hal.control."""
 
 from typing import NamedTuple
 

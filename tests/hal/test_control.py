@@ -1,4 +1,4 @@
-"""CONTROL in every mode: the examples of the reference, and whatever the firmware understands."""
+"""CONTROL in every mode: the examples of docs/the-robot.md, and all that the firmware understands."""
 
 import math
 

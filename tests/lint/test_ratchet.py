@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.lint.ratchet import counted, differences, findings, folder_of, load_allowed, ruff_findings, write_allowed
+from tests.lint.rules import WORDS
 
 PROPERTY = '"""Module."""\n\n\nclass X:\n    """Thing."""\n\n    @property\n    def x(self) -> int:\n        {}\n'
 
@@ -13,7 +14,7 @@ PROPERTY = '"""Module."""\n\n\nclass X:\n    """Thing."""\n\n    @property\n    
     ("path", "folder"),
     [
         ("README.md", "."),
-        ("docs/x.md", "docs"),
+        ("docs/handbook.md", "docs"),
         ("hal/can/bus.py", "hal"),
         ("kurt2rt/tick.py", "kurt2rt"),
         ("kurt2rt/rla/rows/row.py", "kurt2rt/rla"),
@@ -43,7 +44,7 @@ def test_table_that_was_written_is_read_again(tmp_path: Path) -> None:
 
 def test_findings_of_tree_are_counted_by_folder(tmp_path: Path) -> None:
     (tmp_path / "hal").mkdir()
-    (tmp_path / "README.md").write_text("Anew.\n")
+    (tmp_path / "README.md").write_text(WORDS["banned"][0])
     (tmp_path / "hal" / "x.py").write_text('"""What there is."""\n')
     (tmp_path / "hal" / "x.bin").write_bytes(b"\xff")
     assert counted(findings(tmp_path)) == {(".", "banned-word"): 1, ("hal", "first-word"): 1}

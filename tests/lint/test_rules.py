@@ -11,7 +11,7 @@ def rules(source: str, path: str = "hal/x.py") -> list[str]:
 
 @pytest.mark.parametrize("word", WORDS["banned"])
 def test_text_with_banned_word_is_found_at_its_line(word: str) -> None:
-    (finding,) = text_findings("docs/x.md", f"Fine.\nSo {word.title()} it is.\n")
+    (finding,) = text_findings("README.md", f"Fine.\nSo {word.title()} it is.\n")
     assert (finding.line, finding.rule, finding.name) == (2, "banned-word", word)
 
 

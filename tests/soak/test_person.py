@@ -62,7 +62,7 @@ def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
 def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
     place: LongRunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """ACTUATOR_OFF (reference 1.3) holds through any number of programs."""
+    """ACTUATOR_OFF (docs/the-robot.md#control-modes) holds through any number of programs."""
     monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
     place.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
     person = Person(place, PATIENCE_S, CYCLE_S)
