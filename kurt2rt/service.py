@@ -13,7 +13,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.ground import Ground
-from kurt2rt.channel.requests import BOOT_BYTES
+from kurt2rt.channel.requests import BOOT_BYTES, FASTEST
 from kurt2rt.channel.simulation import Simulation
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
@@ -116,7 +116,7 @@ async def serve(
         clock: Clock = around.enter_context(TimerfdClock())
         speed = None
         if openness is not None and openness.world is not None:
-            clock = speed = SimulatedClock(clock, openness.world)
+            clock = speed = SimulatedClock(clock, openness.world, FASTEST)
         upkeep = upkeep or Upkeep(around.enter_context(Ending()), Notifier({}))
         ending = upkeep.ending
         opened = knowledge or go_on_teaching(path, settings, task)

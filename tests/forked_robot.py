@@ -21,7 +21,7 @@ class ForkedRobot(ForkedProcess):
         with log.open("wb") as output:
             streams = (keyboard, output.fileno(), output.fileno())
             try:
-                super().__init__(robot_process.__name__, words, folder, os.environ, streams)
+                super().__init__(robot_process.PROGRAM, words, folder, os.environ, streams)
             finally:
                 os.close(keyboard)
 

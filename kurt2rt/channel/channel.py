@@ -154,7 +154,7 @@ async def open_channel(
         surroundings.copies,
         surroundings.ground,
         health=surroundings.health,
-        why=explaining.tell,
+        why=explaining.facts,
         exam=surroundings.exam,
         simulation=surroundings.simulation,
         speed=surroundings.speed,

@@ -29,10 +29,11 @@ from kurt2rt.channel.requests import (
     UploadRequest,
     WorldRequest,
 )
-from kurt2rt.channel.simulation import SIMULATION, Measure, Simulation, TeacherNow
+from kurt2rt.channel.simulation import Measure, Simulation, TeacherNow
+from kurt2rt.channel.simulation_view import SIMULATION
 from kurt2rt.channel.upload import Upload
+from kurt2rt.file_part import FilePart
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.happenings import SpeedChanged

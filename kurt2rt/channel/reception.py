@@ -32,6 +32,8 @@ from kurt2rt.channel.requests import (
     WhyRequest,
 )
 from kurt2rt.channel.simulation import Measure, Simulation
+from kurt2rt.explain.facts import DecisionFacts
+from kurt2rt.explain.plain import plain_of_facts
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.rla.rla import MID
@@ -81,7 +83,7 @@ class Reception:
         *,
         longest_wait_s: float = LONGEST_WAIT_S,
         health: Callable[[], HealthReport | None] = lambda: None,
-        why: Callable[[], dict[str, Any] | None] = lambda: None,
+        why: Callable[[], DecisionFacts | None] = lambda: None,
         exam: Callable[[], ExamStanding] | None = None,
         simulation: Simulation | None = None,
         speed: Speed | None = None,
@@ -89,7 +91,7 @@ class Reception:
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
-        `health`: the newest report; None before the first. `why`: what the newest decision rested on, as plain values.
+        `health`: the newest report; None before the first. `why`: facts of the newest decision; None before it.
         `exam`: how the exam stands; None where the robot is not examined. `simulation`: None where the simulator is not
         in this program. `speed`: None where robot time is real time.
         `measure`: None where nothing is measured.
@@ -140,7 +142,8 @@ class Reception:
             case WhyRequest():
                 if not self._whys.take(sender.device, self.tick):
                     return refusal("refused", "asked too often; ten times a second is enough", self.tick)
-                return Reply(Verdict.DONE, {"why": self._why()})
+                facts = self._why()
+                return Reply(Verdict.DONE, {"why": None if facts is None else plain_of_facts(facts)})
         return await self._off_tick.answer(device, request)
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:

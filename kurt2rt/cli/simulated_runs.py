@@ -11,7 +11,8 @@ import anyio.to_thread
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, shipped_names
-from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
+from kurt2rt.channel.simulation import TeacherNow
+from kurt2rt.channel.simulation_view import SimulationView, TaskName
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.exchange.given import import_knowledge
 from kurt2rt.knowledge import journal_file

@@ -32,7 +32,6 @@ from kurt2rt.recording.attachments import (
     decode_statistics,
     read_lessons_of,
 )
-from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.kept_files import trouble_of
 from kurt2rt.rla.feature_set import LevelFeatures
 from kurt2rt.tasks.settings import TaskSettings
@@ -130,7 +129,7 @@ def read_given(path: Path) -> Given:
         return _given(path, archive)
     except KeyError as error:
         raise KnowledgeError(f"{path}: has no {error}; export it anew") from error
-    except (ValueError, RecordingError) as error:
+    except ValueError as error:
         raise KnowledgeError(
             f"{path}: cannot be understood ({' '.join(str(error).split())}); export it anew"
         ) from error
@@ -173,7 +172,7 @@ def _features(features: LevelFeatures) -> dict[str, Any]:
 
 
 def _given(path: Path, archive: Archive) -> Given:
-    """Raises KeyError for a file that is not in it, ValueError, RecordingError."""
+    """Raises KeyError for a file that is not in it, ValueError."""
     manifest = read_manifest(archive.manifest)
     binding = manifest.binding
     lessons = tuple(read_lessons_of(archive.files[KNOWLEDGE]))

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from hal.robot import WheelSpeeds
 
+MOST_OTHERS = 12
+"""RLAs of a level that are sent in addition to the nearest: the next nearest."""
+
 
 @dataclass(frozen=True, slots=True)
 class Act:

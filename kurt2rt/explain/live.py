@@ -1,29 +1,27 @@
-"""Explains the newest decision of a robot that runs, when somebody asks."""
-
-from typing import Any
+"""Facts of the newest decision of a running robot, collected on request."""
 
 from kurt2rt.explain.collecting import StampOf, facts_of
-from kurt2rt.explain.plain import MOST_OTHERS, plain_of_facts
+from kurt2rt.explain.facts import MOST_OTHERS, DecisionFacts
 from kurt2rt.runtime import Runtime
 from kurt2rt.tick import TickRecord
 
 
 class Explaining:
-    """Keeps the newest tick, and looks into it on demand: once for each tick, however many ask."""
+    """Keep the newest tick and collect its facts on request, at most once per tick."""
 
     def __init__(self, runtime: Runtime, stamp_of: StampOf) -> None:
         """`stamp_of`: when the lesson of a command became durable."""
         self._runtime = runtime
         self._stamp_of = stamp_of
         self._newest: TickRecord | None = None
-        self._told: dict[str, Any] | None = None
+        self._facts: DecisionFacts | None = None
 
     def follow(self, record: TickRecord) -> None:
-        """Every tick; costs next to nothing."""
-        self._newest, self._told = record, None
+        """Keep the record of a tick. Takes constant time."""
+        self._newest, self._facts = record, None
 
-    def tell(self) -> dict[str, Any] | None:
-        """The facts of the newest decision as plain values; None before the first tick. To be called between ticks."""
-        if self._told is None and self._newest is not None:
-            self._told = plain_of_facts(facts_of(self._runtime, self._newest, self._stamp_of, most=MOST_OTHERS))
-        return self._told
+    def facts(self) -> DecisionFacts | None:
+        """Return the facts of the newest decision; None before the first tick. Call it between ticks."""
+        if self._facts is None and self._newest is not None:
+            self._facts = facts_of(self._runtime, self._newest, self._stamp_of, most=MOST_OTHERS)
+        return self._facts

@@ -6,11 +6,9 @@ from typing import Any
 from hal.robot import WheelSpeeds
 from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
 from kurt2rt.channel.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Whole
-from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.explain.facts import MOST_OTHERS, Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause
 
-MOST_OTHERS = 12
-"""RLAs that are told behind the nearest: those nearest to the situation."""
 _MOST_ACTS = 32
 _MOST_FEATURES = 512
 

@@ -9,7 +9,7 @@ from kurt2rt.channel.reply import Reply, Verdict
 from kurt2rt.channel.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
 from kurt2rt.channel.wire import WireError, decode_request, encode_request
 from kurt2rt.faults.place import Disturbance, SimulatedTime
-from kurt2rt.knowledge.safe import FilePart
+from kurt2rt.file_part import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.hand import BEAT_S

@@ -1,12 +1,11 @@
 """Copies of the knowledge beside its file, made outside the loop while the robot goes on."""
 
-import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import anyio.to_thread
 
+from kurt2rt.file_part import FilePart, read_part
 from kurt2rt.knowledge.copy import SavedCopy, save_copy
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.table import export_table
@@ -23,15 +22,6 @@ Examine = Callable[[Path, Path], None]
 
 Raises KnowledgeError.
 """
-
-
-class FilePart(NamedTuple):
-    """Some bytes of a file, in order."""
-
-    size_bytes: int
-    """Of the whole file."""
-    content: bytes
-    """Empty at and behind the end of the file."""
 
 
 class Safe:
@@ -107,9 +97,6 @@ class Safe:
 
 def _read(path: Path, offset: int, most_bytes: int) -> FilePart:
     try:
-        with path.open("rb") as file:
-            size_bytes = os.fstat(file.fileno()).st_size
-            content = os.pread(file.fileno(), most_bytes, min(offset, size_bytes))
+        return read_part(path, offset, most_bytes)
     except OSError as error:
         raise KnowledgeError(f"{path}: cannot be read ({error.strerror}); save or export again") from error
-    return FilePart(size_bytes, content)

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.requests import SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.requests import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
 from kurt2rt.rla.rla import BASIC, MID, Phase
-from kurt2rt.timing.simulated_clock import FASTEST
 
 LONGEST_MESSAGE = 1024
 """In characters."""

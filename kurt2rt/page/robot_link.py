@@ -5,11 +5,11 @@ from typing import Protocol
 
 from kurt2rt.channel.exam_standing import ExamStanding
 from kurt2rt.channel.requests import TABLE
-from kurt2rt.channel.simulation import SimulationView
+from kurt2rt.channel.simulation_view import SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.explain.facts import DecisionFacts
+from kurt2rt.file_part import FilePart
 from kurt2rt.health.report import HealthReport
-from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.rla.rla import BASIC, Phase
 from kurt2rt.teaching.answer import Answer
 from kurt2rt.teaching.hello import Hello

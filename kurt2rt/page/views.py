@@ -6,7 +6,7 @@ from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
-from kurt2rt.channel.simulation import SIMULATION, SimulationView
+from kurt2rt.channel.simulation_view import SIMULATION, SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, name_of, rows_of, trouble_in

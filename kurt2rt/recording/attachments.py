@@ -17,7 +17,7 @@ from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.recording.checked import RecordingError, number_of, text_of, whole_of
+from kurt2rt.recording.checked import number_of, text_of, whole_of
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
@@ -64,7 +64,7 @@ def fingerprints_of(attached: Mapping[str, bytes]) -> dict[str, str]:
 
 
 def read_lessons_of(data: bytes) -> list[KnownLesson]:
-    """What `knowledge.jsonl` says. Raises RecordingError."""
+    """What `knowledge.jsonl` says. Raises ValueError in a sentence."""
     lessons = []
     try:
         for number, line in enumerate(data.decode().splitlines(), start=1):
@@ -72,7 +72,7 @@ def read_lessons_of(data: bytes) -> list[KnownLesson]:
             event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
             lessons.append(KnownLesson(event, text_of(content["stamped_at"])))
     except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
-        raise RecordingError(f"{KNOWLEDGE} cannot be read: {error}") from error
+        raise ValueError(f"{KNOWLEDGE} cannot be read: {error}") from error
     return lessons
 
 
@@ -94,7 +94,7 @@ def encode_statistics(statistics: Statistics) -> bytes:
 
 
 def decode_statistics(data: bytes) -> Statistics:
-    """What `encode_statistics` wrote. Raises RecordingError."""
+    """What `encode_statistics` wrote. Raises ValueError in a sentence."""
     try:
         content: dict[str, Any] = json.loads(data)
         return Statistics(
@@ -114,7 +114,7 @@ def decode_statistics(data: bytes) -> Statistics:
             },
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise RecordingError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
+        raise ValueError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
 
 
 def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import cached_property
+from typing import TypeVar
 
 from pydantic import ValidationError
 
@@ -24,6 +25,8 @@ from kurt2rt.recording.entries import TickEntry
 from kurt2rt.recording.kept_files import laid_out, trouble_of
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.tasks.settings import TaskSettings
+
+DecodedT = TypeVar("DecodedT")
 
 
 class Run:
@@ -111,7 +114,7 @@ class Run:
     def lessons(self) -> tuple[KnownLesson, ...]:
         """What had been taught before the run; nothing where its beginning is gone."""
         data = self._attachments.get(KNOWLEDGE)
-        return () if data is None else tuple(read_lessons_of(data))
+        return () if data is None else tuple(_decoded(read_lessons_of, data))
 
     def stamps_of(self, command_ids: Collection[str]) -> dict[str, str]:
         """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
@@ -131,7 +134,7 @@ class Run:
     def saved(self) -> Statistics:
         """What had been counted before the run."""
         data = self._attachments.get(STATISTICS)
-        return Statistics() if data is None else decode_statistics(data)
+        return Statistics() if data is None else _decoded(decode_statistics, data)
 
     @contextmanager
     def settings(self) -> Iterator[None]:
@@ -227,3 +230,11 @@ class Run:
                 f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
                 "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
             )
+
+
+def _decoded(decode: Callable[[bytes], DecodedT], data: bytes) -> DecodedT:
+    """Decode an attachment. Raises RecordingError."""
+    try:
+        return decode(data)
+    except ValueError as error:
+        raise RecordingError(str(error)) from error

@@ -20,7 +20,7 @@ from kurt2rt.channel.requests import (
     TakeRequest,
 )
 from kurt2rt.channel.schema import Whole, WireError
-from kurt2rt.knowledge.safe import FilePart
+from kurt2rt.file_part import FilePart
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.answer import Answer, RefusedError
 from kurt2rt.teaching.asking import answer_to, facts_of

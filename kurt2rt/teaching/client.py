@@ -30,7 +30,7 @@ from kurt2rt.channel.requests import (
     SpeedRequest,
     UploadRequest,
 )
-from kurt2rt.channel.simulation import SIMULATION, SimulationView
+from kurt2rt.channel.simulation_view import SIMULATION, SimulationView
 from kurt2rt.teaching.answer import Answer, RefusedError
 from kurt2rt.teaching.asking import facts_of
 from kurt2rt.teaching.charge import Charge

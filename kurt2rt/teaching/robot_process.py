@@ -1,13 +1,11 @@
 """A simulated robot in a process of its own, for scripts and notebooks that need one for a while."""
 
-import os
 import shutil
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,6 +15,8 @@ from typing import Self
 from kurt2rt.channel.port import ChannelError
 from kurt2rt.teaching.teacher import LOCAL_DEVICE
 
+PROGRAM = "kurt2rt.cli.with_parent"
+"""Module that runs the command line and ends with this process."""
 _START_S = 30.0
 _END_S = 10.0
 _LOOK_S = 0.02
@@ -152,24 +152,10 @@ def _started(words: Sequence[str], folder: Path, log: Path) -> "subprocess.Popen
     with log.open("wb") as output:
         # In a session of its own: Ctrl-C and Jupyter's Interrupt end a call in the notebook, and not the robot.
         return subprocess.Popen(
-            [sys.executable, "-m", "kurt2rt.teaching.robot_process", *words],
+            [sys.executable, "-m", PROGRAM, *words],
             stdin=subprocess.PIPE,
             stdout=output,
             stderr=subprocess.STDOUT,
             cwd=folder,
             start_new_session=True,
         )
-
-
-def _end_with_parent() -> None:
-    """Read standard input until the parent process closes it, then end this process as SIGTERM does."""
-    while os.read(0, 1024):
-        continue
-    os.kill(os.getpid(), signal.SIGTERM)
-
-
-if __name__ == "__main__":
-    from kurt2rt.cli.main import main
-
-    threading.Thread(target=_end_with_parent, name="parent", daemon=True).start()
-    main()

@@ -1,11 +1,9 @@
 """Time of a simulated robot: real time, or up to ten times as fast in lockstep with its world."""
 
-from typing import Final, Protocol
+from typing import Protocol
 
 from kurt2rt.timing.clock import Clock
 
-FASTEST: Final = 10
-"""Robot seconds in one second, at most."""
 _MEASURED_OVER_S = 1.0
 
 
@@ -39,7 +37,7 @@ class Speed(Protocol):
         ...
 
     def set(self, times: int) -> None:
-        """Choose another speed, 1 to FASTEST, from the next tick on."""
+        """Choose another speed, 1 to the fastest one, from the next tick on."""
         ...
 
 
@@ -51,9 +49,11 @@ class SimulatedClock:
     robot time slower, never a tick late or missed.
     """
 
-    def __init__(self, real: Clock, world: HeldWorld) -> None:
+    def __init__(self, real: Clock, world: HeldWorld, fastest: int) -> None:
+        """`fastest`: highest speed, in robot seconds per second."""
         self._real = real
         self._world = world
+        self._fastest = fastest
         self._speed = self._wanted = 1
         self._ahead_s = 0.0
         """Robot time is ahead of the real clock by this, at speed 1."""
@@ -77,8 +77,8 @@ class SimulatedClock:
 
     def set(self, times: int) -> None:
         """Choose another speed from the next tick on. Raises ValueError."""
-        if not 1 <= times <= FASTEST:
-            raise ValueError(f"speed: {times} is not possible; give 1 to {FASTEST}")
+        if not 1 <= times <= self._fastest:
+            raise ValueError(f"speed: {times} is not possible; give 1 to {self._fastest}")
         self._wanted = times
 
     def now_s(self) -> float:

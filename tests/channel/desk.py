@@ -22,13 +22,15 @@ from kurt2rt.channel.requests import (
     StreamRequest,
     WatchRequest,
 )
-from kurt2rt.channel.simulation import SimulationView, TaskName, TeacherNow
+from kurt2rt.channel.requests.limits import FASTEST
+from kurt2rt.channel.simulation import TeacherNow
+from kurt2rt.channel.simulation_view import SimulationView, TaskName
 from kurt2rt.channel.site import Keys, RobotSite
 from kurt2rt.channel.telling import Safekeeping, Telling
 from kurt2rt.explain.live import Explaining
+from kurt2rt.file_part import FilePart
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.safe import FilePart
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.runtime import Runtime, build_runtime
@@ -146,7 +148,7 @@ class Desk:
         self.bus_trouble = ""
         self.exam = NO_EXAM
         self.simulation = Runs()
-        self.speed = SimulatedClock(LockstepClock(lambda: None), cast(HeldWorld, None))
+        self.speed = SimulatedClock(LockstepClock(lambda: None), cast(HeldWorld, None), FASTEST)
         self.health: HealthReport | None = None
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
@@ -166,7 +168,7 @@ class Desk:
             ground,
             longest_wait_s=longest_wait_s,
             health=lambda: self.health,
-            why=explaining.tell,
+            why=explaining.facts,
             simulation=None if ground is None else self.simulation,
             speed=None if ground is None else self.speed,
             exam=None if ground is None else lambda: self.exam,

@@ -53,7 +53,8 @@ from kurt2rt.channel.requests import (
     WhyRequest,
     WorldRequest,
 )
-from kurt2rt.channel.simulation import SIMULATION, TeacherNow
+from kurt2rt.channel.simulation import TeacherNow
+from kurt2rt.channel.simulation_view import SIMULATION
 from kurt2rt.channel.wire import PATHS, decode_answer, encode_answer
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.explain.plain import facts_of_plain

@@ -1,6 +1,7 @@
 """What a robot tells of its decision, over the wire and back."""
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -8,8 +9,9 @@ import pytest
 
 from kurt2rt.channel.schema import WireError
 from kurt2rt.channel.wire import decode_answer, encode_answer
+from kurt2rt.explain.facts import MOST_OTHERS
 from kurt2rt.explain.live import Explaining
-from kurt2rt.explain.plain import MOST_OTHERS, facts_of_plain, plain_of_facts
+from kurt2rt.explain.plain import facts_of_plain, plain_of_facts
 from kurt2rt.rla.rla import MID
 from tests.explain.helpers import Lesson, facts, level, story, with_mid
 from tests.teaching.helpers import teach
@@ -56,13 +58,22 @@ def test_what_is_not_as_it_should_be_is_refused() -> None:
     assert facts_of_plain({**plain, "weather": "fine"}) == facts_of_plain(plain)
 
 
-def test_a_decision_is_looked_into_when_somebody_asks_and_once_for_each_tick(lesson: Lesson) -> None:
-    explaining = Explaining(lesson.runtime, lambda _: "")
-    assert explaining.tell() is None
-    explaining.follow(lesson.records[-1])
-    told = explaining.tell()
-    assert told is not None
-    assert told["tick"] == lesson.records[-1].tick
-    assert explaining.tell() is told
-    explaining.follow(lesson.go_on(1))
-    assert explaining.tell() is not told
+def test_live_facts_are_collected_once_per_tick(lesson: Lesson) -> None:
+    stamps_read = Counter[str]()
+
+    def stamp_of(command_id: str) -> str:
+        stamps_read[command_id] += 1
+        return ""
+
+    explaining = Explaining(lesson.runtime, stamp_of)
+    assert explaining.facts() is None
+    for record in (lesson.records[-1], lesson.go_on(1)):
+        explaining.follow(record)
+        before = stamps_read.total()
+        facts = explaining.facts()
+        assert facts is not None
+        assert facts.tick == record.tick
+        collected = stamps_read.total()
+        assert collected > before
+        assert explaining.facts() == facts
+        assert stamps_read.total() == collected

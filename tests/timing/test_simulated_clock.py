@@ -49,7 +49,7 @@ class Rig:
     def __init__(self) -> None:
         self.real = RealTime()
         self.world = World(self.real)
-        self.clock = SimulatedClock(self.real, self.world)
+        self.clock = SimulatedClock(self.real, self.world, fastest=10)
         self.deadline_s = self.clock.now_s()
 
     async def tick(self, ticks: int) -> None:

@@ -18,6 +18,7 @@ from kurt2rt.channel.requests.lessons import (
 from kurt2rt.channel.requests.limits import (
     BOOT_BYTES,
     COMMAND_ID_BYTES,
+    FASTEST,
     HIGHEST_SPEED_M_S,
     LARGEST_NUMBER,
     LONGEST_BEHAVIOUR_TICKS,
@@ -61,6 +62,7 @@ from kurt2rt.channel.schema import Check
 __all__ = [
     "BOOT_BYTES",
     "COMMAND_ID_BYTES",
+    "FASTEST",
     "HIGHEST_SPEED_M_S",
     "LARGEST_NUMBER",
     "LONGEST_BEHAVIOUR_TICKS",

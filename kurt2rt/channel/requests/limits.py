@@ -20,6 +20,8 @@ MOST_UPLOAD_BYTES = 8_000_000
 """Of a file that is uploaded: twice what a day of 24 hours of teaching takes."""
 UPLOAD_ID_BYTES = 8
 SHA256_BYTES = 32
+FASTEST = 10
+"""Robot seconds in one second, at most."""
 LARGEST_NUMBER = 2**53
 """Of ticks, sequence numbers and RLAs: the largest that every language holds exactly."""
 LONGEST_BEHAVIOUR_TICKS = 60_000

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from kurt2rt.channel.requests.field_types import NameOrNone
+from kurt2rt.channel.requests.limits import FASTEST
 from kurt2rt.channel.requests.request import CommandRequest, Request
 from kurt2rt.channel.schema import Flag, Whole
-from kurt2rt.timing.simulated_clock import FASTEST
 
 
 @dataclass(frozen=True, slots=True)

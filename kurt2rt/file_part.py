@@ -1,0 +1,21 @@
+"""Part of a file, as read and as sent over the channel."""
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+
+class FilePart(NamedTuple):
+    """Consecutive bytes of a file."""
+
+    size_bytes: int
+    """Of the whole file."""
+    content: bytes
+    """Empty at or after the end of the file."""
+
+
+def read_part(path: Path, offset: int, most_bytes: int) -> FilePart:
+    """Return up to `most_bytes` of a file from `offset` on. Raises OSError."""
+    with path.open("rb") as file:
+        size_bytes = os.fstat(file.fileno()).st_size
+        return FilePart(size_bytes, os.pread(file.fileno(), most_bytes, min(offset, size_bytes)))
