@@ -11,7 +11,7 @@ import anyio.to_thread
 from hal.bus import BusError
 from hal.errors import UserError
 from kurt2rt.channel.context_folder import CredentialsError
-from kurt2rt.channel.port import ChannelError
+from kurt2rt.channel.schema import ChannelError
 from kurt2rt.durable import make_private_folder
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.recording.checked import RecordingError

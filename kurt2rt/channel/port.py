@@ -4,11 +4,7 @@ import errno
 import ipaddress
 import socket
 
-from hal.errors import UserError
-
-
-class ChannelError(UserError):
-    """The teacher's channel cannot be opened."""
+from kurt2rt.channel.schema import ChannelError
 
 
 def require_port(host: str, port: int) -> None:

@@ -7,6 +7,12 @@ from typing import Any, NoReturn
 
 import cbor2
 
+from hal.errors import UserError
+
+
+class ChannelError(UserError):
+    """The teacher's channel cannot be opened."""
+
 
 class WireError(ValueError):
     """Something that is not as the wire contract says; the message is a sentence for the one who sent it."""

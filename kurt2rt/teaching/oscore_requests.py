@@ -19,7 +19,7 @@ from aiocoap.util import hostportjoin
 
 from kurt2rt.channel.context_folder import SECRET, CredentialsError
 from kurt2rt.channel.oscore_context import OscoreContext
-from kurt2rt.channel.port import ChannelError
+from kurt2rt.channel.schema import ChannelError
 from kurt2rt.channel.wire import CONTENT_FORMAT
 
 _LOGGER = "kurt2rt.teacher-client"

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.channel.port import ChannelError
+from kurt2rt.channel.schema import ChannelError
 from kurt2rt.teaching.teacher import LOCAL_DEVICE
 
 PROGRAM = "kurt2rt.cli.with_parent"

@@ -15,7 +15,7 @@ from aiocoap.messagemanager import MessageManager
 
 from kurt2rt.channel.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.gate import Counters, Limits
-from kurt2rt.channel.port import ChannelError
+from kurt2rt.channel.schema import ChannelError
 from tests.channel.clock import Clock
 
 UNLIMITED = Limits(strangers_at_once=1e9)

@@ -13,8 +13,8 @@ import pytest
 import kurt2rt.teaching
 from kurt2rt.channel.context_folder import CredentialsError
 from kurt2rt.channel.credentials import ONLOOKER, Pairing, pair
-from kurt2rt.channel.port import ChannelError
 from kurt2rt.channel.requests import AppraiseRequest, Request, StopRequest, WatchRequest
+from kurt2rt.channel.schema import ChannelError
 from kurt2rt.channel.wire import WireError
 from kurt2rt.teaching import RobotProcess, Teacher
 from kurt2rt.teaching.answer import Answer, NoAnswerError
