@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 
 
 class Behaviour(Protocol):
@@ -22,6 +22,6 @@ class Behaviour(Protocol):
         """Called in the tick in which this behaviour takes the wheels over from another one."""
         ...
 
-    def step(self, senses: Senses) -> WheelSpeeds:
+    def step(self, senses: SensorReadings) -> WheelSpeeds:
         """Wheel speeds for this tick; called once per tick while it is active."""
         ...

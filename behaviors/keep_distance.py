@@ -1,6 +1,6 @@
 """A control loop: drive along the wall beside the robot at a wanted distance."""
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings
 
 
@@ -41,7 +41,7 @@ class KeepDistance:
     def start(self) -> None:
         """Nothing to forget: the loop looks at the present reading only."""
 
-    def step(self, senses: Senses) -> WheelSpeeds:
+    def step(self, senses: SensorReadings) -> WheelSpeeds:
         """Steer towards the wall when too far from it or turned away, and off it when too near or turned to it."""
         front_m = self._infrared.distance_m(senses.infrared_counts[self._front])
         back_m = self._infrared.distance_m(senses.infrared_counts[self._back])

@@ -1,6 +1,6 @@
 """Direct motor values, the paper's lowest level of action (section V.A)."""
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 
 
 class MotorPrimitive:
@@ -16,6 +16,6 @@ class MotorPrimitive:
     def start(self) -> None:
         """Nothing to forget: a motor primitive has no state."""
 
-    def step(self, senses: Senses) -> WheelSpeeds:  # noqa: ARG002 - a motor primitive looks at nothing
+    def step(self, senses: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - a motor primitive looks at nothing
         """The same wheel speeds in every tick."""
         return self._wheel_speeds

@@ -2,7 +2,7 @@
 
 import math
 
-from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from hal.robot_settings import GeometrySettings
 
 
@@ -28,7 +28,7 @@ class TurnByAngle:
         """Begin a turn of the whole angle."""
         self._turned_m = 0.0
 
-    def step(self, senses: Senses) -> WheelSpeeds:
+    def step(self, senses: SensorReadings) -> WheelSpeeds:
         """Turn until the wheels have run the arc."""
         # Signed: a robot that still swings the other way has more to turn, not less.
         difference = self._sign * (senses.encoder_right_ticks - senses.encoder_left_ticks)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import can
 
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.errors import UserError
 from hal.in_process_bus import InProcessBus
 from hal.shared_bus import SharedBus
@@ -38,13 +38,13 @@ class BusError(UserError, OSError):
 class CanBus:
     """One end of a CAN bus. CONTROL goes out through a port that exists once, all else through telemetry ports."""
 
-    def __init__(self, name: str, open_end: Callable[[str], BusEnd]) -> None:
+    def __init__(self, name: str, open_end: Callable[[str], CanInterface]) -> None:
         """`open_end` opens the bus of that name, now and whenever it was lost. Raises what that raises: BusError."""
         self.name = name
         self.tap: Tap | None = None
         """Looks on, also after `reopen`; None: nobody."""
         self._open_bus_end = open_end
-        self._bus_end: BusEnd | None = open_end(name)
+        self._bus_end: CanInterface | None = open_end(name)
         self._heard: frozenset[int] | None = None
         self._control_taken = False
         # Two counters, for each has one writer: the watchdog's thread may send while the loop drains.
@@ -132,12 +132,12 @@ class CanBus:
         if end is not None:
             _close(end)
 
-    def _usable(self) -> BusEnd:
+    def _usable(self) -> CanInterface:
         if self._bus_end is None:
             raise BusError(f"bus {self.name}: is shut down; open it again")
         return self._bus_end
 
-    def _filter(self, end: BusEnd, heard: frozenset[int]) -> None:
+    def _filter(self, end: CanInterface, heard: frozenset[int]) -> None:
         try:
             end.listen_to(heard)
         except (can.CanError, OSError, ValueError) as error:
@@ -221,7 +221,7 @@ def open_bus(spec: str) -> CanBus:
     return CanBus(spec, _end_of)
 
 
-def _end_of(spec: str) -> BusEnd:
+def _end_of(spec: str) -> CanInterface:
     kind, colon, name = spec.partition(":")
     if not colon:
         return _socketcan(spec)
@@ -255,6 +255,6 @@ def _socketcan(interface: str) -> SocketCanBus:
         ) from error
 
 
-def _close(end: BusEnd) -> None:
+def _close(end: CanInterface) -> None:
     with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
         end.shutdown()

@@ -21,7 +21,7 @@ class CodecError(ValueError):
     """A CAN database cannot be used. The message is one line: file, message, what is wrong."""
 
 
-class JunkFrameError(ValueError):
+class InvalidFrameError(ValueError):
     """A received frame cannot be what its identifier says."""
 
 
@@ -57,11 +57,11 @@ class MessageCodec:
             raise self._why_not(raw) from None
 
     def unpack(self, data: bytes | bytearray) -> tuple[int, ...]:
-        """Raw values of a payload that covers the signals, whatever its DLC. Raises JunkFrameError when too short."""
+        """Return the raw values of a payload of any DLC. Raises InvalidFrameError if it does not cover the signals."""
         length = self.length
         if len(data) < length:
             if len(data) < self._covers_bytes:
-                raise JunkFrameError(f"{self.name}: {len(data)} bytes, needs at least {self._covers_bytes}")
+                raise InvalidFrameError(f"{self.name}: {len(data)} bytes, needs at least {self._covers_bytes}")
             data = data.ljust(length, b"\0")
         if self._struct is None:
             return self._unpack_bits(data)

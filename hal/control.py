@@ -10,7 +10,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from hal.bus import CONTROL_ID
-from hal.codec import JunkFrameError
+from hal.codec import InvalidFrameError
 from hal.frame import Frame
 from hal.robot import WheelSpeeds
 from hal.robot_settings import MotorSettings, SpeedMode
@@ -122,14 +122,14 @@ def encode_brake() -> Frame:
 
 
 def decode_control(data: bytes | bytearray) -> Control:
-    """Control value of a received CONTROL payload. Raises JunkFrameError for an unknown mode or less than 8 bytes."""
+    """Return the value of a CONTROL payload. Raises InvalidFrameError for an unknown mode or less than 8 bytes."""
     if len(data) < 8:
-        raise JunkFrameError(f"CONTROL: {len(data)} bytes, needs 8")
+        raise InvalidFrameError(f"CONTROL: {len(data)} bytes, needs 8")
     (number,) = _MODE.unpack_from(data)
     try:
         mode = Mode(number)
     except ValueError:
-        raise JunkFrameError(f"CONTROL: mode 0x{number:04X} is unknown") from None
+        raise InvalidFrameError(f"CONTROL: mode 0x{number:04X} is unknown") from None
     if mode is Mode.SPEED_CM or mode is Mode.SPEED:
         _, left, right, rest = _SPEED.unpack_from(data)
         if mode is Mode.SPEED:

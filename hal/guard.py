@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hal.bus import BusError, CanBus
 from hal.control import control_frame, encode_brake, set_point
 from hal.frame import Frame
-from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings
 
 NOT_A_NUMBER = "not a number"
@@ -91,7 +91,7 @@ class Guard:
         """Text of the newest sending error; empty when there was none since the last release."""
         return self._bus_trouble
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
         The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own. No set
@@ -124,7 +124,7 @@ class Guard:
                 self._latch(BUS_LOST)
             if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
                 return self._stay_stopped()
-            return Grant(told.granted, reasons, latched=False)
+            return GuardResult(told.granted, reasons, latched=False)
 
     def emergency_stop(self, reason: str) -> None:
         """Brake now and stay stopped until `release`; the first reason stands. May be repeated, never raises."""
@@ -142,7 +142,7 @@ class Guard:
             self._bus_trouble = ""
 
     def _reason_to_stand(
-        self, left_m_s: float, right_m_s: float, senses: Senses, decided_at_s: float, now_s: float
+        self, left_m_s: float, right_m_s: float, senses: SensorReadings, decided_at_s: float, now_s: float
     ) -> str | None:
         if not (math.isfinite(left_m_s) and math.isfinite(right_m_s)):
             return NOT_A_NUMBER
@@ -210,10 +210,10 @@ class Guard:
             self._latched = reason
         self._left_m_s = self._right_m_s = 0.0
 
-    def _stay_stopped(self) -> Grant:
+    def _stay_stopped(self) -> GuardResult:
         self._left_m_s = self._right_m_s = 0.0  # again, for the stop may have come in the middle of an approach
         self._send_brake()
-        return Grant(STANDSTILL, (self._latched or "",), latched=True)
+        return GuardResult(STANDSTILL, (self._latched or "",), latched=True)
 
     def _send_brake(self) -> None:
         try:

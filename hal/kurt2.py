@@ -1,4 +1,4 @@
-"""The KURT2 on its CAN bus: frames become Senses, and every set point goes through the guard."""
+"""The KURT2 on its CAN bus: frames become SensorReadings, and every set point goes through the guard."""
 
 import math
 import time
@@ -9,11 +9,11 @@ import can
 
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.bus_state import BusState
-from hal.codec import Codec, JunkFrameError, MessageCodec, load_codec
+from hal.codec import Codec, InvalidFrameError, MessageCodec, load_codec
 from hal.guard import BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
 from hal.health import Health
 from hal.infrared_watch import Board, InfraredWatch
-from hal.robot import HIGHEST_COUNTS, STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import TICKS_CEASED, Watchdog
 from hal.wheel_watch import WheelWatch
@@ -25,12 +25,12 @@ _CLOCKS_DIFFER_S = 0.01
 
 
 class _AnalogFrame:
-    """One frame of a converter: where its distance channels go in Senses.infrared_counts, and on which board it is."""
+    """Frame of a converter: the places of its channels in SensorReadings.infrared_counts, and its board."""
 
     __slots__ = ("board", "codec", "last_payload", "places", "received_at_s")
 
     def __init__(self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board) -> None:
-        """`places`: of each distance channel its place in the frame and in Senses.infrared_counts."""
+        """`places`: of each distance channel its place in the frame and in SensorReadings.infrared_counts."""
         self.codec = codec
         self.places = places
         self.board = board
@@ -62,7 +62,7 @@ class Kurt2:
         self._counts = [0] * len(channels)
         self._bumpers = 0
         self._encoder_at_s = self._bumpers_at_s = -math.inf
-        self._senses = Senses(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
+        self._senses = SensorReadings(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
         self._told = STANDSTILL
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
@@ -71,7 +71,7 @@ class Kurt2:
         # CONTROL as well: a second sender of it must not go unnoticed.
         bus.listen_to({CONTROL_ID, self._encoder.frame_id, self._bumperc.frame_id, *self._analog})
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """Take everything that arrived, without waiting, and return the newest values.
 
         A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk
@@ -120,13 +120,13 @@ class Kurt2:
                     self._bumpers_at_s = at_s
                 elif frame_id == CONTROL_ID:
                     foreign_control += 1
-            except JunkFrameError:
+            except InvalidFrameError:
                 self._junk += 1
         if len(messages) > error_frames and not bus_off:
             self._bus_state.note_traffic()
         self._foreign_control += foreign_control
         infrared_at_s = min([analog.received_at_s for analog in self._analog.values()])
-        self._senses = Senses(
+        self._senses = SensorReadings(
             now_s,
             tuple(self._counts) if changed else self._senses.infrared_counts,
             now_s - infrared_at_s,
@@ -139,7 +139,7 @@ class Kurt2:
         self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off, paused=paused)
         return self._senses
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """Ask for wheel speeds in m/s; what is safe by the newest senses goes out in this tick's CONTROL frame."""
         if self.watchdog.ticks_ceased:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
@@ -248,12 +248,12 @@ class Kurt2:
             analog.received_at_s = -math.inf
 
     def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> bool:
-        """Take over the frame's distance channels; True when one of them changed. Raises JunkFrameError."""
+        """Take over the frame's distance channels; True when one of them changed. Raises InvalidFrameError."""
         raw = analog.codec.unpack(data)
         for at, _ in analog.places:
             # The C167 keeps the channel number in the upper bits (docs/the-robot.md#range-of-a-channel).
             if raw[at] > HIGHEST_COUNTS:
-                raise JunkFrameError(f"{analog.codec.name}: {raw[at]} counts, a 10-bit converter has {HIGHEST_COUNTS}")
+                raise InvalidFrameError(f"{analog.codec.name}: {raw[at]} counts (allowed 0 to {HIGHEST_COUNTS})")
         changed = False
         for at, sensor in analog.places:
             if self._counts[sensor] != raw[at]:

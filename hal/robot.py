@@ -19,7 +19,7 @@ HIGHEST_COUNTS = 1023
 STANDSTILL = WheelSpeeds(0.0, 0.0)
 
 
-class Senses(NamedTuple):
+class SensorReadings(NamedTuple):
     """What the robot sensed, newest value of each channel, as seen at `time_s`."""
 
     time_s: float
@@ -29,7 +29,7 @@ class Senses(NamedTuple):
     infrared_age_s: float
     """Age of the oldest of the infra-red frames; infinite while one of them never came."""
     encoder_left_ticks: int
-    """Ticks of the left side since the previous Senses, forward positive."""
+    """Ticks of the left side since the previous SensorReadings, forward positive."""
     encoder_right_ticks: int
     encoder_age_s: float
     """Age of the newest ENCODER frame; infinite before the first."""
@@ -39,7 +39,7 @@ class Senses(NamedTuple):
     """Age of the newest BUMPERC frame; infinite before the first."""
 
 
-class Grant(NamedTuple):
+class GuardResult(NamedTuple):
     """What the guard let through."""
 
     wheel_speeds: WheelSpeeds
@@ -53,11 +53,11 @@ class Grant(NamedTuple):
 class Robot(Protocol):
     """A robot that the runtime can sense and drive. Every set point passes a guard inside."""
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """Take everything that arrived, without waiting, and return the newest values."""
         ...
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """Ask for wheel speeds; what is safe goes out in this tick's CONTROL frame."""
         ...
 
@@ -66,7 +66,7 @@ class Robot(Protocol):
         ...
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven. It may stay stopped: `Grant.latched` tells."""
+        """End a latched stop, unless its cause lasts (`GuardResult.latched`). The robot stands until it is driven."""
         ...
 
     def close(self) -> None:

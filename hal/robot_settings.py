@@ -138,7 +138,7 @@ class InfraredSettings(Settings):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Sensor names in the order of Senses.infrared_counts."""
+        """Sensor names in the order of SensorReadings.infrared_counts."""
         return tuple(sensor.name for sensor in self.sensors)
 
     def counts_at(self, distance_m: float) -> float:

@@ -123,7 +123,7 @@ _KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
 
 
 @contextmanager
-def kept_settings(folder: Path) -> Iterator[None]:
+def settings_override(folder: Path) -> Iterator[None]:
     """While it lasts, what was kept in `folder` is found, and nothing else.
 
     `find_config` finds it as `<kind>/<kept_name>`, `find_beside` as `files/<kept_name>`.

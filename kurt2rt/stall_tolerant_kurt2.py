@@ -3,7 +3,7 @@
 from typing import Final
 
 from hal.kurt2 import Kurt2
-from hal.robot import Grant, WheelSpeeds
+from hal.robot import GuardResult, WheelSpeeds
 from hal.watchdog import TICKS_CEASED
 
 
@@ -17,7 +17,7 @@ class StallTolerantKurt2(Kurt2):
     _stopped_because = ""
     """Reason given to `emergency_stop` last; empty since the last release."""
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """Ask for wheel speeds; the tick that ends a stall stands, and its latch is not kept."""
         grant = super().drive(wanted, decided_at_s, now_s)
         if not grant.latched or grant.reasons != _STALLED or self._stopped_because:

@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from hal import guard, watchdog
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import MID
 
@@ -163,7 +163,7 @@ class BumperWatch:
     def __init__(self) -> None:
         self._held_ticks = self._free_ticks = 0
 
-    def update(self, decision: Decision, grant: Grant) -> bool:
+    def update(self, decision: Decision, grant: GuardResult) -> bool:
         """Return whether the robot is held now, and has been for ASKS_AFTER_TICKS."""
         pushes = decision.cause in (Cause.RLA, Cause.HELD) and not grant.latched
         held = pushes and touched(grant.wheel_speeds, grant.reasons) is not None
@@ -188,7 +188,7 @@ class StandingWatch:
         self._held_ticks = 0
 
     def update(
-        self, decision: Decision, grant: Grant, drove_at_s: float, stopped_because: str, trouble: str | None
+        self, decision: Decision, grant: GuardResult, drove_at_s: float, stopped_because: str, trouble: str | None
     ) -> Standing:
         """Return the standing after one tick.
 
@@ -214,7 +214,7 @@ class StandingWatch:
         says = trouble if trouble is not None else "" if decision.plan is None else decision.plan.says
         return standing_for(decision.cause, decision.asks_at, stopped_because, says)
 
-    def _held_back(self, decision: Decision, grant: Grant) -> StandReason | None:
+    def _held_back(self, decision: Decision, grant: GuardResult) -> StandReason | None:
         """Return why the guard lets none of what was decided through, once it has for some ticks."""
         if decision.cause is Cause.TOUCHES and not grant.latched:
             return touched(grant.wheel_speeds, grant.reasons)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import STANDSTILL, Grant, Robot, Senses
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.expecting import Expecting
 from kurt2rt.expectations.surprise import Surprise
@@ -45,10 +45,10 @@ class TickRecord(NamedTuple):
 
     tick: int
     now_s: float
-    senses: Senses
+    senses: SensorReadings
     situation: Situation
     decision: Decision
-    grant: Grant
+    grant: GuardResult
     results: tuple[CommandResult, ...]
     """What became of the teacher's commands that this tick took."""
     behaviour: str = ""
@@ -278,7 +278,9 @@ class Tick:
         if self._expecting is not None:
             self._expecting.restart()
 
-    def _appraise(self, tick: int, senses: Senses, *, blind: bool) -> tuple[AppraisalFeatures | None, Opinion | None]:
+    def _appraise(
+        self, tick: int, senses: SensorReadings, *, blind: bool
+    ) -> tuple[AppraisalFeatures | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
         critic = self._school.critic
         if self._circumstances is None or critic is None:
@@ -288,7 +290,7 @@ class Tick:
             return None, None
         return circumstances, critic.think(tick, circumstances)
 
-    def _decide(self, tick: int, situation: Situation, senses: Senses, *, blind: bool) -> Decision:
+    def _decide(self, tick: int, situation: Situation, senses: SensorReadings, *, blind: bool) -> Decision:
         school, authority = self._school, self._school.authority
         school.look_after(tick, was_driving=self._driving)
         stand = self._reason_to_stand(tick, blind=blind)

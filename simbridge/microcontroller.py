@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hal.bus import CONTROL_ID
-from hal.codec import JunkFrameError, load_codec
+from hal.codec import InvalidFrameError, load_codec
 from hal.control import Mode, RawControl, SystemControl, decode_control
 from hal.robot_settings import RobotSettings
 from simbridge.controller_bus import ControllerBus
@@ -68,7 +68,7 @@ class MicroController:
             if message.data != self._last_payload:
                 try:
                     self._decode(message.data)
-                except JunkFrameError:
+                except InvalidFrameError:
                     self.junk_frames += 1
                     continue
             self.control_frames += 1

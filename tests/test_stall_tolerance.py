@@ -8,7 +8,7 @@ import pytest
 
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import load_robot
 from hal.watchdog import TICKS_CEASED
 from kurt2rt.app import open_robot
@@ -36,13 +36,13 @@ class Scene:
         self.simulated = SimulatedRobot(ROBOT, load_world("a"), self.far_end, 1)
         self.robot = driver(ROBOT, open_bus(spec), lambda: self.now_s)
 
-    def tick(self, wanted: WheelSpeeds = TURN) -> Grant:
+    def tick(self, wanted: WheelSpeeds = TURN) -> GuardResult:
         self.now_s += ROBOT.can.cycle_s
         self.simulated.step()
         self.robot.sense(self.now_s)
         return self.robot.drive(wanted, self.now_s, self.now_s)
 
-    def stall(self) -> Grant:
+    def stall(self) -> GuardResult:
         """Time goes by without a tick, and then one comes."""
         self.now_s += 0.5
         return self.tick()
@@ -61,7 +61,7 @@ def test_on_a_bus_a_stall_keeps_the_robot_stopped_until_go() -> None:
     with scene(Kurt2) as robot:
         for _ in range(20):
             robot.tick()
-        assert robot.stall() == Grant(STANDSTILL, (TICKS_CEASED,), latched=True)
+        assert robot.stall() == GuardResult(STANDSTILL, (TICKS_CEASED,), latched=True)
         assert all(robot.tick().latched for _ in range(100))
         robot.robot.release()
         assert not robot.tick().latched
@@ -71,7 +71,7 @@ def test_simulated_in_the_program_it_brakes_and_drives_on() -> None:
     with scene(StallTolerantKurt2) as robot:
         for _ in range(20):
             robot.tick()
-        assert robot.stall() == Grant(STANDSTILL, (TICKS_CEASED,), latched=False)
+        assert robot.stall() == GuardResult(STANDSTILL, (TICKS_CEASED,), latched=False)
         assert not any(robot.tick().latched for _ in range(100))
         assert robot.tick().wheel_speeds == TURN
 

@@ -6,7 +6,7 @@ import cbor2
 import pytest
 
 from hal import guard, watchdog
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.cli.status_line import doing
@@ -47,9 +47,9 @@ class LatchingDesk(Desk):
     def latch(self, word: str) -> None:
         drive = self.robot.drive
 
-        def latched(wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+        def latched(wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
             drive(wanted, decided_at_s, now_s)
-            return Grant(STANDSTILL, (word,), latched=True)
+            return GuardResult(STANDSTILL, (word,), latched=True)
 
         self.robot.drive = latched  # type: ignore[method-assign]
 
@@ -158,15 +158,15 @@ def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:
 
 def test_one_late_tick_is_no_standing_and_many_are() -> None:
     watch = StandingWatch()
-    late = Grant(STANDSTILL, (guard.COMMAND_TOO_OLD,), latched=False)
+    late = GuardResult(STANDSTILL, (guard.COMMAND_TOO_OLD,), latched=False)
     told = [watch.update(BY_RLA, late, 0.01 * tick, "", None).reason for tick in range(HELD_TICKS + 1)]
     assert told == [*[StandReason.DRIVES] * HELD_TICKS, StandReason.LATE]
-    assert watch.update(BY_RLA, Grant(FORWARD, (), latched=False), 0.2, "", None) == DRIVES
+    assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, "", None) == DRIVES
     assert watch.update(BY_RLA, late, 0.21, "", None) == DRIVES
 
 
 def test_a_question_waits_while_the_guard_has_latched() -> None:
-    told = StandingWatch().update(ASKS, Grant(STANDSTILL, (guard.BUS_LOST,), latched=True), 0.0, "", None)
+    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (guard.BUS_LOST,), latched=True), 0.0, "", None)
     assert told == Standing(StandReason.BUS_LOST, True, True)
 
 

@@ -9,7 +9,7 @@ import pytest
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
 from hal.guard import FRONT_BUMPER
-from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
@@ -45,17 +45,17 @@ class CorridorRobot:
         self.closed = False
         self.touches_in_front = False
 
-    def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
+    def sense(self, now_s: float) -> SensorReadings:
+        return SensorReadings(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         self.command_ages_s.append(now_s - decided_at_s)
         self.latched = self.latched or self.relatches
         granted, reasons = (STANDSTILL, ("emergency stop",)) if self.latched else (wanted, ())
         if self.touches_in_front and max(granted) > 0.0:
             granted, reasons = WheelSpeeds(min(granted[0], 0.0), min(granted[1], 0.0)), (FRONT_BUMPER,)
         self.driven.append(granted)
-        return Grant(granted, reasons, self.latched)
+        return GuardResult(granted, reasons, self.latched)
 
     def emergency_stop(self, reason: str) -> None:
         assert reason
@@ -271,7 +271,7 @@ def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> N
 def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corridor) -> None:
     driving.robot.emergency_stop("bumper")
     first = driving.run()
-    assert first.grant == Grant(STANDSTILL, ("emergency stop",), latched=True)
+    assert first.grant == GuardResult(STANDSTILL, ("emergency stop",), latched=True)
     for _ in range(5):
         record = driving.run()
         assert record.grant.latched

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import (
     BASIC,
@@ -70,7 +70,7 @@ class StreetRobot(WideRobot):
         self.counts = WALL
         self.left_m = self.right_m = 0.0
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         per_m = 1 / ROBOT.geometry.metres_per_tick
         left, right = round(self.left_m * per_m), round(self.right_m * per_m)
         return super().sense(now_s)._replace(encoder_left_ticks=left, encoder_right_ticks=right)

@@ -15,7 +15,7 @@ class ReferencePolicy(Protocol):
     """
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
-        """Name of the action to take, of the repertoire. `infrared_counts`: as in Senses.
+        """Name of the action to take, of the repertoire. `infrared_counts`: as in SensorReadings.
 
         `behaviour`: the taught behaviour that is wanted, empty where the task has only one.
         """

@@ -4,8 +4,8 @@ import random
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from hal.robot import STANDSTILL, Grant, Robot, WheelSpeeds
-from hal.robot_between import RobotBetween
+from hal.robot import STANDSTILL, GuardResult, Robot, WheelSpeeds
+from hal.robot_proxy import RobotProxy
 from kurt2rt.timing.clock import Clock
 
 SPEED_M_S = 0.05
@@ -56,7 +56,7 @@ def waits_ns(presses: Sequence[Press], starts: Sequence[Start]) -> list[int]:
     return waits
 
 
-class WitnessedRobot(RobotBetween):
+class WitnessedRobot(RobotProxy):
     """A robot of which is noted when its wheels are told to start."""
 
     def __init__(self, robot: Robot, clock: Clock) -> None:
@@ -66,7 +66,7 @@ class WitnessedRobot(RobotBetween):
         self._clock = clock
         self._stood = True
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """As the robot does; when it returns the frame is on the bus."""
         grant = self._robot.drive(wanted, decided_at_s, now_s)
         stands = grant.wheel_speeds == STANDSTILL

@@ -53,7 +53,7 @@ def replay(
 ) -> None:
     """Replay a recorded run, and compare every decision and all that is known, bit for bit.
 
-    Senses, commands and the settings of the run go through the same tick again;
+    SensorReadings, commands and the settings of the run go through the same tick again;
     nothing moves, and no knowledge file is touched. Ends with 1, and says what
     came out otherwise first, where something did.
 

@@ -9,7 +9,7 @@ import anyio
 from anyio.lowlevel import checkpoint
 
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.commission.bench_settings import bench_settings
 from kurt2rt.commission.heard import Heard
@@ -76,7 +76,7 @@ class Bench:
         self._second_guard = second_guard
         self._robot: Kurt2 | None = None
         self._mode: SpeedMode | None = None
-        self._grant = Grant(STANDSTILL, (), latched=True)
+        self._grant = GuardResult(STANDSTILL, (), latched=True)
         self._cycle_s = settings.can.cycle_s
         self._deadline_s = clock.now_s()
 

@@ -5,7 +5,7 @@ import re
 import can
 
 from hal.bus import CONTROL_ID, CanBus
-from hal.codec import Codec, JunkFrameError, MessageCodec
+from hal.codec import Codec, InvalidFrameError, MessageCodec
 from hal.robot import HIGHEST_COUNTS
 from kurt2rt.commission.heard import EncoderFrame, Heard, Identity
 
@@ -58,7 +58,7 @@ class Listener:
             return
         try:
             self._decode(codec, message.data, at_s, heard)
-        except JunkFrameError as error:
+        except InvalidFrameError as error:
             heard.junk[str(error)] += 1
 
     def _decode(self, codec: MessageCodec, data: bytes | bytearray, at_s: float, heard: Heard) -> None:

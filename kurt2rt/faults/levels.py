@@ -2,7 +2,7 @@
 
 import math
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
@@ -31,7 +31,7 @@ class DisturbedLevel:
         self.behind: Level | None = None
         """The layer that really decides; set before the first tick."""
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """The decision, or what the fault makes of it. Raises BrokenTickError."""
         assert self.behind is not None
         decision = self.behind.decide(situation, senses, stand_because)

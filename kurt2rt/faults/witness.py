@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from hal.robot import STANDSTILL, Robot, Senses
-from hal.robot_between import RobotBetween
+from hal.robot import STANDSTILL, Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.place import Place
 from kurt2rt.tick import TickRecord
@@ -16,7 +16,7 @@ class Stand(NamedTuple):
     to_s: float
 
 
-class Witness(RobotBetween):
+class Witness(RobotProxy):
     """Sees both ends of the bus, and is the robot for the tick."""
 
     def __init__(self, place: Place, envelope: Envelope, controller_watchdog_s: float) -> None:
@@ -75,7 +75,7 @@ class Witness(RobotBetween):
         first_s = next((at_s for at_s, _ in self._words if at_s >= time_s), None)
         return tuple(dict.fromkeys(word for at_s, words in self._words if at_s == first_s for word in words))
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """A tick begins: from here on its decision ages."""
         self._sensed_at_s = self._place.time.now_s()
         return self._robot.sense(now_s)

@@ -22,7 +22,7 @@ class Snapshot:
     infrared_age_s: float
     encoder_age_s: float
     bumper_age_s: float
-    """Infinite before the first frame, as in Senses."""
+    """Infinite before the first frame, as in SensorReadings."""
     bus: Health | None
     unwritten: int
     keeper_trouble: str | None

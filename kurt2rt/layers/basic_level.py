@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.layers.held_action import HeldAction
@@ -97,7 +97,7 @@ class BasicLevel:
                 return rla_meant is not None and rla_meant.level == BASIC
         return isinstance(event, LessonUndone | LessonRedone)
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
         if self._pursued != self.wanted.behaviour:
             self._pursued = self.wanted.behaviour
@@ -127,7 +127,7 @@ class BasicLevel:
         """Which of several on one condition, oldest first, answers where that is nearest, chance left out."""
         return group[0] if self._choice is None else self._choice.likely(group, self._decisions)
 
-    def _drive(self, senses: Senses, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
+    def _drive(self, senses: SensorReadings, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
         """What the action at the wheels does; where that one is lost, this level knows no better and asks."""
         wheel_speeds = self._held.step(senses)
         if self._held.lost:

@@ -2,7 +2,7 @@
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 
 
 class HeldAction:
@@ -45,7 +45,7 @@ class HeldAction:
         """Whether the action at the wheels does not know how to go on, after `step`."""
         return self._active is not None and self._active.lost
 
-    def step(self, senses: Senses) -> WheelSpeeds:
+    def step(self, senses: SensorReadings) -> WheelSpeeds:
         """Wheel speeds of the action that drives, after `choose`."""
         assert self._active is not None
         self._ticks += 1

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
 
@@ -10,6 +10,6 @@ from kurt2rt.perception.perception import Situation
 class Level(Protocol):
     """Answers each situation with a decision."""
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """Decide this tick; with a reason to stand, stand."""
         ...

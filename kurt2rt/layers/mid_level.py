@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.layers.decision import Decision, MidDecision
 from kurt2rt.layers.errors import UnknownBehaviourError
 from kurt2rt.layers.wanted import Wanted
@@ -87,7 +87,7 @@ class MidLevel:
         self._match = None
         self._changes = -1
 
-    def decide(self, senses: Senses, before: Decision) -> MidDecision:
+    def decide(self, senses: SensorReadings, before: Decision) -> MidDecision:
         """Command a behaviour; `before`: the decision of the tick before. Changes what is wanted."""
         changed = self.situation.perceive(senses, before)
         event = self.situation.passed

@@ -2,7 +2,7 @@
 
 from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import Repertoire
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.errors import UnknownActionError
 from kurt2rt.layers.held_action import HeldAction
@@ -22,7 +22,7 @@ class PolicyLevel:
         self._pursued = wanted.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
         """The policy's action for the behaviour that is wanted. Raises UnknownActionError."""
         if self._pursued != self._wanted.behaviour:
             self._pursued = self._wanted.behaviour

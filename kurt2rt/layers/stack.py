@@ -1,6 +1,6 @@
 """The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
 
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision, standing
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_level import MidLevel
@@ -26,7 +26,7 @@ class LayerStack:
         self.navigator = navigator
         self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """The basic level's decision about what the mid level commands; where that one asks, the robot stands."""
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
@@ -48,5 +48,5 @@ class LayerStack:
         """The robot has been set down elsewhere."""
         self.mid.restart()
 
-    def _decide_below(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def _decide_below(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         return standing(self.basic.decide(situation, senses, stand_because), stand_because)

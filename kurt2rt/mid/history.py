@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
@@ -62,7 +62,7 @@ class SymbolHistory:
         self._source = source
         self._detector = detector
 
-    def perceive(self, senses: Senses, before: Decision) -> bool:
+    def perceive(self, senses: SensorReadings, before: Decision) -> bool:
         """Take in one tick."""
         self.passed = self._detector.perceive(senses)
         symbol = self._source.perceive(before, self._detector, self.passed)

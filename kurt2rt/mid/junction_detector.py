@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.robot import HIGHEST_COUNTS, Senses
+from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
 from kurt2rt.mid.junction_event import JunctionEvent
@@ -96,7 +96,7 @@ class JunctionDetector:
         """From here on the way is one through a junction, if it becomes one."""
         self._way_m = self._net_m = 0.0
 
-    def perceive(self, senses: Senses) -> JunctionEvent | None:
+    def perceive(self, senses: SensorReadings) -> JunctionEvent | None:
         """Take in one tick; returns the junction that was passed, in the tick in which the robot is sure of it."""
         left_m = senses.encoder_left_ticks * self._metres_per_tick
         right_m = senses.encoder_right_ticks * self._metres_per_tick

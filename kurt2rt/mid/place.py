@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from kurt2rt.layers.decision import Decision
 from kurt2rt.mid.junction_detector import JunctionDetector
@@ -92,7 +92,7 @@ class Place:
         """Way driven since the situation changed."""
         return self._way_m
 
-    def perceive(self, senses: Senses, before: Decision) -> bool:  # noqa: ARG002 - what was decided does not matter here
+    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - what was decided does not matter here
         """Take in one tick."""
         told, self._told = self._told, False
         self.passed = passed = self._detector.perceive(senses)
@@ -128,7 +128,7 @@ class Place:
         """From one junction to the next the way is reckoned in the frame of the encoders' own yaw."""
         self._x_driven_m = self._y_driven_m = self._way_m = 0.0
 
-    def _reckon(self, senses: Senses) -> None:
+    def _reckon(self, senses: SensorReadings) -> None:
         step_m = (senses.encoder_left_ticks + senses.encoder_right_ticks) / 2 * self._metres_per_tick
         middle_rad = self._detector.yaw_rad - self._detector.turn_rad / 2
         self._x_driven_m += step_m * steady(math.cos(middle_rad))

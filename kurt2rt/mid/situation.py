@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, SerializeAsAny
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from hal.settings_by_kind import KindSettings, as_its_kind
 from kurt2rt.layers.decision import Decision
@@ -41,7 +41,7 @@ class MidSituation(Protocol):
         """The junction that the last call of `perceive` found passed."""
         ...
 
-    def perceive(self, senses: Senses, before: Decision) -> bool:
+    def perceive(self, senses: SensorReadings, before: Decision) -> bool:
         """Take in one tick; `before`: the decision of the tick before. Returns whether the vector has changed."""
         ...
 

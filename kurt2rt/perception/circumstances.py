@@ -5,7 +5,7 @@ from collections.abc import Callable
 from operator import itemgetter
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import HIGHEST_COUNTS, Senses
+from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.critic.settings import CriticSettings
@@ -13,7 +13,7 @@ from kurt2rt.steady import steady
 
 
 class CircumstancesPerception:
-    """Turns Senses into AppraisalFeatures, once per tick, in memory that does not grow."""
+    """Turns SensorReadings into AppraisalFeatures, once per tick, in memory that does not grow."""
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
         """Raises SettingsError for a sensor that the robot does not have."""
@@ -65,7 +65,7 @@ class CircumstancesPerception:
         """In the tick before something else came than was expected."""
         self._since_surprise = -1
 
-    def perceive(self, senses: Senses, *, driving: bool) -> AppraisalFeatures:
+    def perceive(self, senses: SensorReadings, *, driving: bool) -> AppraisalFeatures:
         """Return the features of this tick; `driving`: whether an action drove the wheels until now.
 
         While the robot waits, the time without a wall stands still, and a wait is not a lack of progress.

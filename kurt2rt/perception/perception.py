@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.perception.definition import SituationDefinition
 from kurt2rt.perception.features import FeatureExtractor
 from kurt2rt.perception.history import History
@@ -22,7 +22,7 @@ class Situation(NamedTuple):
 
 
 class Perception:
-    """Turns Senses into a Situation (paper, VI.B.1)."""
+    """Turns SensorReadings into a Situation (paper, VI.B.1)."""
 
     def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
         self.definition = definition
@@ -37,7 +37,7 @@ class Perception:
         self._history.forget()
         self._driven = STANDSTILL
 
-    def perceive(self, senses: Senses, *, history_frozen: bool) -> Situation:
+    def perceive(self, senses: SensorReadings, *, history_frozen: bool) -> Situation:
         """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
         recent = self._extract(senses.infrared_counts, self._driven)
         if self._history.filled == 0 and senses.infrared_age_s < math.inf:

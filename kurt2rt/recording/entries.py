@@ -3,7 +3,7 @@
 import zlib
 from typing import NamedTuple
 
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
@@ -72,8 +72,8 @@ class TickEntry(NamedTuple):
     """1, 2, 3 ... of the ticks that were run: where one is missing, it was not recorded."""
     tick: int
     now_s: float
-    senses: Senses
-    grant: Grant
+    senses: SensorReadings
+    grant: GuardResult
     commands: tuple[Input, ...]
     """Taken from the inbox in this tick, in order."""
     trouble: str | None

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.knowledge.events import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -132,7 +132,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
         content["number"],
         content["tick"],
         float(content["now_s"]),
-        Senses(
+        SensorReadings(
             float(senses.get("time_s", content["now_s"])),
             tuple(senses["infrared_counts"]),
             float(senses["infrared_age_s"]),
@@ -142,7 +142,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
             senses["bumpers"],
             float(senses["bumper_age_s"]),
         ),
-        Grant(_speeds_of(grant["wheels"]), tuple(grant["reasons"]), grant["latched"]),
+        GuardResult(_speeds_of(grant["wheels"]), tuple(grant["reasons"]), grant["latched"]),
         _all(decode_command, content.get("commands", ())),
         content.get("trouble"),
         content.get("saved", False),

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hal.settings import kept_settings
+from hal.settings import settings_override
 
 MOST_FILES = 1000
 LARGEST_BYTES = 256_000_000
@@ -47,7 +47,7 @@ def laid_out(files: Mapping[str, bytes]) -> Iterator[None]:
             path.parent.mkdir(parents=True, exist_ok=True)
             with path.open("xb") as file:  # never another one's content
                 file.write(data)
-        with kept_settings(Path(folder, "settings")):
+        with settings_override(Path(folder, "settings")):
             yield
 
 

@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Perception
 
@@ -36,7 +36,7 @@ class TaughtSystem:
             part.restart()
         self._driving = self.lost = False
 
-    def step(self, senses: Senses) -> WheelSpeeds:
+    def step(self, senses: SensorReadings) -> WheelSpeeds:
         """What its level decides. While it is lost it stands, and its averages stand still as a waiting robot's do."""
         situation = self._perception.perceive(senses, history_frozen=not self._driving)
         decision = self._level.decide(situation, senses, None)

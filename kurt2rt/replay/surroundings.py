@@ -1,6 +1,6 @@
 """What stands round a tick that is replayed: robot, clock and journal say what the recorded ones said."""
 
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.rla.rla import TeachingEvent
 
@@ -27,11 +27,11 @@ class Replayed:
     async def wait_until(self, deadline_s: float) -> None:
         """A replay does not wait (Clock)."""
 
-    def sense(self, now_s: float) -> Senses:  # noqa: ARG002 - what was sensed then
+    def sense(self, now_s: float) -> SensorReadings:  # noqa: ARG002 - what was sensed then
         """What was sensed (Robot)."""
         return self._entry.senses
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002 - as granted then
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as granted then
         """What the guard let through then, whatever is wanted now: the robot is where it was (Robot)."""
         return self._entry.grant
 

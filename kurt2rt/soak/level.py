@@ -1,6 +1,6 @@
 """The layer at the wheels, which may fail and take its tick along."""
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.faults.levels import DisturbedLevel
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.layers.decision import Cause, Decision
@@ -26,7 +26,7 @@ class SoakLevel:
         """It is sound again."""
         self._disturbed = None
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """The decision, or what a fault makes of it. Raises BrokenTickError."""
         level = self._disturbed or self.behind
         assert level is not None

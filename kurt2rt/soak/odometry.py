@@ -1,6 +1,6 @@
 """What the encoders counted on a sound bus, against what the wheels turned."""
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.soak.place import SoakPlace
 
 
@@ -16,7 +16,7 @@ class OdometryCheck:
         self._turned_m = [0.0, 0.0]
         self._valid = False
 
-    def hear(self, senses: Senses) -> None:
+    def hear(self, senses: SensorReadings) -> None:
         """A tick's counts."""
         self._ticks[0] += senses.encoder_left_ticks
         self._ticks[1] += senses.encoder_right_ticks

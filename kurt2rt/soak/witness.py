@@ -2,7 +2,7 @@
 
 import math
 
-from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.table import EnvelopeSettings
 from kurt2rt.layers.decision import Cause
@@ -115,7 +115,7 @@ class SoakWitness:
     def _silent(self) -> bool:
         return self._place.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """A tick begins: from here on its decision ages."""
         self._sensed_at_s = self._place.time.now_s()
         assert self._robot is not None
@@ -123,7 +123,7 @@ class SoakWitness:
         self.envelope.off_a_bumper = senses.bumpers != 0
         return senses
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """As the robot does."""
         assert self._robot is not None
         return self._robot.drive(wanted, decided_at_s, now_s)

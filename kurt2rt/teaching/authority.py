@@ -2,7 +2,7 @@
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.teaching.commands import Drive
 
 _BY_HAND = "by hand"
@@ -126,7 +126,7 @@ class Authority:
         if not self.is_manual(tick) and (self._speeds is not None or self._behaviour is not None):
             self.end_hand()
 
-    def step(self, senses: Senses) -> tuple[str, WheelSpeeds]:
+    def step(self, senses: SensorReadings) -> tuple[str, WheelSpeeds]:
         """Return a name for the action of the manual drive and its wheel speeds; only while `is_manual`."""
         if self._speeds is not None:
             return _BY_HAND, self._speeds

@@ -39,7 +39,7 @@ class Cable:
 
 
 class CableInterface:
-    """One end (hal.bus_end.BusEnd)."""
+    """One end (hal.can_interface.CanInterface)."""
 
     confirms = True
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import can
 
 from hal.bus import CONTROL_ID
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.frame import Frame
 from simbridge.faults.way import FrameLink
 
@@ -36,13 +36,13 @@ class Links:
 
 
 class SwitchableInterface:
-    """Wraps an end that stamps frames and confirms its own (hal.bus_end.BusEnd)."""
+    """Wraps an end that stamps frames and confirms its own (hal.can_interface.CanInterface)."""
 
     confirms = True
 
     def __init__(
         self,
-        inner: BusEnd,
+        inner: CanInterface,
         ways: Links,
         now_s: Callable[[], float],
         *,

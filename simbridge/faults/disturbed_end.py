@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import can
 
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from simbridge.faults.event_time import EventScheduler
 from simbridge.faults.way import FrameLink
 
 
 class FaultyInterface:
-    """Wraps another end (hal.bus_end.BusEnd) and can behave as one of SocketCAN: stamps, and its own frames confirmed.
+    """Wrapper of a CanInterface that can behave as one of SocketCAN: stamps, and its own frames confirmed.
 
     Frames get their stamp when they come from the bus, before the way in: as the kernel does it.
     """
@@ -21,7 +21,7 @@ class FaultyInterface:
 
     def __init__(
         self,
-        inner: BusEnd,
+        inner: CanInterface,
         time: EventScheduler,
         *,
         outward: FrameLink,

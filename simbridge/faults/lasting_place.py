@@ -7,7 +7,7 @@ from collections.abc import Callable
 import can
 
 from hal.bus import CONTROL_ID, CanBus
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.codec import load_codec
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
@@ -53,7 +53,7 @@ class LongRunRig:
         self._cycle_s = settings.can.cycle_s
         self._numbers = 0
         self._robots_links, self._notebooks_links = Links(), Links()
-        self._join: Callable[[str], BusEnd]
+        self._join: Callable[[str], CanInterface]
         self._open_bus(NO_WIRE)
         self._robots_bus = CanBus("soak", self._open_robots_end)
         self._robots_bus.listen_to({CONTROL_ID})
@@ -169,12 +169,12 @@ class LongRunRig:
         nodes = {"robot": settings.robot, "notebook": settings.notebook}
         self._join = lambda end: WireInterface(carrier, nodes[end])
 
-    def _open_robots_end(self, _: str) -> BusEnd:
+    def _open_robots_end(self, _: str) -> CanInterface:
         return SwitchableInterface(
             self._join("robot"), self._robots_links, self.time.now_s, on_heard=self._note_arrival
         )
 
-    def _open_notebooks_end(self, _: str) -> BusEnd:
+    def _open_notebooks_end(self, _: str) -> CanInterface:
         return SwitchableInterface(self._join("notebook"), self._notebooks_links, self.time.now_s, on_send=self._number)
 
     def _number(self, frame: can.Message) -> can.Message:

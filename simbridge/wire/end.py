@@ -7,7 +7,7 @@ from simbridge.wire.wire import Wire
 
 
 class WireInterface:
-    """A controller of its own on the wire, with its reader (hal.bus_end.BusEnd).
+    """A controller of its own on the wire, with its reader (hal.can_interface.CanInterface).
 
     Opening one is plugging an adapter in: its counters begin at zero.
     """

@@ -1,6 +1,6 @@
 """What the robot senses in a test: distances become counts by the sensors' own law."""
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings, load_robot
 
 ROBOT: RobotSettings = load_robot()
@@ -14,5 +14,5 @@ def counts(nothing_nearer_than_m: float = 0.6, **distances_m: float) -> tuple[in
 
 def sensed(
     infrared_counts: tuple[int, ...] = (70,) * len(SENSORS), *, left_ticks: int = 0, right_ticks: int = 0
-) -> Senses:
-    return Senses(0.0, infrared_counts, 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)
+) -> SensorReadings:
+    return SensorReadings(0.0, infrared_counts, 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)

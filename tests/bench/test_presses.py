@@ -4,7 +4,7 @@ from itertools import islice
 
 import pytest
 
-from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.bench.press import press_result
 from kurt2rt.bench.presses import Press, Start, WitnessedRobot, rhythms, waits_ns
 
@@ -32,11 +32,11 @@ class GrantingRobot:
     def __init__(self) -> None:
         self.told: list[str] = []
 
-    def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (), 0.0, 0, 0, 0.0, 0, 0.0)
+    def sense(self, now_s: float) -> SensorReadings:
+        return SensorReadings(now_s, (), 0.0, 0, 0, 0.0, 0, 0.0)
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002
-        return Grant(wanted, (), latched=False)
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002
+        return GuardResult(wanted, (), latched=False)
 
     def emergency_stop(self, reason: str) -> None:
         self.told.append(reason)

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, cast
 
-from hal.robot import Grant, Senses
+from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel, describe
 from kurt2rt.channel.endpoint import Endpoint
@@ -54,11 +54,11 @@ class WideRobot(CorridorRobot):
         self.bumpers = 0
         self.refuses: tuple[str, ...] = ()
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         counts = (self.counts,) * len(ROBOT.infrared.sensors)
-        return Senses(now_s, counts, self.infrared_age_s, 0, 0, 0.0, self.bumpers, 0.0)
+        return SensorReadings(now_s, counts, self.infrared_age_s, 0, 0, 0.0, self.bumpers, 0.0)
 
-    def drive(self, wanted: Any, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: Any, decided_at_s: float, now_s: float) -> GuardResult:
         grant = super().drive(wanted, decided_at_s, now_s)
         return grant._replace(reasons=(*grant.reasons, *self.refuses))
 

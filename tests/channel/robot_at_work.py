@@ -8,7 +8,7 @@ from typing import Any
 
 import anyio
 
-from hal.robot import STANDSTILL, Grant, Robot, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel
 from kurt2rt.channel.credentials import LOCAL, Pairing, local_pairing
@@ -36,14 +36,14 @@ class CheapRobot:
         self.counts = 100
         self.latched = False
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """Always fresh."""
         count = len(SETTINGS.infrared.sensors)
-        return Senses(now_s, (self.counts,) * count, 0.0, 0, 0, 0.0, 0, 0.0)
+        return SensorReadings(now_s, (self.counts,) * count, 0.0, 0, 0, 0.0, 0, 0.0)
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002
         """Grants all until it is latched."""
-        return Grant(STANDSTILL if self.latched else wanted, (), self.latched)
+        return GuardResult(STANDSTILL if self.latched else wanted, (), self.latched)
 
     def emergency_stop(self, reason: str) -> None:  # noqa: ARG002
         self.latched = True

@@ -6,7 +6,7 @@ from typing import Any
 
 from hal.bus import CanBus
 from hal.guard import BUS_BLOCKED, BUS_LOST, Guard
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, BumperSettings, RobotSettings, SpeedMode
 from hal.watchdog import TICKS_CEASED
 
@@ -46,13 +46,13 @@ def at_the(end: BumperEnd) -> Callable[[BumperSettings], BumperSettings]:
 
 
 class TakesNoneForZero(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         number = WheelSpeeds(*(speed if math.isfinite(speed) else 0.1 for speed in wanted))
         return super().drive(number, senses, decided_at_s, now_s)
 
 
 class TakesNoTimeForFresh(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         ages = [0.0 if math.isnan(age) else age for age in (senses.infrared_age_s, senses.encoder_age_s)]
         known = senses._replace(infrared_age_s=ages[0], encoder_age_s=ages[1])
         return super().drive(wanted, known, decided_at_s, now_s)
@@ -61,7 +61,7 @@ class TakesNoTimeForFresh(Guard):
 class TakesAnyAgeBelowForFresh(Guard):
     """Takes frames for fresh that came, by their times, after the senses."""
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         ages = senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s
         infrared, encoder, bumper = (0.0 if age < 0.0 else age for age in ages)
         aged = senses._replace(infrared_age_s=infrared, encoder_age_s=encoder, bumper_age_s=bumper)
@@ -69,7 +69,7 @@ class TakesAnyAgeBelowForFresh(Guard):
 
 
 class TrustsTheFuture(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         return super().drive(wanted, senses._replace(time_s=min(now_s, senses.time_s)), min(now_s, decided_at_s), now_s)
 
 
@@ -78,7 +78,7 @@ class NeverLooksBack(Guard):
 
     latest_s = -math.inf
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         ahead_s = max(0.0, self.latest_s - now_s) if math.isfinite(now_s) else 0.0
         self.latest_s = max(self.latest_s, now_s) if math.isfinite(now_s) else self.latest_s
         shifted = senses._replace(time_s=senses.time_s + ahead_s)
@@ -86,7 +86,7 @@ class NeverLooksBack(Guard):
 
 
 class Forgetful(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         self.release()
         return super().drive(wanted, senses, decided_at_s, now_s)
 
@@ -103,7 +103,7 @@ class StopsAtTheNextTick(Guard):
     def emergency_stop(self, reason: str) -> None:
         self.due = self.due or reason
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         if self.due is not None:
             super().emergency_stop(self.due)
             self.due = None
@@ -121,7 +121,7 @@ class ReleasesItself(Guard):
 
     why = BUS_LOST
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         grant = super().drive(wanted, senses, decided_at_s, now_s)
         if self.latched == self.why:
             self.release()
@@ -138,36 +138,36 @@ class NeverReleases(Guard):
 
 
 class SaysTwice(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         super().drive(wanted, senses, decided_at_s, now_s)
         return super().drive(wanted, senses, decided_at_s, now_s)
 
 
 class SaysOtherThanItDoes(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         grant = super().drive(wanted, senses, decided_at_s, now_s)
         return grant if grant.latched else grant._replace(wheel_speeds=wanted)
 
 
 class GivesNoReasons(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         return super().drive(wanted, senses, decided_at_s, now_s)._replace(reasons=())
 
 
 class NeverMoves(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         return super().drive(WheelSpeeds(*(0.0 for _ in wanted)), senses, decided_at_s, now_s)
 
 
 class DrivesTheOtherWay(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         return super().drive(WheelSpeeds(-wanted[0], -wanted[1]), senses, decided_at_s, now_s)
 
 
 class DrivesBackBeforeItRests(Guard):
     """A wheel turns the other way without having come to rest."""
 
-    def drive(self, wanted: WheelSpeeds, senses: Senses, decided_at_s: float, now_s: float) -> Grant:
+    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         reverses = any(speed * was < 0.0 for speed, was in zip(wanted, self.was, strict=True))
         if reverses and self.latched is None:
             super().drive(WheelSpeeds(0.0, 0.0), senses, decided_at_s, now_s)

@@ -9,7 +9,7 @@ from hal.bus import CanBus, open_bus
 from hal.control import Control
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from tests.hal.helpers import ROBOT, TICK_S, controls, cycle, ticks
 
 _numbers = itertools.count()
@@ -88,20 +88,20 @@ class Ride:
         self.now_s += seconds
         self.desk.time_s += seconds
 
-    def tick(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+    def tick(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:
         """A cycle of the controller, and a tick of the runtime that wants these speeds."""
         self.desk.arrive(*self.frames())
         self.sleep(TICK_S)
         return self.decide(left_m_s, right_m_s)
 
-    def decide(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+    def decide(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:
         """A tick of the runtime with what waits on the bus."""
         self.kurt2.sense(self.now_s)
         grant = self.kurt2.drive(WheelSpeeds(left_m_s, right_m_s), self.now_s, self.now_s)
         self.granted = grant.wheel_speeds
         return grant
 
-    def drive_for(self, seconds: float, left_m_s: float = 0.3, right_m_s: float = 0.3) -> Grant:
+    def drive_for(self, seconds: float, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:
         for _ in range(round(seconds / TICK_S)):
             grant = self.tick(left_m_s, right_m_s)
         return grant

@@ -9,7 +9,7 @@ from typing import Self
 
 from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus
@@ -36,7 +36,7 @@ class FuzzedRobot:
         """`kind` of the bus: virtual or shared."""
         name = f"can-fuzz-{os.getpid()}-{next(_numbers)}"
         spec = f"{kind}:{name}"
-        self._stranger: BusEnd = InProcessBus(name) if kind == "virtual" else SharedBus(name)
+        self._stranger: CanInterface = InProcessBus(name) if kind == "virtual" else SharedBus(name)
         self._stranger.listen_to(frozenset())
         self._controller_bus = open_bus(spec)
         robot_bus = open_bus(spec)

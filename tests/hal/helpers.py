@@ -9,7 +9,7 @@ from hal.bus import CanBus, open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, decode_control
 from hal.frame import Frame
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import GuardSettings, RobotSettings, load_robot
 
 CODEC: Codec = load_codec()
@@ -64,8 +64,8 @@ def fresh(
     infrared_age_s: float = 0.0,
     encoder_age_s: float = 0.0,
     bumper_age_s: float = 0.0,
-) -> Senses:
-    return Senses(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers, bumper_age_s)
+) -> SensorReadings:
+    return SensorReadings(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers, bumper_age_s)
 
 
 def robot_with(**limits: float) -> RobotSettings:

@@ -6,7 +6,7 @@ import can
 import numpy as np
 
 from hal.bus import CONTROL_ID
-from hal.robot import Grant
+from hal.robot import GuardResult
 from hal.robot_settings import BumperEnd
 from tests.hal.control_bytes import BRAKE, read_control
 from tests.hal.helpers import CODEC, INFRARED_FRAMES, ROBOT, TICK_S
@@ -47,7 +47,7 @@ class Onlooker:
         assert (frame.arbitration_id, frame.is_extended_id, len(frame.data)) == (CONTROL_ID, False, 8)
         self._sent.append(bytes(frame.data))
 
-    def judge(self, now_s: float, grant: Grant) -> None:
+    def judge(self, now_s: float, grant: GuardResult) -> None:
         """Look at what came and went in a tick."""
         alarm = self._take_in(now_s)
         self.frames += len(self._heard)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hal.bus import CanBus
 from hal.frame import Frame
 from hal.guard import BUS_BLOCKED, Guard
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import TICKS_CEASED, Watchdog
 from tests.hal.streams import Bytes, Flags, Floats, Streams
@@ -78,7 +78,7 @@ class SlowBus:
         pass
 
 
-class InterruptedSenses(Senses):
+class InterruptedSenses(SensorReadings):
     """A signal handler of the same thread runs while the guard reads the bumpers."""
 
     interrupt: Callable[[], None] | None = None
@@ -136,7 +136,7 @@ guard is latched."""
 def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
     """Let one guard for each stream live through it."""
     end = SlowBus(confirms=streams.confirms)
-    grants: list[Grant] = []
+    grants: list[GuardResult] = []
     noted: list[_Noted] = []
     send_failures = [_play_one(streams, at, end, make_guard, grants, noted) for at in range(streams.shape[0])]
 
@@ -169,7 +169,7 @@ def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
 
 
 def _play_one(
-    streams: Streams, at: int, end: SlowBus, make_guard: MakeGuard, grants: list[Grant], noted: list[_Noted]
+    streams: Streams, at: int, end: SlowBus, make_guard: MakeGuard, grants: list[GuardResult], noted: list[_Noted]
 ) -> int:
     """One stream; notes what happens and returns the guard's count of frames that the bus refused."""
     bus = CanBus("slow", lambda _: end)
@@ -237,11 +237,11 @@ def _play_one(
     return guard.send_failures
 
 
-def _senses(streams: Streams, at: int) -> "map[Senses]":
+def _senses(streams: Streams, at: int) -> "map[SensorReadings]":
     infrared_counts = (200,) * len(streams.robot.infrared.sensors)
     ticks = streams.shape[1]
     return map(
-        Senses,
+        SensorReadings,
         streams.sensed_at_s[at].tolist(),
         [infrared_counts] * ticks,
         streams.infrared_age_s[at].tolist(),

@@ -9,7 +9,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl, encode_brake
 from hal.frame import Frame
 from hal.guard import BUS_BLOCKED, BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from tests.hal.desk_bus import Ride
 from tests.hal.helpers import CODEC, INFRARED_FRAMES, ROBOT, TICK_S, cycle, error_frame, send, ticks
 
@@ -18,8 +18,8 @@ OFF, RESTARTED = error_frame(0x040), error_frame(0x100)
 FORWARD = Frame(0x01, bytes.fromhex("0002001E001E0001"))
 
 
-def stopped(reason: str) -> Grant:
-    return Grant(STANDSTILL, (reason,), latched=True)
+def stopped(reason: str) -> GuardResult:
+    return GuardResult(STANDSTILL, (reason,), latched=True)
 
 
 # Another sender of CONTROL
@@ -192,7 +192,7 @@ def test_off_and_back_between_two_ticks_is_a_stop_all_the_same(ride: Ride) -> No
 @pytest.mark.parametrize("status", [0x04, 0x08, 0x10, 0x20])
 def test_an_adapter_that_warns_or_is_passive_drives_on_and_is_shown(ride: Ride, status: int) -> None:
     ride.desk.arrive(error_frame(0x204, status=status, sending=130, receiving=1))
-    assert ride.drive_for(0.5) == Grant(WheelSpeeds(0.3, 0.3), (), latched=False)
+    assert ride.drive_for(0.5) == GuardResult(WheelSpeeds(0.3, 0.3), (), latched=False)
     assert "130 errors sending and 1 receiving" in ride.kurt2.health.trouble
     ride.desk.arrive(error_frame(0x204, status=0x40))
     ride.tick()

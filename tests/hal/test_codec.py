@@ -8,7 +8,7 @@ from cantools.database import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.codec import CodecError, JunkFrameError, load_codec, load_database
+from hal.codec import CodecError, InvalidFrameError, load_codec, load_database
 from tests.hal.helpers import CODEC
 
 DATABASE = load_database()
@@ -53,7 +53,7 @@ def test_any_length_that_covers_the_fields_will_do(message: Message, payload: by
     codec = CODEC.message(message.name)
     covered = max(8 * (signal.start // 8) + 7 - signal.start % 8 + signal.length for signal in message.signals)
     if 8 * len(payload) < covered:
-        with pytest.raises(JunkFrameError, match=f"^{message.name}"):
+        with pytest.raises(InvalidFrameError, match=f"^{message.name}"):
             codec.unpack(payload)
     else:
         assert codec.unpack(payload) == codec.unpack(payload[:8].ljust(8, b"\0"))
@@ -62,7 +62,7 @@ def test_any_length_that_covers_the_fields_will_do(message: Message, payload: by
 def test_short_encoder_frame_is_read_while_it_holds_both_sides() -> None:
     encoder = CODEC.message("ENCODER")
     assert encoder.unpack(bytes.fromhex("0209FDF7")) == (521, -521)
-    with pytest.raises(JunkFrameError, match="ENCODER: 3 bytes, needs at least 4"):
+    with pytest.raises(InvalidFrameError, match="ENCODER: 3 bytes, needs at least 4"):
         encoder.unpack(bytes.fromhex("0209FD"))
 
 

@@ -7,7 +7,7 @@ from cantools.database import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.codec import JunkFrameError, load_database
+from hal.codec import InvalidFrameError, load_database
 from hal.control import (
     Control,
     Mode,
@@ -151,11 +151,11 @@ def test_a_number_too_large_is_refused() -> None:
 
 @given(st.binary(max_size=7))
 def test_short_frames_are_junk(payload: bytes) -> None:
-    with pytest.raises(JunkFrameError, match="needs 8"):
+    with pytest.raises(InvalidFrameError, match="needs 8"):
         decode_control(payload)
 
 
 @given(st.integers(0, 0xFFFF).filter(lambda number: number not in set(Mode)), st.binary(min_size=6, max_size=6))
 def test_unknown_modes_are_junk(number: int, rest: bytes) -> None:
-    with pytest.raises(JunkFrameError, match=f"0x{number:04X} is unknown"):
+    with pytest.raises(InvalidFrameError, match=f"0x{number:04X} is unknown"):
         decode_control(number.to_bytes(2, "big") + rest)

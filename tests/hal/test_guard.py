@@ -11,7 +11,7 @@ from hal import guard as words
 from hal.bus import CanBus
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.guard import Guard
-from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings, SpeedMode
 from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, robot_with, send
 
@@ -29,14 +29,14 @@ class Driver:
         self._far_end = ends[1]
         self.now_s = 50.0
 
-    def drive(self, left_m_s: float, right_m_s: float, bumpers: int = 0) -> Grant:
+    def drive(self, left_m_s: float, right_m_s: float, bumpers: int = 0) -> GuardResult:
         self.now_s += TICK_S
         return self.tell(WheelSpeeds(left_m_s, right_m_s), fresh(self.now_s, bumpers))
 
-    def tell(self, wanted: WheelSpeeds, senses: Senses, decided_ago_s: float = 0.0) -> Grant:
+    def tell(self, wanted: WheelSpeeds, senses: SensorReadings, decided_ago_s: float = 0.0) -> GuardResult:
         return self.guard.drive(wanted, senses, self.now_s - decided_ago_s, self.now_s)
 
-    def drive_for(self, seconds: float, left_m_s: float, right_m_s: float) -> Grant:
+    def drive_for(self, seconds: float, left_m_s: float, right_m_s: float) -> GuardResult:
         for _ in range(round(seconds / TICK_S)):
             grant = self.drive(left_m_s, right_m_s)
         return grant
@@ -55,7 +55,7 @@ def driver(ends: Ends) -> Driver:
 
 def test_a_safe_wish_is_granted_and_sent_once_a_tick(driver: Driver) -> None:
     grant = driver.drive_for(1.0, 0.3, -0.2)
-    assert grant == Grant(WheelSpeeds(0.3, -0.2), (), latched=False)
+    assert grant == GuardResult(WheelSpeeds(0.3, -0.2), (), latched=False)
     sent = driver.sent()
     assert len(sent) == 100
     assert sent[-1] == SpeedControl(Mode.SPEED_CM, 30, -20)
@@ -72,9 +72,9 @@ def test_the_robot_speeds_up_no_faster_than_allowed(driver: Driver) -> None:
 
 def test_slowing_down_has_its_own_limit_and_a_stop_has_none(driver: Driver) -> None:
     driver.drive_for(1.0, 0.5, 0.5)
-    assert driver.drive(0.1, 0.1) == Grant(WheelSpeeds(0.47, 0.47), (words.SLEW_LIMIT,), latched=False)
-    assert driver.drive(0.0, 0.2) == Grant(WheelSpeeds(0.0, 0.44), (words.SLEW_LIMIT,), latched=False)
-    assert driver.drive(0.0, 0.0) == Grant(STANDSTILL, (), latched=False)
+    assert driver.drive(0.1, 0.1) == GuardResult(WheelSpeeds(0.47, 0.47), (words.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.0, 0.2) == GuardResult(WheelSpeeds(0.0, 0.44), (words.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.0, 0.0) == GuardResult(STANDSTILL, (), latched=False)
 
 
 def test_turning_back_passes_through_zero(driver: Driver) -> None:
@@ -92,7 +92,7 @@ def test_a_late_tick_does_not_turn_into_a_jump(driver: Driver) -> None:
 
 def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
     grant = driver.drive_for(1.0, 1.2, 0.6)
-    assert grant == Grant(WheelSpeeds(0.6, 0.3), (words.SPEED_LIMIT,), latched=False)
+    assert grant == GuardResult(WheelSpeeds(0.6, 0.3), (words.SPEED_LIMIT,), latched=False)
     assert driver.drive_for(1.0, -0.8, -1.2).wheel_speeds == (-0.4, -0.6)
 
 
@@ -100,7 +100,7 @@ def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
 def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     for wanted in ((odd, 0.3), (0.3, odd)):
-        assert driver.drive(*wanted) == Grant(STANDSTILL, (words.NOT_A_NUMBER,), latched=False)
+        assert driver.drive(*wanted) == GuardResult(STANDSTILL, (words.NOT_A_NUMBER,), latched=False)
         assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
@@ -123,7 +123,7 @@ def test_a_robot_without_feeling_stands(driver: Driver, ages_s: tuple[float, flo
     driver.drive_for(1.0, 0.3, 0.3)
     driver.now_s += TICK_S
     grant = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s, 0, *ages_s))
-    assert grant == Grant(STANDSTILL, (reason,), latched=False)
+    assert grant == GuardResult(STANDSTILL, (reason,), latched=False)
     assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
 
 
@@ -135,7 +135,7 @@ def test_ages_within_the_limits_are_good_enough(driver: Driver) -> None:
 def test_a_robot_without_bumpers_does_not_wait_for_them(ends: Ends) -> None:
     driver = Driver(ends, ROBOT.model_copy(update={"bumpers": ()}))
     grant = driver.tell(WheelSpeeds(0.01, 0.01), fresh(driver.now_s, bumper_age_s=math.inf))
-    assert grant == Grant(WheelSpeeds(0.01, 0.01), (), latched=False)
+    assert grant == GuardResult(WheelSpeeds(0.01, 0.01), (), latched=False)
 
 
 def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:
@@ -148,21 +148,21 @@ def test_the_limits_themselves_are_allowed(driver: Driver) -> None:
     driver.now_s = LIMITS.command_age_s
     assert driver.tell(WheelSpeeds(0.01, 0.01), fresh(driver.now_s), decided_ago_s=LIMITS.command_age_s).reasons == ()
     fastest_m_s = LIMITS.maximum_speed_m_s
-    assert driver.drive_for(1.0, fastest_m_s, -fastest_m_s) == Grant(WheelSpeeds(0.6, -0.6), (), latched=False)
+    assert driver.drive_for(1.0, fastest_m_s, -fastest_m_s) == GuardResult(WheelSpeeds(0.6, -0.6), (), latched=False)
 
 
 def test_an_old_command_stands(driver: Driver) -> None:
     wanted = WheelSpeeds(0.01, 0.01)
     assert driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s - 1e-6).reasons == ()
     grant = driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s + 1e-6)
-    assert grant == Grant(STANDSTILL, (words.COMMAND_TOO_OLD,), latched=False)
+    assert grant == GuardResult(STANDSTILL, (words.COMMAND_TOO_OLD,), latched=False)
 
 
 def test_a_clock_that_runs_backwards_stands_for_that_tick(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.now_s -= 0.5
     backwards = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s))
-    assert backwards == Grant(STANDSTILL, (words.CLOCK_RAN_BACKWARDS,), latched=False)
+    assert backwards == GuardResult(STANDSTILL, (words.CLOCK_RAN_BACKWARDS,), latched=False)
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
 
@@ -182,15 +182,15 @@ def test_a_time_that_is_none_stands_and_is_forgotten(driver: Driver, now_s: floa
 
 def test_a_front_bumper_lets_the_robot_back_off_only(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
-    assert driver.drive(0.3, 0.3, FRONT) == Grant(STANDSTILL, (words.FRONT_BUMPER,), latched=False)
+    assert driver.drive(0.3, 0.3, FRONT) == GuardResult(STANDSTILL, (words.FRONT_BUMPER,), latched=False)
     assert driver.drive(-0.2, 0.2, FRONT).wheel_speeds == (-0.01, 0.0)
     grant = driver.drive(-0.2, -0.2, FRONT)
-    assert grant == Grant(WheelSpeeds(-0.03, -0.01), (words.SLEW_LIMIT,), latched=False)
+    assert grant == GuardResult(WheelSpeeds(-0.03, -0.01), (words.SLEW_LIMIT,), latched=False)
 
 
 def test_a_rear_bumper_lets_the_robot_drive_on_only(driver: Driver) -> None:
     driver.drive_for(1.0, -0.3, -0.3)
-    assert driver.drive(-0.3, -0.3, REAR) == Grant(STANDSTILL, (words.REAR_BUMPER,), latched=False)
+    assert driver.drive(-0.3, -0.3, REAR) == GuardResult(STANDSTILL, (words.REAR_BUMPER,), latched=False)
     assert driver.drive(0.2, -0.2, REAR).wheel_speeds == (0.01, 0.0)
     assert driver.drive(0.2, 0.2, REAR).reasons == (words.SLEW_LIMIT,)
 
@@ -233,7 +233,7 @@ def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
     assert driver.sent() == [BRAKE]
     driver.guard.emergency_stop("somebody else")
     for _ in range(3):
-        assert driver.drive(0.3, 0.3) == Grant(STANDSTILL, ("teacher",), latched=True)
+        assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, ("teacher",), latched=True)
     assert driver.sent() == [BRAKE] * 4
     driver.guard.release()
     assert driver.guard.latched is None
@@ -242,7 +242,7 @@ def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
 
 
 def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) -> None:
-    class Interrupted(Senses):
+    class Interrupted(SensorReadings):
         """A signal handler of the same thread runs while the guard reads the senses."""
 
         @property
@@ -254,7 +254,7 @@ def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) 
     driver.sent()
     driver.now_s += TICK_S
     grant = driver.tell(WheelSpeeds(0.3, 0.3), Interrupted(*fresh(driver.now_s)))
-    assert grant == Grant(STANDSTILL, ("signal",), latched=True)
+    assert grant == GuardResult(STANDSTILL, ("signal",), latched=True)
     assert driver.last_sent() == BRAKE
 
 
@@ -286,7 +286,7 @@ def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends
     robot_end, far_end = ends
     driver.drive_for(1.0, 0.3, 0.3)
     robot_end.shutdown()
-    assert driver.drive(0.3, 0.3) == Grant(STANDSTILL, (words.BUS_LOST,), latched=True)
+    assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, (words.BUS_LOST,), latched=True)
     driver.guard.emergency_stop("too late")
     assert driver.guard.latched == words.BUS_LOST
     assert driver.guard.send_failures == 3
@@ -335,7 +335,7 @@ def test_limits_come_from_the_settings(ends: Ends) -> None:
     driver = Driver(ends, robot_with(maximum_speed_m_s=0.2, acceleration_m_s2=20.0))
     driver.drive(0.0, 0.0)
     driver.drive(0.5, 0.5)
-    assert driver.drive(0.5, 0.5) == Grant(WheelSpeeds(0.2, 0.2), (words.SPEED_LIMIT,), latched=False)
+    assert driver.drive(0.5, 0.5) == GuardResult(WheelSpeeds(0.2, 0.2), (words.SPEED_LIMIT,), latched=False)
 
 
 ANY_FLOAT = st.floats(allow_nan=True, allow_infinity=True)

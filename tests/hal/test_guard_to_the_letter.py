@@ -9,7 +9,7 @@ import pytest
 from hal import guard as words
 from hal.bus import CanBus
 from hal.guard import Guard
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.watchdog import Watchdog
 from tests.hal.helpers import ROBOT, fresh
 from tests.hal.playing import SlowBus
@@ -29,7 +29,7 @@ def test_frames_from_after_the_senses_are_no_proof(driver: Driver, kind: int, ag
     ages_s = [age_s if at == kind else 0.0 for at in range(3)]
     reason = (words.INFRARED_STALE, words.ENCODER_STALE, words.BUMPER_STALE)[kind]
     senses = fresh(driver.now_s, 0, *ages_s)
-    assert driver.tell(WheelSpeeds(0.3, 0.3), senses) == Grant(STANDSTILL, (reason,), latched=False)
+    assert driver.tell(WheelSpeeds(0.3, 0.3), senses) == GuardResult(STANDSTILL, (reason,), latched=False)
 
 
 def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:

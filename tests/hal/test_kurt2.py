@@ -13,7 +13,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl
 from hal.guard import BUMPER_STALE, BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import CLOSED, Kurt2
-from hal.robot import STANDSTILL, Grant, Robot, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, Robot, WheelSpeeds
 from hal.watchdog import TICKS_CEASED
 from tests.hal.helpers import (
     CODEC,
@@ -214,7 +214,7 @@ def test_nothing_on_the_bus_brings_the_robot_down(messages: list[can.Message]) -
 
 
 def test_it_drives_through_the_guard(robot: Kurt2, ends: Ends) -> None:
-    grant = Grant(STANDSTILL, (), latched=False)
+    grant = GuardResult(STANDSTILL, (), latched=False)
     for tick in range(50):
         now_s = 1.0 + tick * TICK_S
         left_m_s, right_m_s = grant.wheel_speeds

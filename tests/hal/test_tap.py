@@ -3,7 +3,7 @@
 import can
 
 from hal.bus import CanBus, open_bus
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.control import encode_brake
 from hal.in_process_bus import InProcessBus
 from tests.hal.helpers import CODEC, cycle, send
@@ -60,7 +60,7 @@ class StampedBus(InProcessBus):
 def test_a_frame_is_as_old_as_the_clock_of_its_bus_says_and_never_negative() -> None:
     opened: list[StampedBus] = []
 
-    def open_stamped(name: str) -> BusEnd:
+    def open_stamped(name: str) -> CanInterface:
         opened.append(StampedBus(name))
         return opened[-1]
 

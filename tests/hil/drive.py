@@ -8,7 +8,7 @@ from typing import Self
 from hal.bus import open_bus
 from hal.health import Health
 from hal.kurt2 import Kurt2
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.steady_bus import ReconnectingBus
@@ -29,8 +29,8 @@ class Drive:
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
         self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
-        self.senses = Senses(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
-        self.grant = Grant(FORWARD, (), False)
+        self.senses = SensorReadings(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
+        self.grant = GuardResult(FORWARD, (), False)
 
     def __enter__(self) -> Self:
         return self
@@ -53,7 +53,7 @@ class Drive:
         """What the runtime says of its robot."""
         return self.kurt2.health
 
-    def tick(self, wanted: WheelSpeeds = FORWARD) -> Grant:
+    def tick(self, wanted: WheelSpeeds = FORWARD) -> GuardResult:
         """The robot's cycle, then the runtime's."""
         # Where ticks follow each other without a pause, the kernel's own thread that delivers frames waits its turn.
         time.sleep(_PAUSE_S)
@@ -63,7 +63,7 @@ class Drive:
         self.grant = self.kurt2.drive(wanted, now_s, now_s)
         return self.grant
 
-    def ticks(self, count: int, wanted: WheelSpeeds = FORWARD) -> Grant:
+    def ticks(self, count: int, wanted: WheelSpeeds = FORWARD) -> GuardResult:
         """So many of them; the last one's grant."""
         for _ in range(count):
             self.tick(wanted)

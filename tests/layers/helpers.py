@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
@@ -27,7 +27,7 @@ class Counted:
         self.starts += 1
         self.steps = 0
 
-    def step(self, senses: Senses) -> WheelSpeeds:  # noqa: ARG002 - it looks at nothing
+    def step(self, senses: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - it looks at nothing
         self.steps += 1
         return WheelSpeeds(0.001 * self.steps, 0.001 * self.steps)
 
@@ -50,5 +50,5 @@ def situation(place: float) -> Situation:
     return Situation(np.array([place]), history_frozen=False)
 
 
-def sensed(*infrared_counts: int) -> Senses:
-    return Senses(0.0, infrared_counts, 0.0, 0, 0, 0.0, 0, 0.0)
+def sensed(*infrared_counts: int) -> SensorReadings:
+    return SensorReadings(0.0, infrared_counts, 0.0, 0, 0, 0.0, 0, 0.0)

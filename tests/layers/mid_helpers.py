@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.layers.mid_level import MidLevel
@@ -34,7 +34,7 @@ class Symbols:
         self.looked = 0
         self.befores: list[Decision] = []
 
-    def perceive(self, senses: Senses, before: Decision) -> bool:  # noqa: ARG002 - it looks at nothing
+    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - it looks at nothing
         self.befores.append(before)
         symbol, self.next = self.next, None
         self.passed = None if symbol is None else STRAIGHT

@@ -1,6 +1,6 @@
 """The teacher's own drive: the policy decides, with the same minimum time per action."""
 
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
@@ -17,7 +17,7 @@ class NearIsB:
 FAR, NEAR = sensed(100), sensed(500)
 
 
-def driven(level: PolicyLevel, senses: Senses, stand_because: Cause | None = None) -> Decision:
+def driven(level: PolicyLevel, senses: SensorReadings, stand_because: Cause | None = None) -> Decision:
     return level.decide(situation(0.0), senses, stand_because)
 
 

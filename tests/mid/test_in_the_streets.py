@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from behaviors.repertoire import load_repertoire
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from kurt2rt.experiments.courses.junctions import Junctions
 from kurt2rt.experiments.courses.streets import Junction, Side, StreetMap
@@ -39,7 +39,7 @@ class Drive:
         )
         self._period_s = robot.can.cycle_s
 
-    def ticks(self, duration_s: float) -> Iterator[Senses]:
+    def ticks(self, duration_s: float) -> Iterator[SensorReadings]:
         """What the robot senses, tick by tick."""
         for tick in range(round(duration_s / self._period_s)):
             now_s = tick * self._period_s

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from behaviors.repertoire import load_repertoire
-from hal.robot import STANDSTILL, Senses
+from hal.robot import STANDSTILL, SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.policy_level import PolicyLevel
@@ -139,7 +139,7 @@ def test_a_robot_that_was_just_switched_on_reckons_from_there() -> None:
     fresh = place()
     assert tuple(fresh.vector) == (0.0, 0.0, 1.0, 0.0, 0.5, 0.5)
     assert not fresh.lost
-    assert not fresh.perceive(Senses(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0), NOTHING)
+    assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0), NOTHING)
 
 
 def test_places_at_one_point_with_opposite_headings_are_two() -> None:

@@ -2,7 +2,7 @@
 
 import math
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
@@ -14,7 +14,9 @@ _STEP_M = 0.005
 _LEFT, _RIGHT = ("s1", "s3", "s4", "s2"), ("s5", "s7", "s8", "s6")
 
 
-def sensed(left_m: float, right_m: float, way_m: float = 0.0, turn_rad: float = 0.0, askew_rad: float = 0.0) -> Senses:
+def sensed(
+    left_m: float, right_m: float, way_m: float = 0.0, turn_rad: float = 0.0, askew_rad: float = 0.0
+) -> SensorReadings:
     """Senses of one tick; `askew_rad`: how far the robot looks to the left of where both walls lead."""
     sensors = {sensor.name: sensor for sensor in ROBOT.infrared.sensors}
     counts = dict.fromkeys(sensors, ROBOT.infrared.floor_counts)
@@ -24,7 +26,7 @@ def sensed(left_m: float, right_m: float, way_m: float = 0.0, turn_rad: float = 
             counts[name] = round(ROBOT.infrared.counts_at(seen_m))
     arc_m = turn_rad * ROBOT.geometry.effective_track_m / 2
     left_ticks, right_ticks = (round((way_m + side * arc_m) / ROBOT.geometry.metres_per_tick) for side in (-1.0, 1.0))
-    return Senses(0.0, tuple(counts.values()), 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)
+    return SensorReadings(0.0, tuple(counts.values()), 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)
 
 
 class Walk:

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from kurt2rt.perception.definition import SituationDefinition
 
 SENSORS = ("a", "b", "c", "d")
@@ -43,5 +43,5 @@ def definition(
     return SituationDefinition.model_validate_json(json.dumps(content))
 
 
-def sensed(*counts: int) -> Senses:
-    return Senses(0.0, counts, 0.0, 0, 0, 0.0, 0, 0.0)
+def sensed(*counts: int) -> SensorReadings:
+    return SensorReadings(0.0, counts, 0.0, 0, 0, 0.0, 0, 0.0)

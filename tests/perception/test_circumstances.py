@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.settings import SettingsError
 from kurt2rt.critic.settings import CriticSettings, load_critic
 from kurt2rt.perception.circumstances import CircumstancesPerception
@@ -21,17 +21,19 @@ FAR_M = ROBOT.infrared.far_m
 
 def senses(
     left_m_s: float = 0.0, right_m_s: float = 0.0, *, bumpers: int = 0, age_s: float = 0.0, **distances_m: float
-) -> Senses:
+) -> SensorReadings:
     """Of a tick in which the wheels turn at these speeds, with something at these distances from the named sensors."""
     left, right = (round(speed * 0.01 * TICKS_PER_M) for speed in (left_m_s, right_m_s))
-    return Senses(0.0, counts(0.7, **distances_m), age_s, left, right, 0.0, bumpers, 0.0)
+    return SensorReadings(0.0, counts(0.7, **distances_m), age_s, left, right, 0.0, bumpers, 0.0)
 
 
 def perception() -> CircumstancesPerception:
     return CircumstancesPerception(CRITIC, ROBOT)
 
 
-def after(seconds: float, of: CircumstancesPerception, sensed: Senses, *, driving: bool = True) -> AppraisalFeatures:
+def after(
+    seconds: float, of: CircumstancesPerception, sensed: SensorReadings, *, driving: bool = True
+) -> AppraisalFeatures:
     """AppraisalFeatures of the last tick of so many alike."""
     for _ in range(round(seconds * 100)):
         circumstances = of.perceive(sensed, driving=driving)
@@ -150,7 +152,7 @@ def test_a_robot_that_was_blind_begins_anew() -> None:
 
 
 def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
-    unborn = Senses(0.0, (0,) * 18, math.inf, 0, 0, math.inf, 0, math.inf)
+    unborn = SensorReadings(0.0, (0,) * 18, math.inf, 0, 0, math.inf, 0, math.inf)
     assert after(5.0, perception(), unborn) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
 
@@ -165,7 +167,7 @@ def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
 def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[list[int], int, int, bool]]) -> None:
     one, other = perception(), perception()
     for seen, left, right, driving in ticks:
-        sensed = Senses(0.0, tuple(seen), 0.0, left, right, 0.0, 0, 0.0)
+        sensed = SensorReadings(0.0, tuple(seen), 0.0, left, right, 0.0, 0, 0.0)
         here = one.perceive(sensed, driving=driving)
         assert here == other.perceive(sensed, driving=driving)
         assert all(map(math.isfinite, here))

@@ -7,7 +7,7 @@ import pytest
 
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, load_robot
-from hal.settings import SettingsError, find_config, kept_name, kept_settings
+from hal.settings import SettingsError, find_config, kept_name, settings_override
 from kurt2rt.expectations.expectation import Expectation
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.recording.attachments import (
@@ -53,7 +53,7 @@ def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_pat
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-    with kept_settings(tmp_path / "settings"):
+    with settings_override(tmp_path / "settings"):
         assert find_config("mid_levels", "places").is_relative_to(tmp_path)
         with pytest.raises(SettingsError, match="kept with the run"):
             find_config("worlds", "circle")
@@ -69,7 +69,7 @@ def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tm
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
     mine.unlink()
-    with kept_settings(tmp_path / "kept" / "settings"):
+    with settings_override(tmp_path / "kept" / "settings"):
         assert find_config("situations", str(mine)).is_file()
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from hal.robot import Grant, Senses, WheelSpeeds
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause
 from kurt2rt.mid.junction_event import JunctionEvent
@@ -34,7 +34,7 @@ text = some.text(some.characters(codec="utf-8"), max_size=8)
 maybe_id = some.none() | some.integers(1, 2**40)
 wheels = some.builds(WheelSpeeds, number, number)
 senses = some.builds(
-    Senses,
+    SensorReadings,
     number,
     some.lists(some.integers(0, 1023), max_size=18).map(tuple),
     number,
@@ -44,7 +44,7 @@ senses = some.builds(
     some.integers(0, 255),
     number,
 )
-grants = some.builds(Grant, wheels, some.lists(text, max_size=2).map(tuple), some.booleans())
+grants = some.builds(GuardResult, wheels, some.lists(text, max_size=2).map(tuple), some.booleans())
 matches = some.builds(MatchEntry, some.integers(1), number, number, some.booleans(), maybe_id, number)
 junctions = some.builds(JunctionEvent, some.integers(-1, 2), some.booleans(), some.booleans(), number, number)
 mids = some.builds(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from hal.bus import BusError, CanBus, open_bus
-from hal.bus_end import BusEnd
+from hal.can_interface import CanInterface
 from hal.control import Mode, SpeedControl, control_frame
 from hal.in_process_bus import QUEUE_FRAMES, InProcessBus
 from simbridge.simulated_robot import SimulatedRobot
@@ -28,7 +28,7 @@ class Adapter:
         self.control = self.notebook.control_port()
         self._end: InProcessBus
 
-    def _open(self, name: str) -> BusEnd:
+    def _open(self, name: str) -> CanInterface:
         self.tries += 1
         if not self.plugged_in:
             raise BusError(f"bus {name!r}: no such network interface")

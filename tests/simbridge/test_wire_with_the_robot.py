@@ -11,7 +11,7 @@ import yaml
 from config import CONFIG_DIR
 from hal.bus_state import ControllerState
 from hal.guard import BUS_BLOCKED, BUS_OFF, ENCODER_STALE
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.experiments.exam import examine
 from kurt2rt.simulated import SimulatedArena
 from kurt2rt.tasks.settings import load_task
@@ -38,7 +38,7 @@ class Drive:
         self.arena = arena
         self.ticks = 0
         self.senses = arena.robot.sense(0.0)
-        self.grant = Grant(STANDSTILL, (), latched=False)
+        self.grant = GuardResult(STANDSTILL, (), latched=False)
 
     @property
     def now_s(self) -> float:
@@ -48,7 +48,7 @@ class Drive:
         """How the notebook's controller says it is."""
         return self.arena.robot.health.controller
 
-    def until(self, time_s: float) -> list[Grant]:
+    def until(self, time_s: float) -> list[GuardResult]:
         """What was granted in each tick up to this time."""
         grants = []
         while self.now_s < time_s - TICK_S / 2:

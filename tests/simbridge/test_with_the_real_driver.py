@@ -7,7 +7,7 @@ import pytest
 
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from hal.robot_settings import SpeedMode, load_robot
 from simbridge.simulated_robot import SimulatedRobot
 from tests.simbridge.rig import facing_wall, room
@@ -29,7 +29,7 @@ def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
     far_end.shutdown()
 
 
-def drive(pair: Pair, wanted: WheelSpeeds, seconds: float) -> Senses:
+def drive(pair: Pair, wanted: WheelSpeeds, seconds: float) -> SensorReadings:
     kurt2, simulated = pair
     for _ in range(round(seconds / 0.01)):
         simulated.step()

@@ -8,7 +8,7 @@ from typing import cast
 import pytest
 
 from hal.guard import WHEELS_DISOBEY
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.person import Person
 from kurt2rt.teaching.commands import CommandResult, Resume
@@ -40,7 +40,7 @@ def drive(place: LongRunRig, person: Person, until_s: float, wanted: WheelSpeeds
         person.sees(seen(grant))
 
 
-def seen(grant: Grant, *commands: Resume) -> TickRecord:
+def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
     """A tick in which an RLA would drive, and in which these were carried out."""
     results = tuple(CommandResult(each.command_id, True, "") for each in commands)
     decision = SimpleNamespace(cause=Cause.RLA)
@@ -92,7 +92,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
 
 def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
     person = Person(place, PATIENCE_S, CYCLE_S)
-    again = Grant(STANDSTILL, (WHEELS_DISOBEY,), latched=True)
+    again = GuardResult(STANDSTILL, (WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")
 
     def ticks(count: int) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from hal.guard import BUS_BLOCKED
-from hal.robot import STANDSTILL, Grant, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.soak.clock import SoakClock
 from simbridge.faults.disturbance import TimedFault
@@ -24,7 +24,7 @@ def place() -> Iterator[LongRunRig]:
     place.close()
 
 
-def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -> Grant:
+def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -> GuardResult:
     """Ahead, tick by tick; the envelope sees what is put on the bus, and what arrives."""
     robot, time = place.robot, place.time
     assert robot is not None

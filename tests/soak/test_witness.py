@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.robot import Senses, WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt import tick
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
@@ -26,7 +26,7 @@ class Careless:
     def __init__(self, behind: Level) -> None:
         self._behind = behind
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         decision = self._behind.decide(situation, senses, stand_because)
         return decision._replace(wheel_speeds=WheelSpeeds(0.1, 0.1), action="forward")
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import STANDSTILL, Grant
+from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.rla import MID, Phase
@@ -43,7 +43,7 @@ def record(tick: int, verdict: int, cause: Cause = Cause.RLA) -> TickRecord:
     circumstances = AppraisalFeatures(*[0.0] * len(AppraisalFeatures._fields))._replace(left_m=float(verdict))
     decision = Decision(STANDSTILL, cause, "a" if driving else None, rla_id, None)
     situation = Situation(np.zeros(1), history_frozen=not driving)
-    grant = Grant(STANDSTILL, (), latched=False)
+    grant = GuardResult(STANDSTILL, (), latched=False)
     return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), circumstances=circumstances)
 
 

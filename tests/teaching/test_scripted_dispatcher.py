@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hal.robot import STANDSTILL, Grant
+from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.experiments.courses.course import WayAhead
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.mid.junction_event import JunctionEvent
@@ -36,7 +36,7 @@ def record(mid: MidDecision, *, drives: bool = True) -> TickRecord:
     asks_at = MID if mid.asks else BASIC
     decision = Decision(STANDSTILL, cause, "forward" if drives else None, None, None, asks_at=asks_at, mid=mid)
     situation = Situation(np.zeros(1), history_frozen=False)
-    return TickRecord(1, 0.01, sensed(100), situation, decision, Grant(STANDSTILL, (), latched=False), ())
+    return TickRecord(1, 0.01, sensed(100), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
 
 
 def wants(behaviour: str, *, event: JunctionEvent | None = None, overridden: bool = False) -> TickRecord:

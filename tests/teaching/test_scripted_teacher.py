@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hal.robot import STANDSTILL, Grant
+from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.match import Match
@@ -51,7 +51,7 @@ def record(
     match = None if action is None else Match(rla, 500.0 * share_of_radius, 500.0, None, math.inf)
     decision = Decision(STANDSTILL, cause, action, rla_id, match)
     situation = Situation(np.zeros(1), history_frozen=action is None)
-    return TickRecord(1, 0.01, sensed(count), situation, decision, Grant(STANDSTILL, (), latched=False), ())
+    return TickRecord(1, 0.01, sensed(count), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
 
 
 def asking(count: int = FAR) -> TickRecord:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.motor_primitive import MotorPrimitive
-from hal.robot import STANDSTILL, Grant, Senses, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Perception
@@ -43,11 +43,11 @@ class HandClock:
 class StandingRobot:
     """Senses the time and stands."""
 
-    def sense(self, now_s: float) -> Senses:
-        return Senses(now_s, (100,) * len(SENSORS), 0.0, 0, 0, 0.0, 0, 0.0)
+    def sense(self, now_s: float) -> SensorReadings:
+        return SensorReadings(now_s, (100,) * len(SENSORS), 0.0, 0, 0, 0.0, 0, 0.0)
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> Grant:  # noqa: ARG002 - it stands
-        return Grant(STANDSTILL, (), latched=False)
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - it stands
+        return GuardResult(STANDSTILL, (), latched=False)
 
     def emergency_stop(self, reason: str) -> None:
         raise AssertionError(reason)

@@ -1,10 +1,10 @@
 """A robot of which one infra-red sensor goes on telling what it told once."""
 
-from hal.robot import Robot, Senses
-from hal.robot_between import RobotBetween
+from hal.robot import Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
 
 
-class StuckSensor(RobotBetween):
+class StuckSensor(RobotProxy):
     """Another robot, its senses but for one."""
 
     def __init__(self, robot: Robot, sensor: int, from_s: float) -> None:
@@ -14,7 +14,7 @@ class StuckSensor(RobotBetween):
         self._from_s = from_s
         self._counts: int | None = None
 
-    def sense(self, now_s: float) -> Senses:
+    def sense(self, now_s: float) -> SensorReadings:
         """What the robot senses, and of the stuck sensor what it sensed when it got stuck."""
         senses = self._robot.sense(now_s)
         if now_s < self._from_s:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from hal.robot import STANDSTILL, Grant
+from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.experiments.courses.course import WayAhead
 from kurt2rt.experiments.courses.route import FixedRoute, Passage
 from kurt2rt.experiments.route.outcome import Layer
@@ -49,7 +49,7 @@ class Watched:
         cause = Cause.UNKNOWN if asks else Cause.RLA
         decision = Decision(STANDSTILL, cause, None, None, None, asks_at=MID if asks else BASIC, mid=decided)
         situation = Situation(np.zeros(1), history_frozen=False)
-        grant = Grant(STANDSTILL, (), latched=False)
+        grant = GuardResult(STANDSTILL, (), latched=False)
         record = TickRecord(self.tick, 0.01 * self.tick, sensed(100), situation, decision, grant, (), behaviour)
         self.watching.look(record, self.course)
 

@@ -14,7 +14,7 @@ from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
 from hal.guard import SLEW_LIMIT
 from hal.kurt2 import Kurt2
-from hal.robot import Senses
+from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.decision import Cause, Decision
@@ -35,7 +35,7 @@ class Hanging(PolicyLevel):
     hangs_at = 0
     decisions = 0
 
-    def decide(self, situation: Situation, senses: Senses, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         self.decisions += 1
         if self.decisions == self.hangs_at:
             print(json.dumps({"hangs_from_s": time.time()}), flush=True)

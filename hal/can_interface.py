@@ -5,7 +5,7 @@ from typing import Protocol
 import can
 
 
-class BusEnd(Protocol):
+class CanInterface(Protocol):
     """One end of a bus of some kind. Nothing here waits; errors are can.CanError, OSError or ValueError.
 
     A frame arrives once at every other end, in the order in which the bus carried it. Error frames of the bus are
