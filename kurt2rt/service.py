@@ -37,6 +37,7 @@ from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.systemd.heartbeat import Heartbeat
 from kurt2rt.systemd.notifier import Notifier
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.active_stop import NEXT_RUN, STARTED
 from kurt2rt.teaching.commands import Command
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import Clock
@@ -48,8 +49,6 @@ from kurt2rt.timing.timerfd import TimerfdClock
 from kurt2rt.upkeep import Upkeep
 
 _ENDS = "the service ends"
-_STARTED = "the robot program was started"
-_NEXT_RUN = "a new run was begun"
 _RECORDING_S = 2.0
 """For the disk to keep the end of the recording."""
 _JOURNAL_S = 10.0
@@ -124,12 +123,12 @@ async def serve(
         boot = secrets.token_bytes(BOOT_BYTES)
         measure = None if openness is None else openness.measure
         begin_with = () if openness is None else openness.begin_with
-        stopped_because = "" if not stopped else _NEXT_RUN if begin_with else _STARTED
+        stop = None if not stopped else NEXT_RUN if begin_with else STARTED
         circumstances = Circumstances(
             boot.hex(),
             str(path),
             openness is not None,
-            stopped_because,
+            stop,
             behaviour or "",
             tolerates_stalls=tolerates_stalls,
         )
@@ -150,8 +149,8 @@ async def serve(
                 saved=opened.saved,
                 tolerates_stalls=tolerates_stalls,
             )
-            if stopped:
-                runtime.school.stop(stopped_because)
+            if stop is not None:
+                runtime.school.stop(stop)
             for command in begin_with:
                 runtime.inbox.put(command)
             watch = HealthWatch(

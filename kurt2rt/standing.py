@@ -10,6 +10,7 @@ from hal import guard, watchdog
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import MID
+from kurt2rt.teaching.active_stop import ActiveStop
 
 
 class StandReason(StrEnum):
@@ -63,7 +64,9 @@ class Standing(NamedTuple):
     stall_s: float | None = None
     """For how long no tick ran before the second guard braked, where that is the reason; None else."""
     says: str = ""
-    """Details that the reason lacks: actor and kind of a stop, the goal's outcome, the disk's error."""
+    """Details that the reason lacks: the goal's outcome, the disk's error."""
+    stop: ActiveStop | None = None
+    """Actor and kind of the stop, of STOPPED only."""
 
 
 DRIVES = Standing()
@@ -99,18 +102,18 @@ _CAUSES = {
 }
 
 
-def standing_for(cause: str, asks_at: str, stopped_because: str, says: str = "") -> Standing:
+def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = "") -> Standing:
     """Return the standing of a robot that no guard holds, from why it decided to stand.
 
     Args:
         cause: a value of Cause; one that is not known here stands without a reason of its own.
         asks_at: the level that does not know its situation, where `cause` says that one does not.
-        stopped_because: why a teacher's stop, or something like it, holds; empty while none does.
+        stop: the one that holds until Go; None while none does.
         says: in words what came of the goal, or why lessons cannot be saved.
     """
     asks = cause in (Cause.UNKNOWN, Cause.TOUCHES)
-    if stopped_because:
-        return Standing(StandReason.STOPPED, True, asks, says=stopped_because)
+    if stop is not None:
+        return Standing(StandReason.STOPPED, True, asks, stop=stop)
     if cause == Cause.UNKNOWN:
         return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
     if cause == Cause.TOUCHES:
@@ -188,7 +191,7 @@ class StandingWatch:
         self._held_ticks = 0
 
     def update(
-        self, decision: Decision, grant: GuardResult, drove_at_s: float, stopped_because: str, trouble: str | None
+        self, decision: Decision, grant: GuardResult, drove_at_s: float, stop: ActiveStop | None, trouble: str | None
     ) -> Standing:
         """Return the standing after one tick.
 
@@ -196,7 +199,7 @@ class StandingWatch:
             decision: of the tick, as it is told.
             grant: what the guard let through.
             drove_at_s: when the guard was asked, on the runtime's clock.
-            stopped_because: why a teacher's stop, or something like it, holds; empty while none does.
+            stop: the one that holds until Go; None while none does.
             trouble: why lessons cannot be saved; None while they can.
         """
         if grant.latched and not self._latched:
@@ -212,7 +215,7 @@ class StandingWatch:
         if decision.driving:
             return DRIVES
         says = trouble if trouble is not None else "" if decision.plan is None else decision.plan.says
-        return standing_for(decision.cause, decision.asks_at, stopped_because, says)
+        return standing_for(decision.cause, decision.asks_at, stop, says)
 
     def _held_back(self, decision: Decision, grant: GuardResult) -> StandReason | None:
         """Return why the guard lets none of what was decided through, once it has for some ticks."""

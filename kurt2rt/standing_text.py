@@ -1,8 +1,10 @@
 """Standing in words: why the robot stands, and what to touch or to look at."""
 
+import re
 from typing import NamedTuple
 
 from kurt2rt.standing import Standing, StandReason
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 
 GO_ON_PAGE = "GO lets it drive on"
 GO_IN_TERMINAL = "Type go to let it drive on"
@@ -22,7 +24,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.FRONT_BUMPER: _Text("it touches something in front", "Drive it back"),
     StandReason.REAR_BUMPER: _Text("it touches something behind", "Drive it forward"),
     StandReason.BOTH_BUMPERS: _Text("it touches something in front and behind", "Set it free"),
-    StandReason.STOPPED: _Text("{says}"),
+    StandReason.STOPPED: _Text("{stop}"),
     StandReason.UNATTENDED: _Text("no teacher looks at it", "Take the robot"),
     StandReason.BLIND: _Text("its infra-red sensors are silent", "Check its power and CAN cable"),
     StandReason.UNSAVED: _Text("lessons cannot be saved", "Look at the disk"),
@@ -43,6 +45,21 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.NOT_A_NUMBER: _Text("what was decided is no speed", "Teach it another action here"),
 }
 
+_STOPS: dict[StopReason, str] = {
+    StopReason.SAID_STOP: "{name} said stop",
+    StopReason.LET_GO: "{name} drove by hand and let go",
+    StopReason.SESSION_OVER: "the session {name!r} is over",
+    StopReason.BEHAVIOUR_OVER: "{name} is over",
+    StopReason.NO_TEACHER: "no teacher is there",
+    StopReason.TEACHER_NOT_YET: "{name} is not there yet",
+    StopReason.LINK_LOST: "lost the link to {name}",
+    StopReason.STARTED: "the robot program was started",
+    StopReason.NEXT_RUN: "a new run was begun",
+    StopReason.GUARD: "the guard: {name}",
+    StopReason.OTHER: "{name}",
+}
+"""Sentences of stops, read by older devices and kept in recordings: in the order in which they are recognised."""
+
 _QUESTIONS = {
     StandReason.FRONT_BUMPER: "I touch something in front of me; what now?",
     StandReason.REAR_BUMPER: "I touch something behind me; what now?",
@@ -51,10 +68,31 @@ _QUESTIONS = {
 """Asked where an RLA goes on pushing."""
 
 
+def stop_text(stop: ActiveStop | None) -> str:
+    """Return the sentence of a stop; empty without one."""
+    return "" if stop is None else _STOPS[stop.reason].format(name=stop.name)
+
+
+def stop_of_text(text: str) -> ActiveStop | None:
+    """Return the stop of a sentence, as an older robot or a recording has it; None of an empty one.
+
+    A sentence that is not in the table becomes the name of an OTHER.
+    """
+    for reason, sentence in _STOPS.items():
+        before, name, after = re.split(r"({name(?:!r)?}|$)", sentence, maxsplit=1)
+        inner = text.removeprefix(before).removesuffix(after)
+        quoted = "!r" in name
+        if text and before + inner + after == text and bool(inner) == bool(name):
+            return ActiveStop(reason, inner[1:-1] if quoted else inner)
+    return None
+
+
 def why_it_stands(standing: Standing) -> str:
     """Return the reason in a few words, to go on from "stands: "; empty while the robot drives."""
     stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
-    return _TEXTS[standing.reason].why.format(says=standing.says or standing.reason, stall=stall)
+    return _TEXTS[standing.reason].why.format(
+        says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
+    )
 
 
 def what_it_asks(standing: Standing) -> str:

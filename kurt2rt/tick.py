@@ -241,10 +241,10 @@ class Tick:
             knowledge = self._school.living
             self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
         # A replay's clock stands still within a tick.
-        stopped_because = self._school.stopped_because
+        stop = self._school.stopped
         if asks:
             decision = standing(decision, Cause.TOUCHES)
-        stands = self._standing.update(decision, grant, max(now_s, drove_at_s), stopped_because, trouble)
+        stands = self._standing.update(decision, grant, max(now_s, drove_at_s), stop, trouble)
         mark(Stage.PUBLISH)
         return TickRecord(
             tick,
@@ -309,7 +309,7 @@ class Tick:
 
     def _reason_to_stand(self, tick: int, *, blind: bool) -> Cause | None:
         school = self._school
-        if school.stopped_because:
+        if school.stopped is not None:
             return Cause.STOPPED
         unable = self._unable(blind=blind)
         if unable is not None:

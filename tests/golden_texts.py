@@ -25,12 +25,15 @@ Listing = Callable[[], Iterable[tuple[str, str]]]
 SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "page": {
         "standing": standing.on_page,
+        "stops": standing.stops,
     },
     "terminal": {
         "standing": standing.in_terminal,
+        "stops": standing.stops,
     },
     "log": {
         "standing": standing.in_log,
+        "stops": standing.stops,
     },
 }
 """Listings by surface and title of their section."""

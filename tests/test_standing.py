@@ -17,7 +17,16 @@ from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.page.views import state_view
 from kurt2rt.rounds import Status
 from kurt2rt.standing import ASKS_AFTER_TICKS, DRIVES, HELD_TICKS, LATCHED, Standing, StandingWatch, StandReason
-from kurt2rt.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, why_it_stands
+from kurt2rt.standing_text import (
+    GO_IN_TERMINAL,
+    GO_ON_PAGE,
+    headline_of,
+    in_short,
+    stop_of_text,
+    stop_text,
+    why_it_stands,
+)
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.commands import Stop, Teach, Watch
 from kurt2rt.teaching.link import Link
 from kurt2rt.teaching.scripted_lesson import picture_in
@@ -32,6 +41,9 @@ LATCHES = [
     for name, value in vars(guard).items()
     if name.isupper() and not name.startswith("_") and isinstance(value, str) and value in LATCHED
 ]
+
+
+UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)
 
 
 class LatchingDesk(Desk):
@@ -126,9 +138,9 @@ def test_a_teachers_stop_waits_for_go() -> None:
 def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     desk = LatchingDesk()
     desk.runtime.school.authority.attended = True
-    desk.runtime.school.stopped_because = ""
+    desk.runtime.school.stopped = None
     desk.run()
-    desk.runtime.school.stopped_because = ""  # that it lost its teacher on the way is another story
+    desk.runtime.school.stopped = None  # that it lost its teacher on the way is another story
     desk.run()
     assert desk.record.standing == Standing(StandReason.UNATTENDED)
     assert page_of(desk.picture) == "Stands: no teacher looks at it. Take the robot"
@@ -140,7 +152,7 @@ def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
 @pytest.mark.parametrize("reason", list(StandReason))
 def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReason) -> None:
     for needs_go in (False, True):
-        standing = Standing(reason, needs_go, says="Ann said stop")
+        standing = Standing(reason, needs_go, stop=ActiveStop(StopReason.SAID_STOP, "Ann"))
         text = headline_of(standing, GO_ON_PAGE)
         assert "{" not in text
         assert len(text) < 100
@@ -159,26 +171,51 @@ def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:
 def test_one_late_tick_is_no_standing_and_many_are() -> None:
     watch = StandingWatch()
     late = GuardResult(STANDSTILL, (guard.COMMAND_TOO_OLD,), latched=False)
-    told = [watch.update(BY_RLA, late, 0.01 * tick, "", None).reason for tick in range(HELD_TICKS + 1)]
+    told = [watch.update(BY_RLA, late, 0.01 * tick, None, None).reason for tick in range(HELD_TICKS + 1)]
     assert told == [*[StandReason.DRIVES] * HELD_TICKS, StandReason.LATE]
-    assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, "", None) == DRIVES
-    assert watch.update(BY_RLA, late, 0.21, "", None) == DRIVES
+    assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, None, None) == DRIVES
+    assert watch.update(BY_RLA, late, 0.21, None, None) == DRIVES
 
 
 def test_a_question_waits_while_the_guard_has_latched() -> None:
-    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (guard.BUS_LOST,), latched=True), 0.0, "", None)
+    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (guard.BUS_LOST,), latched=True), 0.0, None, None)
     assert told == Standing(StandReason.BUS_LOST, True, True)
 
 
 def test_an_older_robots_picture_is_read_and_told_from_its_cause() -> None:
-    picture = state(cause="rla", action="forward", rla=3, stopped_because="the guard: wheels disobey")
+    picture = state(cause="rla", action="forward", rla=3, stopped=ActiveStop(StopReason.GUARD, "wheels disobey"))
     old = cbor2.loads(encode_state(picture))
-    del old["sd"]
+    assert old["st"] == stop_text(picture.stopped)
+    del old["sd"], old["sr"]
     read = decode_state(cbor2.dumps(old))
     assert read.standing is None
-    assert read.stands == Standing(StandReason.STOPPED, True, says="the guard: wheels disobey")
-    assert replace(read, stopped_because="").stands == DRIVES
+    assert read.stands == Standing(StandReason.STOPPED, True, stop=picture.stopped)
+    assert replace(read, stopped=None).stands == DRIVES
     assert replace(read, by_hand=True).stands == DRIVES
+
+
+@pytest.mark.parametrize("reason", list(StopReason))
+def test_stop_of_text_any_reason_round_trips(reason: StopReason) -> None:
+    stop = ActiveStop(reason, "" if reason in (StopReason.NO_TEACHER, *UNNAMED) else "Ann B's 2nd")
+    assert stop_of_text(stop_text(stop)) == stop
+
+
+def test_stop_of_text_empty_is_none() -> None:
+    assert stop_of_text("") is None
+
+
+def test_decode_state_stop_of_newer_robot_is_other() -> None:
+    newer = cbor2.loads(encode_state(state(stopped=ActiveStop(StopReason.STARTED))))
+    newer["st"], newer["sr"] = "its battery is empty", ["battery empty", "12 V"]
+    assert decode_state(cbor2.dumps(newer)).stopped == ActiveStop(StopReason.OTHER, "its battery is empty")
+
+
+def test_decode_state_stands_stopped_keeps_the_code() -> None:
+    stop = ActiveStop(StopReason.LINK_LOST, "Ann")
+    stands = Standing(StandReason.STOPPED, True, stop=stop)
+    told = encode_state(state(stopped=stop, standing=stands))
+    assert cbor2.loads(told)["sd"] == ["stopped", True, False, None, stop_text(stop)]
+    assert decode_state(told).stands == stands
 
 
 def test_a_newer_robots_reason_stands_in_its_own_words() -> None:

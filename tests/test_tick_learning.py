@@ -10,6 +10,7 @@ from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import CRITIC, ActionWithdrawn, Appraised, Origin, Phase, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -167,7 +168,7 @@ def test_in_phase_five_a_critic_that_is_not_trusted_changes_nothing(driving: Dri
 
 def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> None:
     drive = trusting(driving)
-    drive.runtime.school.stop("the test said so")
+    drive.runtime.school.stop(STARTED)
     drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     for number in range(300):
         record = drive.run(Reward(f"r-{number}", "Ann", (-1, 1)[number % 2]), counts=(NEAR, FAR)[number // 150])

@@ -82,7 +82,7 @@ async def measure_load(subject: Subject, folder: Path, shifts: Shifts, on_progre
     async with open_robot(subject, folder) as robot, partner("kurt2rt.bench.device", *robot.address) as device:
         # It drives in the same way whoever is there.
         robot.runtime.school.phase = Phase.AUTONOMOUS
-        robot.runtime.school.stopped_because = ""
+        robot.runtime.school.stopped = None
         period_s = robot.runtime.robot.can.cycle_s
         for number in range(shifts.rounds):
             robot.pace.shift(period_s / shifts.rounds)

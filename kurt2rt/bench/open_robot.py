@@ -23,6 +23,7 @@ from kurt2rt.knowledge.writer import JournalWriter
 from kurt2rt.rounds import Rounds, Screen
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service_settings import load_service
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.quiet_gc import quiet_gc
 from kurt2rt.timing.timerfd import TimerfdClock
@@ -110,7 +111,7 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
             runtime = build_runtime(
                 witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
             )
-            runtime.school.stop("the benchmark begins")
+            runtime.school.stop(STARTED)
             stamps: dict[str, str] = {}
             safekeeping = Safekeeping(
                 unsaved=lambda: writer.unwritten,

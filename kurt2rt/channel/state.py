@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.standing import DRIVES, Standing, standing_for
+from kurt2rt.teaching.active_stop import ActiveStop
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
@@ -105,8 +106,8 @@ class State:
     """Who teaches; None while nobody does."""
     by_hand: bool
     """Whether that one drives by hand or runs a behaviour just now."""
-    stopped_because: str
-    """Empty while nobody stopped the robot."""
+    stopped: ActiveStop | None
+    """The stop that holds until Go; None while none does."""
     rlas: int
     lessons: int
     """Lessons that stand, rewards among them."""
@@ -168,6 +169,6 @@ class State:
         """Whether the robot drives, and if not why."""
         if self.standing is not None:
             return self.standing
-        if self.action is not None and (self.by_hand or not self.stopped_because):
+        if self.action is not None and (self.by_hand or self.stopped is None):
             return DRIVES
-        return standing_for(self.cause, self.asks_at, self.stopped_because, self.plan_says or self.trouble)
+        return standing_for(self.cause, self.asks_at, self.stopped, self.plan_says or self.trouble)

@@ -10,6 +10,7 @@ from kurt2rt.health.report import SENSORS, HealthReport
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import ASK, BASIC, Rla
 from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.question import FeatureDifference, ask
 from kurt2rt.tick import TickRecord
 
@@ -89,7 +90,7 @@ class Telling:
             question=question,
             teacher=school.authority.teacher,
             by_hand=school.authority.is_manual(record.tick),
-            stopped_because=school.stopped_because or _latched(record),
+            stopped=school.stopped or _latched(record),
             rlas=len(system),
             lessons=system.standing_lessons,
             unsaved=self._safekeeping.unsaved(),
@@ -152,6 +153,6 @@ class Telling:
         return max(0, least - agreement.heard_of(-1)), max(0, least - agreement.heard_of(1))
 
 
-def _latched(record: TickRecord) -> str:
-    """Why the guard keeps the robot stopped, in words for the teacher who has to resume; empty while it does not."""
-    return f"the guard: {', '.join(record.grant.reasons)}" if record.grant.latched else ""
+def _latched(record: TickRecord) -> ActiveStop | None:
+    """Return the guard's stop, for the teacher who has to resume; None while the guard lets the robot drive."""
+    return ActiveStop(StopReason.GUARD, ", ".join(record.grant.reasons)) if record.grant.latched else None

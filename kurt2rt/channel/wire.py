@@ -25,6 +25,8 @@ from kurt2rt.channel.schema import (
 from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
 from kurt2rt.rla.rla import BASIC, MID
 from kurt2rt.standing import Standing, StandReason
+from kurt2rt.standing_text import stop_of_text, stop_text
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
 from kurt2rt.teaching.question import FeatureDifference
 
@@ -115,7 +117,6 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("ta", "taught_at", _NAME),
     ("who", "teacher", OrNone(_NAME)),
     ("hand", "by_hand", Flag()),
-    ("st", "stopped_because", _LINE),
     ("nr", "rlas", _NUMBER),
     ("nl", "lessons", _NUMBER),
     ("un", "unsaved", _NUMBER),
@@ -165,6 +166,8 @@ _PROGRESS = (Whole(0, WINDOW_S), OrNone(Whole(0, 100)), _NUMBER)
 """The fields of Progress."""
 _STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing."""
+_STOP = (_NAME, _LINE)
+"""The fields of ActiveStop."""
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -183,7 +186,13 @@ def encode_state(state: State) -> bytes:
     picture["su"] = _row(state.surprise, _SURPRISE)
     picture["pg"] = _row(state.progress, _PROGRESS)
     picture["nv"] = state.nearest_value
-    picture["sd"] = _row(state.standing, _STANDING)
+    standing = state.standing
+    # An older device tells the stop by its sentence.
+    picture["st"] = _tidied(stop_text(state.stopped), _LINE)
+    picture["sr"] = _row(state.stopped, _STOP)
+    if standing is not None and standing.stop is not None:
+        standing = standing._replace(says=stop_text(standing.stop))
+    picture["sd"] = None if standing is None else _row(standing[:-1], _STANDING)
     return encode_plainly(picture)
 
 
@@ -205,6 +214,8 @@ def decode_state(payload: bytes) -> State:
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
     nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
+    sentence = _LINE("stop", _take(picture, "st"))
+    stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
     return State(
         left_m_s=left_m_s,
         right_m_s=right_m_s,
@@ -214,20 +225,32 @@ def decode_state(payload: bytes) -> State:
         surprise=None if surprise is None else SurpriseState(*surprise),
         nearest_value=nearest_value,
         progress=NO_PROGRESS if progress is None else Progress(*progress),
-        standing=None if standing is None else _standing(*standing),
+        stopped=stopped,
+        standing=None if standing is None else _standing(*standing, stopped=stopped),
         **values,
     )
 
 
-def _row(value: MidState | SurpriseState | Progress | Standing | None, checks: tuple[Check, ...]) -> list[Any] | None:
+def _row(value: MidState | SurpriseState | Progress | tuple[Any, ...] | None, checks: tuple[Check, ...]) -> Any:
     if value is None:
         return None
-    names = value._fields if isinstance(value, Standing) else [each.name for each in fields(value)]
-    return [_tidied(getattr(value, name), check) for name, check in zip(names, checks, strict=True)]
+    values = value if isinstance(value, tuple) else [getattr(value, each.name) for each in fields(value)]
+    return [_tidied(each, check) for each, check in zip(values, checks, strict=True)]
 
 
-def _standing(reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str) -> Standing:
+def _stop(told: tuple[str, str] | None, sentence: str) -> ActiveStop | None:
+    """Return the stop that was told; by its sentence if the robot is older, or has reasons that are not known here."""
+    if told is not None and told[0] in StopReason.__members__.values():
+        return ActiveStop(StopReason(told[0]), told[1])
+    return stop_of_text(sentence)
+
+
+def _standing(
+    reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str, *, stopped: ActiveStop | None
+) -> Standing:
     """Return the standing that was told; a newer robot may have reasons that are not known here."""
+    if reason == StandReason.STOPPED and stopped is not None:
+        return Standing(StandReason.STOPPED, needs_go, asks, stall_s, stop=stopped)
     if reason in StandReason.__members__.values():
         return Standing(StandReason(reason), needs_go, asks, stall_s, says)
     return Standing(StandReason.HALTED, needs_go, asks, stall_s, says or reason)

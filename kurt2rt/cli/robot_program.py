@@ -452,7 +452,7 @@ class RobotProgram:
             return
         # A log is read by the day: what changes stands there, the rest is the unit's status.
         self._upkeep.notifier.status(line)
-        stands = [doing(status)] if status.runtime.school.stopped_because else []
+        stands = [doing(status)] if status.runtime.school.stopped else []
         told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
         self._tell_alarm(told, None if stands else "red")
 

@@ -7,7 +7,7 @@ from kurt2rt.explain.sentences import far, who
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
 from kurt2rt.standing import DRIVES, Standing, StandReason, standing_latched, touched
-from kurt2rt.standing_text import in_short, why_it_stands
+from kurt2rt.standing_text import in_short, stop_text, why_it_stands
 
 _STANDS = {
     Cause.BLIND: "it sees nothing",
@@ -78,7 +78,7 @@ def _stands(facts: DecisionFacts) -> str:
             age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
             return f"The infra-red readings {age}: there is no situation to decide on, nor to ask about."
         case Cause.STOPPED:
-            return f"The robot was stopped: {facts.stopped_because or 'a teacher said so'}. It waits for Go."
+            return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
         case Cause.UNATTENDED:
             return "The robot knows what to do, but drives only while a teacher is there, and none is."
         case Cause.UNSAVED:

@@ -54,7 +54,7 @@ def facts_of(
         granted=record.grant.wheel_speeds,
         reasons=record.grant.reasons,
         latched=record.grant.latched,
-        stopped_because=school.stopped_because,
+        stopped=school.stopped,
         trouble=record.trouble or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.senses.infrared_counts,

@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 
 from hal.robot import WheelSpeeds
+from kurt2rt.standing_text import stop_text
+from kurt2rt.teaching.active_stop import ActiveStop
 
 MOST_OTHERS = 12
 """RLAs of a level that are sent in addition to the nearest: the next nearest."""
@@ -137,8 +139,8 @@ class DecisionFacts:
     """Why the guard changed what was decided."""
     latched: bool
     """Whether the guard kept the robot stopped."""
-    stopped_because: str
-    """Why a teacher's stop, or something like it, held; empty where none did."""
+    stopped: ActiveStop | None
+    """The stop that held until Go; None where none did."""
     trouble: str
     """Why lessons could not be saved; empty where they could."""
     teacher: str
@@ -160,3 +162,8 @@ class DecisionFacts:
     """Whether something was taught in the very tick: of what was seen then, or of what was decided."""
     hindrances: tuple[str, ...] = ()
     """Why it would have stood whatever it knew, but for a stop and its teacher's hand: values of Cause."""
+
+    @property
+    def stopped_because(self) -> str:
+        """Sentence of the stop, as older devices read it; empty without one."""
+        return stop_text(self.stopped)

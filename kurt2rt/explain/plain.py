@@ -4,10 +4,12 @@ import math
 from typing import Any
 
 from hal.robot import WheelSpeeds
-from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
+from kurt2rt.channel.maps import COUNT, LINE, NAME, Form, MapOf, MayLack, OrNotFinite
 from kurt2rt.channel.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Whole
 from kurt2rt.explain.facts import MOST_OTHERS, Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.layers.decision import Cause
+from kurt2rt.standing_text import stop_of_text
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 
 _MOST_ACTS = 32
 _MOST_FEATURES = 512
@@ -53,8 +55,24 @@ _LEVEL = MapOf(
 )
 
 
-def _facts(decided: tuple[float, float], granted: tuple[float, float], **others: Any) -> DecisionFacts:
-    return DecisionFacts(decided=WheelSpeeds(*decided), granted=WheelSpeeds(*granted), **others)
+def _stop(reason: str, name: str) -> ActiveStop | None:
+    """Return the stop that was told; None if its reason is one of a newer robot."""
+    return ActiveStop(StopReason(reason), name) if reason in StopReason.__members__.values() else None
+
+
+def _facts(
+    decided: tuple[float, float],
+    granted: tuple[float, float],
+    stopped_because: str,
+    stopped: ActiveStop | None = None,
+    **others: Any,
+) -> DecisionFacts:
+    return DecisionFacts(
+        decided=WheelSpeeds(*decided),
+        granted=WheelSpeeds(*granted),
+        stopped=stopped or stop_of_text(stopped_because),
+        **others,
+    )
 
 
 _FACTS = MapOf(
@@ -72,6 +90,7 @@ _FACTS = MapOf(
     reasons=ManyOf(NAME, most=16),
     latched=Flag(),
     stopped_because=LINE,
+    stopped=MayLack(OrNone(MapOf(_stop, reason=NAME, name=LINE))),
     trouble=LINE,
     teacher=NAME,
     infrared_counts=ManyOf(COUNT, most=64),

@@ -6,6 +6,7 @@ from kurt2rt.faults.hand_link import HandLink
 from kurt2rt.faults.place import Place
 from kurt2rt.faults.table import FaultCase, FaultTable
 from kurt2rt.runtime import Runtime
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Command, ReplaceAction, Resume, Stop, Teach
 from kurt2rt.tick import TickRecord
 
@@ -54,7 +55,7 @@ class Script:
     def begin_anew(self, runtime: Runtime) -> None:
         """The program was started anew; it stands, and is told to drive."""
         self._runtime, self._link = runtime, None
-        runtime.school.stop("the robot program was started")
+        runtime.school.stop(STARTED)
         self.say_resume()
 
     def say_resume(self) -> None:

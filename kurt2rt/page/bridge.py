@@ -327,9 +327,7 @@ class Bridge:
 
     async def _follow_pictures(self) -> None:
         async for state in self._robot.states():
-            if state.stopped_because and (
-                self._newest is None or state.stopped_because != self._newest.stopped_because
-            ):
+            if state.stopped is not None and (self._newest is None or state.stopped != self._newest.stopped):
                 self._stopped_s = self._now()
             self._newest = state
             self._look()

@@ -53,7 +53,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str, words: Sens
         "question": [_difference(each, words) for each in state.question],
         "teacher": state.teacher,
         "by_hand": state.by_hand,
-        "stopped_because": state.stopped_because,
+        "stopped": None if state.stopped is None else state.stopped.reason,
         "rlas": state.rlas,
         "lessons": state.lessons,
         "unsaved": state.unsaved,

@@ -16,7 +16,9 @@ from kurt2rt.recording.run_files import Budget
 from kurt2rt.recording.run_folder import run_name
 from kurt2rt.recording.run_head import RunHead
 from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
+from kurt2rt.standing_text import stop_text
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.active_stop import ActiveStop
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +30,8 @@ class Circumstances:
     knowledge: str
     """File that is taught into, also as seen from the working folder; empty where there is none."""
     attended: bool
-    stopped: str = ""
-    """Why the robot stands until it is told to resume; empty where it does not."""
+    stopped: ActiveStop | None = None
+    """The stop that holds until the robot is told to resume; None if none does."""
     behaviour: str = ""
     """The taught behaviour that is wanted at first."""
     asked: bool = True
@@ -79,7 +81,7 @@ class Recording:
             knowledge=str(Path(circumstances.knowledge).resolve()) if circumstances.knowledge else "",
             attended=circumstances.attended,
             asked=circumstances.asked,
-            stopped=circumstances.stopped,
+            stopped=stop_text(circumstances.stopped),
             behaviour=circumstances.behaviour,
             fingerprints=fingerprints_of(attachments),
             tolerates_stalls=circumstances.tolerates_stalls,

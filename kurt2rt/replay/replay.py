@@ -14,6 +14,7 @@ from kurt2rt.replay.surroundings import Replayed
 from kurt2rt.rla.rla_system import InvalidEventError
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.standing_text import stop_of_text
 from kurt2rt.tick import TickRecord
 
 
@@ -77,8 +78,9 @@ class Replay:
             raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error
         except ValueError as error:
             raise RecordingError(f"{run.name}: cannot be replayed: {error}") from error
-        if head.stopped:
-            runtime.school.stop(head.stopped)
+        stop = stop_of_text(head.stopped)
+        if stop is not None:
+            runtime.school.stop(stop)
         return runtime
 
 

@@ -22,6 +22,7 @@ from kurt2rt.soak.place import SoakPlace
 from kurt2rt.soak.teacher import NAME, SoakTeacher
 from kurt2rt.soak.witness import SoakWitness
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Command, ReplaceAction, Take
 from kurt2rt.teaching.hand import BEAT_S
 from kurt2rt.teaching.inbox import InboxFullError
@@ -29,7 +30,6 @@ from kurt2rt.tick import TickRecord
 from kurt2rt.timing.quiet_gc import quiet_gc
 
 _READY_AFTER_S = 3.0
-_STARTED = "the robot program was started"
 _FIRST_DAY = datetime(2000, 1, 1, tzinfo=UTC)
 """When simulated time begins, in the names of recordings."""
 _WRITES_EVERY_TICKS = 10
@@ -94,9 +94,9 @@ class Life:
             saved=opened.saved,
         )
         self.level.behind = self.runtime.level
-        self.runtime.school.stop(_STARTED)
+        self.runtime.school.stop(STARTED)
         screen = Screen(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
-        circumstances = Circumstances(f"{number:016x}", service.knowledge, attended=True, stopped=_STARTED)
+        circumstances = Circumstances(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
         started = _FIRST_DAY + timedelta(seconds=place.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
         self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)

@@ -3,6 +3,7 @@
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.commands import Drive
 
 _BY_HAND = "by hand"
@@ -87,11 +88,12 @@ class Authority:
         return command.hold <= ended or command.hold < newest
 
     @property
-    def why_absent(self) -> str:
-        """Why nobody is there, in words."""
+    def absence(self) -> ActiveStop:
+        """Stop of a robot that drove and whose teacher is not present."""
         if self.teacher is None:
-            return "no teacher is there"
-        return f"lost the link to {self.teacher}" if self._there_until >= 0 else f"{self.teacher} is not there yet"
+            return ActiveStop(StopReason.NO_TEACHER)
+        reason = StopReason.LINK_LOST if self._there_until >= 0 else StopReason.TEACHER_NOT_YET
+        return ActiveStop(reason, self.teacher)
 
     def drive(self, command: Drive, tick: int) -> None:
         """Take or keep the wheels; for the teacher, with a press that is not over."""

@@ -76,4 +76,4 @@ def _is_to_drive(state: State) -> bool:
     What a guard has stopped goes on as soon as it is told to, and may not come away.
     """
     alone = state.cause == Cause.UNKNOWN and state.phase == Phase.AUTONOMOUS
-    return state.action is not None or state.cause == Cause.TOUCHES or bool(state.stopped_because) or alone
+    return state.action is not None or state.cause == Cause.TOUCHES or state.stopped is not None or alone

@@ -12,6 +12,7 @@ from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.rla.rla import BASIC, CRITIC, MID, Origin, Phase, Rla, TeachingEvent
 from kurt2rt.rla.rla_system import InvalidEventError
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
@@ -104,8 +105,8 @@ class School:
             self_teaching=self_teaching,
         )
         self.phase = Phase.SUPERVISED
-        self.stopped_because = ""
-        """Empty while nobody stopped the robot."""
+        self.stopped: ActiveStop | None = None
+        """The stop that holds until `Resume`; None while none does."""
         self._stopped_by: set[str] = set()
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
@@ -126,13 +127,13 @@ class School:
         """How often a teacher has corrected a level."""
         return self._tuition.corrections_at[level]
 
-    def stop(self, because: str, by: str | None = None) -> None:
+    def stop(self, stop: ActiveStop, by: str | None = None) -> None:
         """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
 
         Stopped by two, neither may: a late copy of one's stop must not lift the other's.
         """
         self.authority.end_hand()
-        self.stopped_because = because
+        self.stopped = stop
         if by is not None:
             self._stopped_by.add(by)
 
@@ -157,8 +158,8 @@ class School:
         """
         self._level.nobody_is_asked = not self.asked or self.phase is Phase.AUTONOMOUS
         authority = self.authority
-        if was_driving and not self.stopped_because and self.needs_a_teacher and not authority.present(tick):
-            self.stop(authority.why_absent)
+        if was_driving and self.stopped is None and self.needs_a_teacher and not authority.present(tick):
+            self.stop(authority.absence)
 
     @property
     def needs_a_teacher(self) -> bool:
@@ -179,7 +180,7 @@ class School:
         authority.claim(command.teacher)
         authority.drive(command, tick)
         # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
-        self.stopped_because = _let_go(command.teacher)
+        self.stopped = ActiveStop(StopReason.LET_GO, command.teacher)
         self._stopped_by = {command.teacher}
         return None
 
@@ -251,7 +252,7 @@ class School:
                 return "nobody teaches now" if to is None else f"{to} teaches now", None
             case Resume():
                 refuse(self.stopped_since(command.seen_tick))
-                self.stopped_because = ""
+                self.stopped = None
                 self._stopped_by.clear()
                 self._stops_since_go.clear()
                 authority.end_hand()
@@ -287,9 +288,8 @@ class School:
         if command.command_id not in self._stops_since_go:
             self._stops_since_go.append(command.command_id)
             self.stopped_at_tick = tick
-        self.stop(
-            _let_go(command.teacher) if command.hold is not None else f"{command.teacher} said stop", command.teacher
-        )
+        reason = StopReason.SAID_STOP if command.hold is None else StopReason.LET_GO
+        self.stop(ActiveStop(reason, command.teacher), command.teacher)
         return "the robot stands until it is told to resume"
 
     def _errands_of(self, command: ErrandCommand) -> Errands:
@@ -307,7 +307,7 @@ class School:
         refuse(self.stopped_since(command.seen_tick) or self._stopped_by_another(command.teacher))
         if not self.authority.present(tick):
             raise RefusedError("a behaviour runs only while its teacher is there and watches")
-        self.stop(f"{command.action} is over", command.teacher)
+        self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
         self.authority.run(command.action, tick, command.ticks)
         return f"{command.action} for {command.ticks} ticks"
 
@@ -316,7 +316,7 @@ class School:
         taken = self._clock.take(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
             # A reason that is there already stays: the end of a session must not hide that somebody said stop.
-            self.stop(self.stopped_because or f"the session {name!r} is over", command.teacher)
+            self.stop(self.stopped or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
         return taken
 
     def _stopped_by_another(self, teacher: str) -> str | None:
@@ -331,7 +331,3 @@ class School:
 def _no_person(name: str) -> str | None:
     """Why nobody of this name teaches: the journal would take what he says for what the critic does."""
     return f"{name} is the name of the robot's own critic; teach under another one" if name == CRITIC else None
-
-
-def _let_go(teacher: str) -> str:
-    return f"{teacher} drove by hand and let go"

@@ -10,7 +10,9 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.channel.state import State
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
+from kurt2rt.standing_text import stop_text
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teaching.client import TeacherClient
 from kurt2rt.teaching.commands import Command, Correct, DeleteRla, Teach
@@ -20,12 +22,8 @@ from kurt2rt.teaching.scripted_teacher import Picture, share_of_radius, teacher_
 
 Say = Callable[[str], None]
 
-_STOPPED_ITSELF = ("the guard", "lost the link")
-"""Reasons that a simulated robot may be told to go on after, unlike a person's stop."""
 _STOPPED = "stopped"
 _AGAIN_S = 0.2
-_SESSION_OVER = "the session "
-"""So begins the reason that the end of the lesson itself gives."""
 
 
 async def teach_by_script(
@@ -75,7 +73,7 @@ async def teach_by_script(
             )
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
         await _go_on(robot, state)
-        await leading.see(state, stopped=bool(_stopped_by_a_person(robot, state)))
+        await leading.see(state, stopped=_stopped_by_a_person(robot, state) is not None)
         command = teacher.watch(picture_in(state), state.tick - before)
         before = state.tick
         if command is not None:
@@ -87,8 +85,8 @@ async def teach_by_script(
             return
         if leading.plan:
             await _go_on(robot, state)  # where it has been set down it has to be told to
-        stays = state.stopped_because.startswith(_SESSION_OVER) or bool(_stopped_by_a_person(robot, state))
-        await leading.see(state, stopped=stays)
+        over = state.stopped is not None and state.stopped.reason is StopReason.SESSION_OVER
+        await leading.see(state, stopped=over or _stopped_by_a_person(robot, state) is not None)
 
 
 def two_levels(task: TaskSettings) -> str:
@@ -120,15 +118,16 @@ def _nobody_sets_it_down(task: TaskSettings) -> str:
 
 async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
     # Looked at before the session ends: its end gives the robot another reason to stand.
-    stopped = _stopped_by_a_person(robot, await _picture(robot, 0))
+    stop = _stopped_by_a_person(robot, await _picture(robot, 0))
     ended = await _must(robot, robot.end_session, lambda state: state.session is None)
-    stopped = stopped or _stopped_by_a_person(robot, await _picture(robot, ended.tick))
+    stop = stop or _stopped_by_a_person(robot, await _picture(robot, ended.tick))
+    stopped = "" if stop is None else stop_text(stop)
 
     async def unless_stopped(give: Callable[[], Awaitable[Answer]]) -> Answer:
         state = await _picture(robot, 0)
         # Nothing is awaited between this look and the saying: the robot refuses it if it is stopped after this picture.
         because = _stopped_by_a_person(robot, state)
-        return Answer(False, _STOPPED, because, state.tick) if because else await give()
+        return Answer(False, _STOPPED, stop_text(because), state.tick) if because is not None else await give()
 
     if not stopped:
         say("now the robot drives alone (phase 5)")
@@ -147,15 +146,17 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
 
 async def _go_on(robot: TeacherClient, state: State) -> None:
     """Tell a robot that stopped itself to go on."""
-    if state.stopped_because.startswith(_STOPPED_ITSELF):
+    if state.stopped is not None and state.stopped.lifts_itself:
         with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
             await robot.resume()
 
 
-def _stopped_by_a_person(robot: TeacherClient, state: State) -> str:
-    """Why the robot stands since somebody said so; empty where this teacher, the guard or the link is the reason."""
-    own = (*_STOPPED_ITSELF, _SESSION_OVER, f"{robot.name} ")
-    return "" if state.stopped_because.startswith(own) else state.stopped_because
+def _stopped_by_a_person(robot: TeacherClient, state: State) -> ActiveStop | None:
+    """Return the stop that holds; None if this teacher, the end of its session, the guard or the link is the reason."""
+    stop = state.stopped
+    if stop is None or stop.lifts_itself or stop.reason is StopReason.SESSION_OVER or stop.teacher == robot.name:
+        return None
+    return stop
 
 
 async def _picture(robot: TeacherClient, tick: int) -> State:

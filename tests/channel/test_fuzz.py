@@ -26,6 +26,7 @@ from kurt2rt.channel.requests import (
 )
 from kurt2rt.channel.wire import encode_request
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import ActiveStop
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.mischief import Mischief
 from tests.channel.robot_at_work import PERIOD_S, RobotAtWork, journal_of, robot_at_work
@@ -61,7 +62,7 @@ class Effects:
 
     teacher: str | None
     phase: int
-    stopped_because: str
+    stopped: ActiveStop | None
     session: str | None
     rlas: int
     lessons: int
@@ -74,7 +75,7 @@ def effects(at_work: RobotAtWork) -> Effects:
     return Effects(
         school.authority.teacher,
         school.phase,
-        school.stopped_because,
+        school.stopped,
         school.session,
         len(system),
         system.standing_lessons,

@@ -182,7 +182,7 @@ class Story:
             state = teacher.state
             assert state is not None
             try:
-                if state.stopped_because:
+                if state.stopped:
                     await teacher.resume()
                 match number % 3:
                     case 0:

@@ -21,6 +21,7 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble
 from kurt2rt.rla.rla import ASK, Phase
 from kurt2rt.standing import Standing, StandReason
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
 from tests.channel.grounds import Yard
 from tests.health.reports import ILL, WELL
@@ -83,7 +84,7 @@ def test_a_robot_that_knows_nothing(desk: Desk) -> None:
         question=(),
         teacher=None,
         by_hand=False,
-        stopped_because="",
+        stopped=None,
         rlas=0,
         lessons=0,
         unsaved=0,
@@ -141,7 +142,7 @@ async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
     assert (told.left_m_s, told.right_m_s) == (0.2, 0.1)
     desk.run(30)
     told = picture(desk)
-    assert (told.cause, told.by_hand, told.stopped_because) == ("stopped", False, "ann drove by hand and let go")
+    assert (told.cause, told.by_hand, told.stopped) == ("stopped", False, ActiveStop(StopReason.LET_GO, "ann"))
     assert (told.left_m_s, told.right_m_s) == (0.0, 0.0)
 
 
@@ -168,9 +169,9 @@ async def test_phase_session_and_clock(desk: Desk) -> None:
     told = picture(desk)
     assert told.session is None
     assert told.clock_s == pytest.approx(2.51)
-    assert told.stopped_because == "the session 'morning' is over"
+    assert told.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
     await desk.ask(desk.command(ResumeRequest))
-    assert picture(desk).stopped_because == ""
+    assert picture(desk).stopped is None
 
 
 def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> None:

@@ -49,6 +49,7 @@ from kurt2rt.channel.wire import (
     encode_state,
 )
 from kurt2rt.rla.rla import BASIC, MID, Phase
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.progress import Progress
 from kurt2rt.teaching.question import FeatureDifference
 from tests.channel.mischief import Mischief
@@ -119,7 +120,7 @@ STATES = st.builds(
     question=st.lists(st.builds(FeatureDifference, NAMES, FINITE, FINITE), max_size=5).map(tuple),
     teacher=st.none() | NAMES,
     by_hand=st.booleans(),
-    stopped_because=NAMES,
+    stopped=st.none() | st.builds(ActiveStop, st.sampled_from(StopReason), NAMES),
     rlas=NUMBERS,
     lessons=NUMBERS,
     unsaved=NUMBERS,

@@ -20,6 +20,7 @@ from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import NEXT_RUN
 from kurt2rt.teaching.commands import BeginSession, SetPhase, Take
 from tests.channel.desk import Desk
 from tests.cli.helpers import Running, running
@@ -62,12 +63,12 @@ async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_p
     runs.advance()
     desk = Desk()
     school = desk.runtime.school
-    school.stop("a new run was begun")
+    school.stop(NEXT_RUN)
     for command in runs.present.begin_with:
         desk.runtime.inbox.put(command)
     record = desk.run(10, counts=300)
     assert (school.phase, school.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")
-    assert (school.stopped_because, record.grant.wheel_speeds) == ("a new run was begun", STANDSTILL)
+    assert (school.stopped, record.grant.wheel_speeds) == (NEXT_RUN, STANDSTILL)
 
 
 @pytest.mark.parametrize(
@@ -239,7 +240,7 @@ async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(t
             answer = await client.next_run("b", fresh=True)
             assert answer.accepted, answer.text
             second = await state_where(client, first.boot, teacher="local", lessons=0)
-            assert second.stopped_because == "a new run was begun"
+            assert second.stopped == NEXT_RUN
             assert (second.left_m_s, second.right_m_s) == (0.0, 0.0)
             simulation, world = await client.simulation(), await client.world()
             assert simulation is not None

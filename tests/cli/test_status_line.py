@@ -9,6 +9,7 @@ from hal.guard import BUS_LOST, FOREIGN_CONTROL
 from hal.health import Health
 from kurt2rt.cli.status_line import status_line
 from kurt2rt.rounds import Status
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Teach
 from tests.channel.desk import Desk
 
@@ -42,7 +43,7 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
 
 def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
     desk = Desk()
-    desk.runtime.school.stop("the robot program was started")
+    desk.runtime.school.stop(STARTED)
     line = status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 

@@ -16,6 +16,7 @@ from hal.control import RawControl, decode_control
 from hal.robot_settings import load_robot
 from kurt2rt.channel.state import State
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.answer import NoAnswerError
 from tests.cli.helpers import Running, running
 
@@ -28,7 +29,6 @@ BRAKING_CYCLES = 30
 LONG_ENOUGH_S = 120.0
 """For whatever a test waits for; it fails then."""
 _LOOK_S = 0.005
-STARTED = "the robot program was started"
 
 
 class Onlooker:
@@ -138,7 +138,7 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
             async with teacher_of(robot, folder) as we:
                 assert (await we.take()).accepted
                 stopped = await state_where(we, lambda state: state.teacher == "local")
-                assert stopped.stopped_because == STARTED
+                assert stopped.stopped == STARTED
                 lessons = await until_it_drives(we)
                 await seen.until(turns)
                 seen.forget()
@@ -148,7 +148,7 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
         with runtime(bus, folder) as robot:  # as a supervisor does
             async with teacher_of(robot, folder) as we:
                 back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
-                assert (back.action, back.unsaved, back.stopped_because) == (None, 0, STARTED)
+                assert (back.action, back.unsaved, back.stopped) == (None, 0, STARTED)
                 assert back.lessons >= lessons  # one that was not acknowledged may be there as well
                 assert (await we.lessons())[-1].teacher == "local"
                 assert (await we.take()).accepted
@@ -182,7 +182,7 @@ async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
             if state.rla is not None and abs(state.left_m_s) > 0.1:
                 return lessons
             with suppress(NoAnswerError):
-                if state.stopped_because:
+                if state.stopped:
                     await we.resume()
                 elif state.cause == "unknown":
                     lessons += (await we.answer(action, of=state.tick)).accepted
@@ -196,7 +196,7 @@ async def kept_driving(we: TeacherClient, action: str) -> AsyncIterator[None]:
     async def keep() -> None:
         while True:
             await until_it_drives(we, action)
-            await state_where(we, lambda state: state.stopped_because != "" or state.cause == "unknown")
+            await state_where(we, lambda state: state.stopped is not None or state.cause == "unknown")
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(keep)

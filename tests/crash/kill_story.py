@@ -33,9 +33,10 @@ from kurt2rt.knowledge.entry import StoredEntry
 from kurt2rt.knowledge.fold import check_knowledge
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.answer import NoAnswerError
 from kurt2rt.teaching.client import TeacherClient
-from tests.cli.three_programs import BRAKING_CYCLES, STARTED, WATCHDOG_CYCLES, drives, is_control, stands, turns
+from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, turns
 from tests.crash.killed_recording import KilledRecordings
 from tests.crash.programs import Program
 
@@ -141,7 +142,7 @@ class Life:
     async def _react(self, state: State) -> None:
         if state.teacher != self._we.name:
             await self._we.take()
-        elif state.stopped_because:
+        elif state.stopped:
             await self._we.resume()
         elif state.cause == "unknown":
             await self._lesson(state, "answer")
@@ -242,7 +243,7 @@ class KillStory:
             life = Life(we, self._chance)
             state = await we._pictures.first()
             assert state is not None
-            assert state.stopped_because == STARTED
+            assert state.stopped == STARTED
             assert not any(map(drives, self._heard())), "it drove before anybody had told it to"
             async with anyio.create_task_group() as tasks:
                 tasks.start_soon(life.teach)

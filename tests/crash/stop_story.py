@@ -93,7 +93,7 @@ class StopStory:
             try:
                 if state.teacher != self._we.name:
                     await self._we.take()
-                elif state.stopped_because:
+                elif state.stopped:
                     await self._we.resume()
                 elif state.cause == "unknown":
                     await self._we.answer(ON_THE_SPOT, of=state.tick)

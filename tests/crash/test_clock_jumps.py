@@ -43,7 +43,7 @@ async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None
                 action = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT
                 if (await we.correct(action, of=state.tick)).accepted:
                     break
-            elif state.stopped_because:
+            elif state.stopped:
                 await we.resume()
     seen = await state_where(we, lambda state: state.nearest_action == action and state.taught_at != "")
     off_by_s = (datetime.fromisoformat(seen.taught_at) - datetime.now(UTC)).total_seconds()

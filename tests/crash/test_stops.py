@@ -21,7 +21,7 @@ def require_safe(stopped: Stopped) -> None:
         assert stopped.cycles_to_rest <= MOST_CYCLES_TO_REST
     if stopped.gap_s > TICKS_CEASED_S + SLACK_S:
         assert stopped.drove_on == 0
-        assert stopped.state.stopped_because  # by the watchdog, and by the teacher's lease
+        assert stopped.state.stopped  # by the watchdog, and by the teacher's lease
         assert (stopped.state.left_m_s, stopped.state.right_m_s) == (0.0, 0.0)
     elif stopped.gap_s < TICKS_CEASED_S - SLACK_S:
         assert stopped.drove_on > 0
@@ -54,7 +54,7 @@ async def test_it_is_so_however_long_it_was_halted(tmp_path: Path) -> None:
             print(
                 f"halted {seconds:5.2f} s, gap {stopped.gap_s:6.3f} s, {stopped.cycles_to_rest} cycles to rest, "
                 f"{stopped.drove_on} CONTROL frames that drive, {stopped.most_at_once} of them at once, "
-                f"{stopped.state.stopped_because or 'not stopped'}"
+                f"{stopped.state.stopped or 'not stopped'}"
             )
             require_safe(stopped)
             if seconds <= SHORT_S:

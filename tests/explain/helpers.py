@@ -94,7 +94,7 @@ def facts(basic: LevelFacts, cause: str = "rla", action: str | None = "forward")
         granted=WheelSpeeds(0.3, 0.3),
         reasons=(),
         latched=False,
-        stopped_because="",
+        stopped=None,
         trouble="",
         teacher="",
         infrared_counts=(100,) * 18,

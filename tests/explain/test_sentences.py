@@ -11,6 +11,7 @@ from kurt2rt.explain.facts import Act, DecisionFacts
 from kurt2rt.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import MID
+from kurt2rt.teaching.active_stop import STARTED
 from tests.explain.helpers import facts, level, story, with_mid
 
 NEAR = story(17, (1.0, 2.0), "forward", 4.0)
@@ -82,7 +83,11 @@ def test_an_action_that_is_lost_asks_inside_r() -> None:
 @pytest.mark.parametrize(
     ("cause", "more", "said"),
     [
-        (Cause.STOPPED, {"stopped_because": "Ann stopped it"}, "The robot was stopped: Ann stopped it. It waits"),
+        (
+            Cause.STOPPED,
+            {"stopped": STARTED},
+            "The robot was stopped: the robot program was started. It waits",
+        ),
         (Cause.UNATTENDED, {}, "The robot knows what to do, but drives only while a teacher is there"),
         (Cause.UNSAVED, {"trouble": "the disk is full"}, "Lessons cannot be saved at the moment (the disk is full)"),
     ],

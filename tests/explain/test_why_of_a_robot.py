@@ -129,7 +129,7 @@ def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson:
 
 def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -> None:
     give(lesson).go_on(2, stop())
-    assert lesson.facts.stopped_because
+    assert lesson.facts.stopped
     assert lesson.tips == ()
 
 

@@ -13,6 +13,7 @@ from kurt2rt.page.bridge import Bridge
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
 from kurt2rt.page.visitor import Visitor
 from kurt2rt.rla.rla import Phase
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from tests.page.clock import Clock
 from tests.page.fake_robot import A_PLACE, FakeRobot
 
@@ -459,10 +460,10 @@ async def test_an_old_take_does_not_take_the_pad_either() -> None:
 async def test_a_go_on_a_picture_from_before_a_stop_is_refused() -> None:
     async with opened() as hall:
         page = Page(hall)
-        await page.see(stopped_because="phone said stop")
+        await page.see(stopped=ActiveStop(StopReason.SAID_STOP, "phone"))
         shown = page.picture
         hall.clock.go_on(0.1)
-        await page.see(stopped_because="anna said stop")
+        await page.see(stopped=ActiveStop(StopReason.SAID_STOP, "anna"))
         page.picture = shown
         assert (await page.order("resume"))["why"] == "stopped"
         hall.clock.go_on(0.1)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from tests.page.classroom import Classroom
 from tests.page.fake_robot import A_HELLO, FakeRobot
 from tests.page.lesson import Lesson
@@ -146,10 +147,10 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
 
     # STOP, and GO again.
     phone.touch("#stop")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
     phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
     phone.touch("#go")
-    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
     assert phone.complaints() == []
 
 
@@ -184,9 +185,9 @@ def test_the_keyboard_of_a_laptop_drives_and_stops(a_phone: Phone, room: Classro
     phone.wait(lambda: not room.state().by_hand, "the robot stands")
     phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
     phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
     phone.key("keyDown", "Space")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
 
 
 def stand(phone: Phone, room: Classroom) -> None:
@@ -195,7 +196,7 @@ def stand(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: "stands until" in phone.text("#said"), "the robot answers")
     after = room.state().tick
     phone.wait(lambda: room.state().tick > after + 20, "pictures from after it")
-    assert room.state().stopped_because == "local said stop"
+    assert room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local")
     phone.wait(lambda: phone.has("#go:enabled"), "GO is offered")
 
 
@@ -209,13 +210,13 @@ def test_enter_belongs_to_the_button_that_has_the_focus(a_phone: Phone, room: Cl
     phone.wait(lambda: phone.shows("#keys"), "the list of keys opens")
     phone.key("keyDown", "Enter")  # its button has the focus
     phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
-    assert room.state().stopped_because == "local said stop"
+    assert room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local")
     phone.run("document.activeElement.blur()")
     phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
     phone.run("document.querySelector('#stop').focus()")
     phone.key("keyDown", "Enter")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
 
 
 @pytest.mark.deep
@@ -229,9 +230,9 @@ def test_the_list_of_keys_leaves_stop_and_go_free(a_phone: Phone, room: Classroo
     phone.show(f"10-{size[0]}x{size[1]}-keys")
     stand(phone, room)
     phone.touch("#go")
-    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
     phone.key("keyDown", "Space")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
     assert phone.shows("#keys")
     phone.key("keyDown", "?")
     phone.wait(lambda: not phone.shows("#keys"), "the list of keys closes")
@@ -315,12 +316,12 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     phone.wait(lambda: not room.client.watching, "its server knows that nobody looks")
     # A page that went may have left a stop on its way, which goes before what is said meanwhile.
     phone.wait(lambda: room.portal.call(room.client.resume).accepted, "its teacher is heard")
-    phone.wait(lambda: room.state().stopped_because == "", "the robot may drive")
+    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
     phone.touch("#stop")
     phone.wait(lambda: "no link" in phone.text("#said"), "the page says that STOP waits")
     assert phone.text("#stop") == "STOP …"
     phone.run("shut = false")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
     phone.wait(lambda: phone.text("#stop") == "STOP", "STOP was answered")
 
 
@@ -328,7 +329,7 @@ def test_a_hand_puts_the_robot_elsewhere_in_the_simulated_world(a_phone: Phone, 
     phone = a_phone
     begin(phone, room)
     phone.touch("#stop")
-    phone.wait(lambda: room.state().stopped_because == "local said stop", "the robot was stopped")
+    phone.wait(lambda: room.state().stopped == ActiveStop(StopReason.SAID_STOP, "local"), "the robot was stopped")
     phone.wait(lambda: room.state().left_m_s == room.state().right_m_s == 0, "the robot stands")
     phone.touch("#view")
     before = room.state().place

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from hal.robot_settings import load_robot
 from kurt2rt.perception.sensor_words import law_of
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.progress import Progress
 from kurt2rt.teaching.question import FeatureDifference
 from tests.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
@@ -132,7 +133,7 @@ def test_important_sentences_are_never_cut(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare)
     phone = a_lesson.phone
     long = "the second guard braked, because no tick ran for 0.1 s; look whether other programs keep this computer busy"
-    a_lesson.show(cause="stopped", action=None, rla=None, stopped_because=long)
+    a_lesson.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.OTHER, long))
     a_lesson.reads("#sentence", long[:40])
     for size in ((390, 844), (360, 600), (844, 390), (1280, 800)):
         phone.turn(size)

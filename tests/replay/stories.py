@@ -27,7 +27,9 @@ from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.simulated import SimulatedArena
+from kurt2rt.standing_text import stop_text
 from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.teaching.active_stop import STARTED, ActiveStop
 from kurt2rt.teaching.commands import (
     Appraise,
     BeginSession,
@@ -170,11 +172,11 @@ class Told:
     task: str
     seconds: float
     attended: bool = False
-    stopped: str = ""
+    stopped: ActiveStop | None = None
 
 
 STORIES = {
-    "walls": Told("wall_following", 44, attended=True, stopped="the robot program was started"),
+    "walls": Told("wall_following", 44, attended=True, stopped=STARTED),
     "errand": Told("errands", 44),
 }
 
@@ -204,7 +206,7 @@ def record_story(
         knowledge="",
         attended=told.attended,
         asked=True,
-        stopped=told.stopped,
+        stopped=stop_text(told.stopped),
         behaviour=task.behaviours[0],
         fingerprints=fingerprints_of(attachments),
     )

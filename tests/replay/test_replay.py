@@ -20,6 +20,7 @@ from kurt2rt.replay.replay import Replay, replay_until
 from kurt2rt.replay.run import Run
 from kurt2rt.rla.rla import BASIC, MID, Phase, RlaCreated
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Resume, Stop, Teach, Watch
 from kurt2rt.tick import TickRecord
 from tests.repertoire.helpers import keep, with_repertoire
@@ -121,7 +122,7 @@ def test_the_runtime_is_as_it_was_at_a_time() -> None:
     assert compare(*tick) == []
     early, first = replay_until(run, -1.0)
     assert first.entry.number == 1
-    assert early.school.stopped_because == "the robot program was started"
+    assert early.school.stopped == STARTED
 
 
 @pytest.fixture(scope="module")

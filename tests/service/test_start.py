@@ -158,7 +158,7 @@ class World:
                 if (state.left_m_s, state.right_m_s) != STANDSTILL:
                     self._drives.set()
                     return
-                if state.stopped_because or state.guard:  # the guard stops it on a machine that is too slow as well
+                if state.stopped or state.guard:  # the guard stops it on a machine that is too slow as well
                     await robot.resume()
 
 

@@ -13,9 +13,9 @@ import anyio.to_thread
 import pytest
 
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import STARTED
 from tests.cli.helpers import Running, running, started
 from tests.cli.three_programs import (
-    STARTED,
     Onlooker,
     drives,
     is_control,
@@ -69,7 +69,7 @@ async def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_pa
             program = Running(next_one)
             async with teacher_of(program, tmp_path) as we:
                 back = await state_where(we, lambda state: not math.isinf(state.infrared_age_s))
-                assert (back.action, back.stopped_because) == (None, STARTED)
+                assert (back.action, back.stopped) == (None, STARTED)
                 assert back.lessons > 0
                 await anyio.to_thread.run_sync(systemd.wait_for, "WATCHDOG=1")
                 await state_where(we, lambda state: state.tick > back.tick + LOOKED_ON_TICKS)

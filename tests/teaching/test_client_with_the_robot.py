@@ -131,7 +131,7 @@ async def test_the_hand_drives_while_it_presses_and_the_robot_stands_when_it_let
                 drives = await state_where(robot, by_hand=True, left_m_s=0.15, right_m_s=0.15)
                 assert (drives.teacher, drives.cause) == ("phone", "teacher")
             stands = await state_where(robot, by_hand=False, left_m_s=0.0, right_m_s=0.0)
-            assert stands.stopped_because != ""
+            assert stands.stopped is not None
             async with robot.driving() as wheel:
                 wheel.set(0.15, 0.15)
                 await state_where(robot, by_hand=True, left_m_s=0.15)
@@ -152,7 +152,7 @@ async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
                 stop = await robot.stop()
                 go = await robot.resume()
                 assert (stop.accepted, go.accepted, go.text) == (True, True, "the robot may drive")
-            await state_where(robot, stopped_because="")
+            await state_where(robot, stopped=None)
 
 
 async def test_the_world_is_seen_and_changed(tmp_path: Path) -> None:

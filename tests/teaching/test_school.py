@@ -21,6 +21,7 @@ from kurt2rt.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import (
     BeginSession,
@@ -169,9 +170,9 @@ def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> No
 def test_stop_and_resume() -> None:
     lesson = Lesson()
     assert lesson.say(stop()).text == "the robot stands until it is told to resume"
-    assert lesson.school.stopped_because
+    assert lesson.school.stopped
     assert lesson.say(resume()).text == "the robot may drive"
-    assert not lesson.school.stopped_because
+    assert not lesson.school.stopped
 
 
 def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
@@ -220,9 +221,9 @@ def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> N
     lesson = Lesson()
     for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
         lesson.say(command)
-        assert bool(lesson.school.stopped_because) == stopped
+        assert bool(lesson.school.stopped) == stopped
     lesson.say(resume("2"))
-    assert lesson.school.stopped_because
+    assert lesson.school.stopped
 
 
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
@@ -415,7 +416,7 @@ def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
     lesson.tick = began + 99
     result = lesson.say(EndSession("e-1", "Ann"))
     assert (result.text, result.lesson) == ("session 'morning' is over; the robot stands", True)
-    assert school.stopped_because == "the session 'morning' is over"
+    assert school.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
     assert school.teaching_ticks(began + 5000) == 100
     assert lesson.say(EndSession("e-2", "Ann")).text == "no session is on"
     assert lesson.events == [
@@ -459,7 +460,7 @@ def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
     assert lesson.school.authority.held_by_another("Dora") is None
     lesson.say(teach("a", "2"))
     lesson.say(Stop("3", "Cleo"))
-    assert (lesson.school.stopped_because, lesson.school.authority.teacher) == ("Cleo said stop", "Ann")
+    assert (lesson.school.stopped, lesson.school.authority.teacher) == (ActiveStop(StopReason.SAID_STOP, "Cleo"), "Ann")
 
 
 def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
@@ -497,14 +498,14 @@ def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> Non
     assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).text == "b for 10 ticks"
     hand = lesson.school.authority.is_manual
     assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
-    assert lesson.school.stopped_because == "b is over"
+    assert lesson.school.stopped == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
 
 
 def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
     lesson = Lesson()
     result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
     assert (result.accepted, result.text) == (False, "there is no action 'fly'; the repertoire has: a, b, c")
-    assert not lesson.school.stopped_because
+    assert not lesson.school.stopped
 
 
 def test_resume_ends_what_the_hand_was_doing() -> None:
@@ -527,7 +528,7 @@ def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_no
     lesson.drive(hold=1)
     lesson.say(stop("1"))
     lesson.say(Take("2", "Ben"))
-    assert lesson.school.stopped_because
+    assert lesson.school.stopped
     assert lesson.drive("Ben", hold=1) is None
     lesson.say(Stop("3", "Cleo"))
     lesson.say(Take("4", "Ann"))
@@ -543,10 +544,10 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     assert lesson.school.authority.is_manual(lesson.tick)
     assert lesson.say(Stop("2", "Ann", hold=2)).accepted
     assert not lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.school.stopped_because == "Ann drove by hand and let go"
+    assert lesson.school.stopped == ActiveStop(StopReason.LET_GO, "Ann")
     lesson.say(resume())
     assert lesson.say(Stop("2", "Ann", hold=2)).text == "had been taken already; counted once"
-    assert not lesson.school.stopped_because
+    assert not lesson.school.stopped
 
 
 @pytest.mark.parametrize(
@@ -565,7 +566,7 @@ def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))
     assert refused.text == "the robot was stopped after this was said; look at it, then say it again"
-    assert lesson.school.stopped_because
+    assert lesson.school.stopped
     assert lesson.say(late(lesson.tick)).accepted
 
 
@@ -574,7 +575,7 @@ def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
     lesson.say(BeginSession("1", "Ann", "monday"))
     lesson.say(Stop("2", "Ben"))
     lesson.say(EndSession("3", "Ann"))
-    assert lesson.school.stopped_because == "Ben said stop"
+    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Ben")
 
 
 # Several taught behaviours.
@@ -622,7 +623,7 @@ def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None
     assert lesson.small.wanted.behaviour == "straight_on"
     lesson.say(Take("take it", "Ann"))
     assert lesson.say(pursue("turn_left")).accepted
-    assert lesson.school.stopped_because == "Bob said stop"
+    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Bob")
 
 
 def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wanted() -> None:
@@ -728,7 +729,7 @@ def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy
     seen = lesson.tick
     lesson.say(stop("1"))
     assert lesson.say(Resume("2", "Ann", seen)).accepted
-    assert not lesson.school.stopped_because
+    assert not lesson.school.stopped
 
 
 def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> None:
@@ -737,7 +738,7 @@ def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> No
     lesson.say(resume("2"))
     seen = lesson.tick
     lesson.say(stop("1"))
-    assert lesson.school.stopped_because
+    assert lesson.school.stopped
     assert not lesson.say(Resume("3", "Ann", seen)).accepted
 
 

@@ -24,6 +24,7 @@ from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.answer import RefusedError
 from kurt2rt.teaching.scripted_lesson import picture_in, teach_by_script
 from kurt2rt.teaching.scripted_teacher import Picture
@@ -75,7 +76,7 @@ class Mind:
 
     def stop(self) -> None:
         """Anna says stop."""
-        self._stopped_tick = self._robot.show(stopped_because="anna said stop").tick
+        self._stopped_tick = self._robot.show(stopped=ActiveStop(StopReason.SAID_STOP, "anna")).tick
 
     def _carry_out(self, request: _CarriedOut) -> Reply:
         robot = self._robot
@@ -92,15 +93,15 @@ class Mind:
             case PursueRequest(behaviour=behaviour):
                 robot.show(behaviour=behaviour)
             case SessionRequest(name=None):
-                robot.show(session=None, stopped_because=f"the session {robot.state.session!r} is over")
+                robot.show(session=None, stopped=ActiveStop(StopReason.SESSION_OVER, robot.state.session or ""))
             case SessionRequest(name=name) if robot.state.session is not None:
                 return refusal("refused", f"the session {name!r} is on; end it first", tick)
             case SessionRequest(name=name):
-                robot.show(session=name, stopped_because="")
+                robot.show(session=name, stopped=None)
             case ResumeRequest(seen=seen) if seen < self._stopped_tick:
                 return refusal("stopped", "the robot was stopped after this was said", tick)
             case ResumeRequest():
-                robot.show(stopped_because="")
+                robot.show(stopped=None)
         return done(robot.state.tick, "done")
 
 
@@ -143,7 +144,7 @@ async def lesson(
             if ends_with == ALONE:
                 await robot.hears(ResumeRequest)
                 async for state in client.states():
-                    if state.stopped_because == "":
+                    if state.stopped is None:
                         break
             robot.show(teacher="anna")
             await anyio.sleep_forever()
@@ -231,7 +232,7 @@ async def test_a_robot_that_a_person_stopped_is_neither_turned_nor_set_down_and_
     assert robot.all_of(PursueRequest) == []
     assert robot.all_of(PlaceRequest) == []
     assert robot.all_of(ResumeRequest) == []
-    assert robot.state.stopped_because == "anna said stop"
+    assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
     assert said[-1] == "anna took the robot; the scripted teacher stops here"
 
 
@@ -243,7 +244,7 @@ async def test_alone_too_a_robot_of_several_behaviours_is_told_to_go_on_where_it
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), lambda _: None)
             await robot.hears(ResumeRequest)
-            robot.show(stopped_because="the guard: wheels disobey")
+            robot.show(stopped=ActiveStop(StopReason.GUARD, "wheels disobey"))
             await robot.hears(ResumeRequest, 2)
             tasks.cancel_scope.cancel()
 
@@ -266,7 +267,8 @@ async def test_a_robot_that_stays_where_it_is_after_the_lesson_is_not_set_down(
     assert said[-1].endswith("the robot stays where it is; take it and say go to let it drive")
     assert robot.all_of(PlaceRequest) == []
     assert robot.all_of(PursueRequest) == []
-    assert robot.state.stopped_because.startswith("the session ")
+    assert robot.state.stopped is not None
+    assert robot.state.stopped.reason is StopReason.SESSION_OVER
 
 
 async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
@@ -340,7 +342,7 @@ async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
     mind.stop_at_phase = Phase.AUTONOMOUS
     said = await lesson(client, robot, "stays where it is")
     assert "the robot stays where it is" in said[-1]
-    assert robot.state.stopped_because == "anna said stop"
+    assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
 
 
 def test_it_sees_in_a_picture_what_is_wanted_and_which_rla_drives() -> None:

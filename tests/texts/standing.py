@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterator
 
 from kurt2rt.standing import Standing, StandReason
-from kurt2rt.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short
+from kurt2rt.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, stop_text
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 
 
 def on_page() -> Iterator[tuple[str, str]]:
@@ -23,7 +24,19 @@ def in_log() -> Iterator[tuple[str, str]]:
 
 def _each(text: Callable[[Standing], str]) -> Iterator[tuple[str, str]]:
     for reason in StandReason:
-        says = "Ann said stop" if reason is StandReason.STOPPED else ""
-        yield reason, text(Standing(reason, stall_s=1.25, says=says))
-        yield f"{reason}, until Go", text(Standing(reason, needs_go=True, stall_s=1.25, says=says))
-        yield f"{reason}, asks", text(Standing(reason, asks=True, stall_s=1.25, says=says))
+        stop = ActiveStop(StopReason.SAID_STOP, "Ann") if reason is StandReason.STOPPED else None
+        yield reason, text(Standing(reason, stall_s=1.25, stop=stop))
+        yield f"{reason}, until Go", text(Standing(reason, needs_go=True, stall_s=1.25, stop=stop))
+        yield f"{reason}, asks", text(Standing(reason, asks=True, stall_s=1.25, stop=stop))
+
+
+def stops() -> Iterator[tuple[str, str]]:
+    """Yield the sentence of each stop, the same on every surface."""
+    names = {
+        StopReason.SESSION_OVER: "morning",
+        StopReason.BEHAVIOUR_OVER: "spin_left",
+        StopReason.GUARD: "wheels disobey",
+        StopReason.OTHER: "a sentence of another version",
+    }
+    for reason in StopReason:
+        yield reason, stop_text(ActiveStop(reason, names.get(reason, "Ann")))

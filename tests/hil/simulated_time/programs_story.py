@@ -21,6 +21,7 @@ from hal.guard import BUS_LOST, FOREIGN_CONTROL
 from hal.kurt2 import Kurt2
 from kurt2rt.channel.state import State
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from tests.cli.helpers import Running, running
 from tests.cli.three_programs import (
     CODEC,
@@ -113,7 +114,7 @@ async def _stopped_by_cansend(bus: str, we: TeacherClient) -> State:
     while True:
         await until_it_drives(we, "spin_left")
         await anyio.to_thread.run_sync(cansend, bus, STOP)
-        state = await state_where(we, lambda state: state.stopped_because != "")
+        state = await state_where(we, lambda state: state.stopped is not None)
         if FOREIGN_CONTROL in state.guard:
             return state
 
@@ -148,7 +149,7 @@ async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(li
         await anyio.to_thread.run_sync(link.down)
         await anyio.to_thread.run_sync(sim.wait_for, "lost: bus vcan0: ")
         await anyio.to_thread.run_sync(sim.wait_for, "CONTROL has ceased: the watchdog brakes")
-        stopped = await state_where(we, lambda state: state.stopped_because == f"the guard: {BUS_LOST}")
+        stopped = await state_where(we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, BUS_LOST))
         assert stopped.trouble.startswith("bus vcan0: ")
         await anyio.to_thread.run_sync(robot.wait_for, f"guard: {BUS_LOST}")
         await anyio.to_thread.run_sync(link.up)
@@ -160,7 +161,7 @@ async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(li
 async def test_an_adapter_that_is_unplugged_and_plugged_in_again(link: Link, tmp_path: Path) -> None:
     async with at_work(NAME, tmp_path) as (sim, _, we):
         await anyio.to_thread.run_sync(link.delete)
-        await state_where(we, lambda state: state.stopped_because == f"the guard: {BUS_LOST}")
+        await state_where(we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, BUS_LOST))
         await anyio.to_thread.run_sync(sim.wait_for, "such network interface")
         await anyio.to_thread.run_sync(link.make)
         await anyio.to_thread.run_sync(sim.wait_for, "the bus is there again")

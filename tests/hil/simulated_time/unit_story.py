@@ -16,10 +16,12 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.service_settings import UNIT_PRIORITY
+from kurt2rt.standing_text import stop_text
 from kurt2rt.teaching import TeacherClient
+from kurt2rt.teaching.active_stop import STARTED
 from tests.cli.helpers import Running, running
 from tests.cli.test_run_as_service import priorities_of
-from tests.cli.three_programs import STARTED, brakes, is_control, onlooker, stands, state_where, turns, until_it_drives
+from tests.cli.three_programs import brakes, is_control, onlooker, stands, state_where, turns, until_it_drives
 from tests.hil.link import NAME as BUS
 from tests.hil.link import Link
 from tests.hil.simulated_time.installation import install_for_everybody
@@ -80,10 +82,10 @@ async def until_up(unit: Unit) -> int:
 
 
 async def stands_until_go(we: TeacherClient) -> None:
-    stopped = await state_where(we, lambda state: state.stopped_because != "")
-    assert (stopped.stopped_because, stopped.left_m_s, stopped.right_m_s) == (STARTED, 0.0, 0.0)
+    stopped = await state_where(we, lambda state: state.stopped is not None)
+    assert (stopped.stopped, stopped.left_m_s, stopped.right_m_s) == (STARTED, 0.0, 0.0)
     assert (await we.resume()).accepted
-    await state_where(we, lambda state: state.stopped_because == "")
+    await state_where(we, lambda state: state.stopped is None)
 
 
 async def stands_and_asks_after_go(we: TeacherClient) -> None:
@@ -102,7 +104,7 @@ async def test_it_starts_may_do_little_and_the_robot_stands_and_asks(unit: Unit,
         )
         pid = await until_up(unit)
         may_do_little(pid)
-        unit.wait_for_status(f"stands until Go: {STARTED}")
+        unit.wait_for_status(f"stands until Go: {stop_text(STARTED)}")
         async with teacher() as we:
             await stands_and_asks_after_go(we)
             told = status_of(kurt2rt)
