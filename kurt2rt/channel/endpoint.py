@@ -107,6 +107,11 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
         except Exception as error:  # noqa: BLE001
             self.log.error("an error report of the network: %r", error)  # noqa: TRY400
 
+    def send(self, message: aiocoap.Message) -> None:
+        """Send a message, unless the socket is closing: aiocoap's timers of empty ACKs (0.1 s) outlive its shutdown."""
+        if self._shutting_down is None:
+            super().send(message)
+
     def error_received(self, exc: OSError) -> None:
         # Not now: this comes out of the sending of a response, and would end the very exchange that is sending it.
         remote = self._remote_being_sent_to.get()

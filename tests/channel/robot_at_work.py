@@ -66,6 +66,8 @@ class RobotAtWork:
     channel: Channel
     knowledge: Path
     records: list[TickRecord] = field(default_factory=list)
+    ended: bool = False
+    """Whether the service has ended; a signal to this process ends it, too."""
 
     @property
     def runtime(self) -> Runtime:
@@ -138,6 +140,7 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
             openness=Openness(lambda: "", None, listening),
             duration_s=None,
         )
+        at_work.ended = True
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(serve_it)

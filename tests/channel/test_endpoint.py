@@ -17,6 +17,7 @@ from kurt2rt.channel.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.gate import Counters, Limits
 from kurt2rt.channel.schema import ChannelError
 from tests.channel.clock import Clock
+from tests.channel.jumping_loop import run_jumping
 
 UNLIMITED = Limits(strangers_at_once=1e9)
 PING = bytes([0x40, 0, 0x12, 0x34])
@@ -66,11 +67,11 @@ class Sender(asyncio.DatagramProtocol):
     def send(self, data: bytes) -> None:
         self.transport.sendto(data)
 
-    def post(self, path: str, payload: bytes = b"") -> bytes:
-        """Send a request that wants no confirmation; returns its token."""
+    def post(self, path: str, payload: bytes = b"", kind: aiocoap.Type = aiocoap.NON) -> bytes:
+        """Send a request; return its token."""
         self._number += 1
         message = aiocoap.Message(code=aiocoap.POST, uri_path=(path,), payload=payload)
-        message.mid, message.mtype = self._number, aiocoap.NON
+        message.mid, message.mtype = self._number, kind
         message.token = self._number.to_bytes(2, "big")
         self.send(message.encode())
         token: bytes = message.token
@@ -314,3 +315,19 @@ async def test_closing_ends_what_is_being_answered() -> None:
         sender.post("echo")
         await robot.site.asked.wait()
     assert asyncio.all_tasks() == {asyncio.current_task()}
+
+
+def test_close_with_unanswered_request_raises_nothing_later() -> None:
+    errors: list[dict[str, Any]] = []
+
+    async def story() -> None:
+        asyncio.get_running_loop().set_exception_handler(lambda _, context: errors.append(context))
+        async with robot_at() as robot:
+            robot.site.may_answer.clear()
+            sender = await robot.sender()
+            sender.post("echo", kind=aiocoap.CON)
+            await robot.site.asked.wait()
+        await asyncio.sleep(1.0)  # past aiocoap's EMPTY_ACK_DELAY
+
+    run_jumping(story)
+    assert errors == []

@@ -92,7 +92,7 @@ class Target:
         self.device = device
         reception: Any = at_work.channel._reception
         self.mischief = Mischief(seed, lambda: (reception._boot, reception.tick))
-        self.errors: list[dict[str, Any]] = []
+        self.errors: list[str] = []
         self._endpoint: Any = at_work.channel.endpoint
         keys: Any = at_work.channel._site._keys
         answer_challenge(device, keys.find(header_of(device)))
@@ -103,7 +103,10 @@ class Target:
         """Of what the device sends: known to hold a key."""
         self._stranger = _outside()
         self.stranger: SocketAddress = ("::ffff:127.0.0.1", self._stranger.getsockname()[1], 0, 0)
-        asyncio.get_running_loop().set_exception_handler(lambda _, context: self.errors.append(context))
+        asyncio.get_running_loop().set_exception_handler(self._on_error)
+
+    def _on_error(self, _: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        self.errors.append(f"{context['message']}: {context.get('exception')!r}")
 
     def close(self) -> None:
         self._outside.close()
@@ -145,6 +148,7 @@ class Target:
         return captured
 
     def must_be_unmoved(self, before: Effects, tick: int) -> None:
+        assert not self.at_work.ended
         assert self.errors == []
         assert self.at_work.channel.failures == 0
         assert self._endpoint.counters.failed == 0, self._endpoint.newest_failure
