@@ -52,14 +52,14 @@ class CanBus:
         # While frames that nobody waits for any more may still be carried: the first one that was sent after them.
         self._forgotten = False
         self._first_since: bytes | None = None
-        self._lost = 0
+        self._overruns = 0
 
     @property
-    def lost(self) -> int:
+    def overruns(self) -> int:
         """Frames since the bus was opened that were gone before the last drain, which came too late for them."""
-        return self._lost
+        return self._overruns
 
-    def listen_to(self, frame_ids: Iterable[int]) -> None:
+    def set_id_filter(self, frame_ids: Iterable[int]) -> None:
         """From now on hear only frames with these standard identifiers, also after `reopen`. Raises BusError.
 
         CONTROL and error frames are always heard: whoever is on this bus has to know of them.
@@ -88,8 +88,8 @@ class CanBus:
                         self._forgotten = False
                 elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
                     self._note_carried(message)
-            if end.lost != self._lost:
-                self._lost = end.lost
+            if end.overruns != self._overruns:
+                self._overruns = end.overruns
                 self._carried_controls = self._sent_controls  # their confirmations may be among the lost
                 self._forgotten = False
         except (can.CanError, OSError, ValueError) as error:
@@ -97,7 +97,7 @@ class CanBus:
         if self.tap is not None and messages:
             now_s = end.now_s()
             for message in messages:
-                self.tap.heard(message, 0.0 if now_s is None else max(0.0, now_s - message.timestamp))
+                self.tap.on_rx(message, 0.0 if now_s is None else max(0.0, now_s - message.timestamp))
         return messages
 
     def telemetry_port(self) -> "FramePort":
@@ -128,7 +128,7 @@ class CanBus:
         end, self._bus_end = self._bus_end, None
         self._carried_controls = self._sent_controls
         self._forgotten = False
-        self._lost = 0
+        self._overruns = 0
         if end is not None:
             _close(end)
 
@@ -139,7 +139,7 @@ class CanBus:
 
     def _filter(self, end: CanInterface, heard: frozenset[int]) -> None:
         try:
-            end.listen_to(heard)
+            end.set_id_filter(heard)
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"bus {self.name}: takes no receive filter ({error})") from error
 
@@ -158,7 +158,7 @@ class CanBus:
 
     def _send(self, frame: can.Message, *, is_control: bool) -> None:
         end = self._usable()
-        awaited = is_control and end.confirms
+        awaited = is_control and end.receives_own_frames
         first_since = awaited and self._forgotten and self._first_since is None
         if first_since:
             self._first_since = bytes(frame.data)
@@ -173,7 +173,7 @@ class CanBus:
                 self._first_since = None  # a frame that did not go out is never confirmed
             raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
         if self.tap is not None:
-            self.tap.sent(frame)
+            self.tap.on_tx(frame)
 
 
 class FramePort:

@@ -12,17 +12,17 @@ class CanInterface(Protocol):
     delivered too (`is_error_frame`, laid out as Linux does).
     """
 
-    confirms: bool
+    receives_own_frames: bool
     """True when an end hears its own frames, too (`is_rx` False), as soon as the bus has carried them."""
 
-    lost: int
+    overruns: int
     """Frames since it was opened that were gone before this end took them, for it was behind."""
 
     def now_s(self) -> float | None:
         """The present on the clock that stamps the frames; None where they count as just arrived."""
         ...
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """From now on deliver only frames with these standard identifiers, and error frames."""
         ...
 

@@ -33,17 +33,17 @@ than 20 ms. A brake is never too old."""
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
 
 
-class _Told(NamedTuple):
+class _CachedCommand(NamedTuple):
     """Set points in m/s, the CONTROL frame that says them, and what stands in it; kept, for most ticks repeat it."""
 
     left_m_s: float
     right_m_s: float
     frame: Frame
-    granted: WheelSpeeds
+    applied: WheelSpeeds
 
 
 class Guard:
-    """Lets through what is safe of the wanted wheel speeds, and brakes when told to. Thread safe.
+    """Lets through what is safe of the wanted wheel speeds, and brakes on request. Thread safe.
 
     Every rule asks for proof that driving is safe, so a NaN in any input stands still.
     """
@@ -71,7 +71,7 @@ class Guard:
         self._lock = RLock()
         self._latched: str | None = None
         self._left_m_s = self._right_m_s = 0.0
-        self._told = self._say(0.0, 0.0)
+        self._last_command = self._build_command(0.0, 0.0)
         self._driven_at_s = -math.inf
         self._send_failures = 0
         self._bus_trouble = ""
@@ -94,7 +94,7 @@ class Guard:
     def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
-        The granted speeds are those in the frame: truncated to its resolution, which is no reason of its own. No set
+        The applied speeds are those in the frame: truncated to its resolution, which is no reason of its own. No set
         point is put behind frames that the bus has not carried yet; a brake is.
         """
         with self._lock:
@@ -108,23 +108,23 @@ class Guard:
             left_m_s, right_m_s = wanted
             stand = self._reason_to_stand(left_m_s, right_m_s, senses, decided_at_s, now_s)
             if stand is None:
-                reasons = self._approach(left_m_s, right_m_s, senses.bumpers, now_s)
+                reasons = self._limit(left_m_s, right_m_s, senses.bumpers, now_s)
             else:
                 reasons = (stand,)
                 self._left_m_s = self._right_m_s = 0.0
             if math.isfinite(now_s):
                 self._driven_at_s = now_s
-            told = self._told
-            if told.left_m_s != self._left_m_s or told.right_m_s != self._right_m_s:
-                told = self._told = self._say(self._left_m_s, self._right_m_s)
+            command = self._last_command
+            if command.left_m_s != self._left_m_s or command.right_m_s != self._right_m_s:
+                command = self._last_command = self._build_command(self._left_m_s, self._right_m_s)
             try:
-                self._port.send(told.frame)
+                self._port.send(command.frame)
             except BusError as error:
                 self._note(error)
                 self._latch(BUS_LOST)
             if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
                 return self._stay_stopped()
-            return GuardResult(told.granted, reasons, latched=False)
+            return GuardResult(command.applied, reasons, latched=False)
 
     def emergency_stop(self, reason: str) -> None:
         """Brake now and stay stopped until `release`; the first reason stands. May be repeated, never raises."""
@@ -161,7 +161,7 @@ class Guard:
             return BUMPER_STALE
         return None
 
-    def _approach(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[str, ...]:
+    def _limit(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[str, ...]:
         """Move the set points toward the wanted speeds as far as the limits allow; returns why not further."""
         reasons: tuple[str, ...] = ()
         fastest_m_s = max(abs(left_m_s), abs(right_m_s))
@@ -201,9 +201,9 @@ class Guard:
             return min(to_m_s, from_m_s + step_m_s)
         return max(to_m_s, from_m_s - step_m_s)
 
-    def _say(self, left_m_s: float, right_m_s: float) -> _Told:
+    def _build_command(self, left_m_s: float, right_m_s: float) -> _CachedCommand:
         point = set_point(self._speed_mode, WheelSpeeds(left_m_s, right_m_s), self._motors)
-        return _Told(left_m_s, right_m_s, control_frame(point), point.wheel_speeds(self._motors))
+        return _CachedCommand(left_m_s, right_m_s, control_frame(point), point.wheel_speeds(self._motors))
 
     def _latch(self, reason: str) -> None:
         if self._latched is None:

@@ -17,8 +17,8 @@ class InProcessBus(VirtualBus):
     `deepcopy` for every listener and the log call for every frame took a third of a simulated tick.
     """
 
-    confirms = False
-    lost = 0
+    receives_own_frames = False
+    overruns = 0
     """None ever: the sender fails instead."""
 
     def __init__(self, name: str) -> None:
@@ -34,7 +34,7 @@ class InProcessBus(VirtualBus):
         """None: whatever waits has just arrived, so that a simulated run does not hang on the time of day."""
         return None
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames."""
         self._heard = frame_ids
 

@@ -38,7 +38,7 @@ class InfraredWatch:
         """The board that a channel with a distance sensor belongs to; who reads it notes there that it changed."""
         return self._boards[channel[:3]]
 
-    def freeze(self, now_s: float, *, driving: bool) -> str:
+    def check_frozen(self, now_s: float, *, driving: bool) -> str:
         """Which board is frozen, in a line; empty while all are alive."""
         looked_at_s, self._looked_at_s = self._looked_at_s, now_s
         if not driving:

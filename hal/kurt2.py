@@ -63,13 +63,13 @@ class Kurt2:
         self._bumpers = 0
         self._encoder_at_s = self._bumpers_at_s = -math.inf
         self._senses = SensorReadings(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
-        self._told = STANDSTILL
+        self._command = STANDSTILL
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._foreign_control = self._receive_failures = 0
         self._receive_trouble = self._alarm = ""
         # CONTROL as well: a second sender of it must not go unnoticed.
-        bus.listen_to({CONTROL_ID, self._encoder.frame_id, self._bumperc.frame_id, *self._analog})
+        bus.set_id_filter({CONTROL_ID, self._encoder.frame_id, self._bumperc.frame_id, *self._analog})
 
     def sense(self, now_s: float) -> SensorReadings:
         """Take everything that arrived, without waiting, and return the newest values.
@@ -145,8 +145,8 @@ class Kurt2:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
             self._guard.emergency_stop(TICKS_CEASED)
         grant = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
-        self._told = grant.wheel_speeds
-        self._wheel_watch.tell(grant.wheel_speeds)
+        self._command = grant.wheel_speeds
+        self._wheel_watch.set_command(grant.wheel_speeds)
         self.watchdog.beat()
         return grant
 
@@ -197,12 +197,12 @@ class Kurt2:
             self._stop(BUS_OFF)
         if foreign_control:
             self._stop(FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it")
-        disobedience = self._wheel_watch.disobedience(
+        disobedience = self._wheel_watch.check(
             senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s
         )
         if disobedience:
             self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders, cables; switch the robot off and on")
-        freeze = self._infrared_watch.freeze(senses.time_s, driving=self._told != STANDSTILL and not paused)
+        freeze = self._infrared_watch.check_frozen(senses.time_s, driving=self._command != STANDSTILL and not paused)
         if freeze:
             self._stop(INFRARED_FROZEN, freeze)
 

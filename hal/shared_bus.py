@@ -51,7 +51,7 @@ class SharedBus(can.BusABC):
     The file is there while somebody is on the bus; who leaves last removes it, and any that was left behind.
     """
 
-    confirms = False
+    receives_own_frames = False
 
     def __init__(self, name: str) -> None:
         """Join the bus of that name; frames count from now. Raises can.CanInitializationError, OSError."""
@@ -59,7 +59,7 @@ class SharedBus(can.BusABC):
             raise can.CanInitializationError("a name is up to 64 letters, digits and _ . -")
         self.channel = name
         self.channel_info = f"shared CAN bus {name}"
-        self.lost = 0
+        self.overruns = 0
         """Frames that were gone before this end came to read them, own and filtered ones too."""
         self.damaged = 0
         """Records that no end of this program has written."""
@@ -81,7 +81,7 @@ class SharedBus(can.BusABC):
         """The monotonic clock, which all processes of a machine share."""
         return time.monotonic()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames."""
         self._heard = frame_ids
 
@@ -177,7 +177,7 @@ class SharedBus(can.BusABC):
                 except OSError:  # nothing but the hole
                     data = os.fstat(file).st_size
             if data > self._position:
-                self.lost += (data - self._position) // _RECORD_BYTES
+                self.overruns += (data - self._position) // _RECORD_BYTES
                 self._position = data
                 return True
         if record != _HEAD:  # which two who came first may both have written

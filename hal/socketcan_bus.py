@@ -37,12 +37,12 @@ class SocketCanBus(SocketcanBus):
     open it anew. Sending is tried all the same.
     """
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(self, interface: str) -> None:
         """Open a socket on an interface. Raises OSError, can.CanError, AttributeError (a Python without CAN)."""
         super().__init__(channel=interface, receive_own_messages=True)
-        self.lost = 0
+        self.overruns = 0
         """Frames for which the receive buffer had no room."""
         self._heard: frozenset[int] | None = None
         self._gone: OSError | None = None
@@ -56,7 +56,7 @@ class SocketCanBus(SocketcanBus):
         """The wall clock, on which the kernel stamps frames."""
         return time.time()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Let the kernel deliver only frames with these standard identifiers, and error frames. Raises OSError."""
         filters = b"".join(_FILTER.pack(each, _STANDARD_FRAME) for each in sorted(frame_ids))
         self.socket.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FILTER, filters)
@@ -91,7 +91,7 @@ class SocketCanBus(SocketcanBus):
                         seconds, nanoseconds = _STAMP.unpack(data)
                         frame.timestamp = seconds + nanoseconds * _NS
                     elif kind == _SO_RXQ_OVFL:
-                        (self.lost,) = _COUNT.unpack(data)
+                        (self.overruns,) = _COUNT.unpack(data)
                 if is_heard(frame, self._heard):
                     # MSG_DONTROUTE, which python-can looks at, is set on frames of any program of this machine.
                     frame.is_rx = not flags & socket.MSG_CONFIRM

@@ -30,23 +30,23 @@ class WheelWatch:
         self._pause_s = limits.ticks_ceased_s
         self._error_s = limits.wheel_error_s
         self._left, self._right = _Side(robot), _Side(robot)
-        self._told = STANDSTILL
+        self._command = STANDSTILL
         self._counted_at_s = -math.inf
 
-    def tell(self, told: WheelSpeeds) -> None:
+    def set_command(self, command: WheelSpeeds) -> None:
         """Set points in m/s that this tick's CONTROL carries."""
-        self._told = told
+        self._command = command
 
-    def disobedience(self, left_ticks: int, right_ticks: int, frames: int, now_s: float) -> str:
+    def check(self, left_ticks: int, right_ticks: int, frames: int, now_s: float) -> str:
         """What a side does that disobeys, in a line; empty while both obey.
 
         The ticks are those of all `frames` ENCODER frames of this tick of the runtime, none or several.
         """
-        left, right, told = self._left, self._right, self._told
+        left, right, command = self._left, self._right, self._command
         # Time goes by the controller's cycles: a frame that was lost takes its ticks along, and leaves the band wider.
         turned_s = frames * self._cycle_s
-        left.follow(told.left_m_s, turned_s)
-        right.follow(told.right_m_s, turned_s)
+        left.follow(command.left_m_s, turned_s)
+        right.follow(command.right_m_s, turned_s)
         if not frames:
             return ""
         left_m_s = left_ticks * self._metres_per_tick / turned_s
@@ -59,9 +59,9 @@ class WheelWatch:
             return ""
         left_off_s, right_off_s = left.off_s(left_m_s, silent_s), right.off_s(right_m_s, silent_s)
         if left_off_s >= self._error_s:
-            return f"left wheels were told {told.left_m_s:.2f} m/s and turn at {left_m_s:.2f}"
+            return f"left wheels were told {command.left_m_s:.2f} m/s and turn at {left_m_s:.2f}"
         if right_off_s >= self._error_s:
-            return f"right wheels were told {told.right_m_s:.2f} m/s and turn at {right_m_s:.2f}"
+            return f"right wheels were told {command.right_m_s:.2f} m/s and turn at {right_m_s:.2f}"
         return ""
 
 

@@ -28,7 +28,7 @@ class StandaloneRobot:
         Raises BusError when a robot is on the bus already.
         """
         _require_no_robot(settings, bus)
-        bus.listen_to({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
+        bus.set_id_filter({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
         self._bus = bus
         self.bus = ReconnectingBus(bus)
         chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
@@ -53,7 +53,7 @@ class StandaloneRobot:
 def _require_no_robot(settings: RobotSettings, bus: CanBus) -> None:
     """Two robots on a bus would both obey, and the runtime would see a mixture of them."""
     encoder_id = load_codec(settings.can.database).message("ENCODER").frame_id
-    bus.listen_to({encoder_id})
+    bus.set_id_filter({encoder_id})
     time.sleep(_LISTENS_S)
     if any(frame.arbitration_id == encoder_id and not frame.is_error_frame for frame in bus.drain()):
         bus.shutdown()

@@ -66,15 +66,15 @@ class FailingRecorder:
         self._next_s = simulated.now_s()
         self._plan()
 
-    def heard(self, frame: can.Message, age_s: float) -> None:
+    def on_rx(self, frame: can.Message, age_s: float) -> None:
         """A frame that came in."""
         self._noted += 1
-        self._log.heard(frame, age_s)
+        self._log.on_rx(frame, age_s)
 
-    def sent(self, frame: can.Message) -> None:
+    def on_tx(self, frame: can.Message) -> None:
         """A frame that went out."""
         self._noted += 1
-        self._log.sent(frame)
+        self._log.on_tx(frame)
 
     @property
     def lost(self) -> int:

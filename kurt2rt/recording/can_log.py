@@ -57,11 +57,11 @@ class CanLog:
         wrong += [f"{self.lost} frames lost"] if self.lost else []
         return f"CAN log {self.name}: {', '.join(wrong)}" if wrong else ""
 
-    def heard(self, frame: can.Message, age_s: float) -> None:
+    def on_rx(self, frame: can.Message, age_s: float) -> None:
         """A frame that came in."""
         self._thread.put(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
 
-    def sent(self, frame: can.Message) -> None:
+    def on_tx(self, frame: can.Message) -> None:
         """A frame that went out."""
         self._thread.put(_Noted(self._began_at_s + time.monotonic(), False, frame))
 

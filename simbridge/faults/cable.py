@@ -41,7 +41,7 @@ class Cable:
 class CableInterface:
     """One end (hal.can_interface.CanInterface)."""
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(self, cable: Cable) -> None:
         self._cable = cable
@@ -49,14 +49,14 @@ class CableInterface:
         self.heard: frozenset[int] | None = None
         """Identifiers that it wants; None: all."""
         self._open = True
-        self.lost = 0
+        self.overruns = 0
         """Frames that found no room, for nobody took them."""
 
     def now_s(self) -> float | None:
         """As the cable has it."""
         return self._cable.now_s()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames, also of those that wait."""
         self.heard = frame_ids
         self._waiting = deque(frame for frame in self._waiting if is_heard(frame, frame_ids))
@@ -79,7 +79,7 @@ class CableInterface:
     def hear(self, frame: can.Message, now_s: float, *, own: bool) -> None:
         """Take a copy."""
         if len(self._waiting) >= _MOST_WAITING:
-            self.lost += 1
+            self.overruns += 1
             return
         # Twice as quick as copy.copy, which asks first how.
         mine = frame.__copy__() if isinstance(frame, Frame) else copy.copy(frame)

@@ -38,7 +38,7 @@ class Links:
 class SwitchableInterface:
     """Wraps an end that stamps frames and confirms its own (hal.can_interface.CanInterface)."""
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(
         self,
@@ -58,7 +58,7 @@ class SwitchableInterface:
         self._now_s = now_s
         self._on_send = on_send
         self._on_heard = on_heard
-        self.lost = 0
+        self.overruns = 0
         """Frames that found no room."""
         self._sending = False
         self._waiting: deque[can.Message] = deque()
@@ -67,16 +67,16 @@ class SwitchableInterface:
         """The present."""
         return self._now_s()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames."""
-        self._inner.listen_to(frame_ids)
+        self._inner.set_id_filter(frame_ids)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - nothing here waits
         """The frame that waits longest. Raises can.CanError, OSError."""
         while not self._waiting:
             frame = self._inner.recv(0)
             if frame is None:
-                self.lost = self._inner.lost
+                self.overruns = self._inner.overruns
                 return None
             inward = self._ways.inward
             # Of what it sent itself, and of the controller's own error frames, nothing is on any way.

@@ -17,7 +17,7 @@ class FaultyInterface:
     Frames get their stamp when they come from the bus, before the way in: as the kernel does it.
     """
 
-    lost = 0
+    overruns = 0
 
     def __init__(
         self,
@@ -26,11 +26,11 @@ class FaultyInterface:
         *,
         outward: FrameLink,
         inward: FrameLink,
-        confirms: bool,
+        receives_own_frames: bool,
         on_carried: Callable[[], None],
     ) -> None:
         """`on_carried` is called when the bus has just carried a frame of this end."""
-        self.confirms = confirms
+        self.receives_own_frames = receives_own_frames
         self._inner = inner
         self._time = time
         self._outward = outward
@@ -42,9 +42,9 @@ class FaultyInterface:
         """Simulated time."""
         return self._time.now_s()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Deliver only frames with these standard identifiers, and error frames."""
-        self._inner.listen_to(frame_ids)
+        self._inner.set_id_filter(frame_ids)
 
     def take_in(self) -> None:
         """Others have sent: what has come sets out on the way in."""
@@ -74,7 +74,7 @@ class FaultyInterface:
 
     def _put_on_the_bus(self, frame: can.Message) -> None:
         self._inner.send(frame, 0)
-        if self.confirms:
+        if self.receives_own_frames:
             confirmed = copy.copy(frame)
             confirmed.timestamp = self._time.now_s()
             confirmed.is_rx = False

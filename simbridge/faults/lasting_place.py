@@ -56,7 +56,7 @@ class LongRunRig:
         self._join: Callable[[str], CanInterface]
         self._open_bus(NO_WIRE)
         self._robots_bus = CanBus("soak", self._open_robots_end)
-        self._robots_bus.listen_to({CONTROL_ID})
+        self._robots_bus.set_id_filter({CONTROL_ID})
         world_settings = load_world(world, settings)
         self._starts = [start.pose for start in world_settings.start_poses]
         self._wheels = FaultyWheels(settings)

@@ -83,7 +83,7 @@ class SimulatedFaultRig:
             self.time,
             outward=self._way_of_telemetry(),
             inward=_Watched(IdealLink(), self._note_arrival),
-            confirms=False,
+            receives_own_frames=False,
             on_carried=self._notebook_hears,
         )
         return self._robots_end
@@ -94,7 +94,7 @@ class SimulatedFaultRig:
             self.time,
             outward=_Numbered(self._way_out(), self._note_put, self._note_coming_out),
             inward=self._way_in(),
-            confirms=True,
+            receives_own_frames=True,
             on_carried=self._robot_hears,
         )
         return self._notebooks_end

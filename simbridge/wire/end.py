@@ -12,28 +12,28 @@ class WireInterface:
     Opening one is plugging an adapter in: its counters begin at zero.
     """
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(self, wire: Wire, settings: NodeSettings) -> None:
         self._wire = wire
         self._node = wire.join(settings)
         self._open = True
-        self.lost = 0
+        self.overruns = 0
         """Frames that found the reader's buffer full."""
 
     def now_s(self) -> float | None:
         """The present on the wire's clock, which stamps the frames."""
         return self._wire.now_s()
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Take only frames with these standard identifiers, and error frames."""
-        self._wire.listen_to(self._node, frame_ids)
+        self._wire.set_id_filter(self._node, frame_ids)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
         """The frame that waits longest; None when there is none. Raises can.CanOperationError after shutdown."""
         self._check_open()
         frame = self._wire.take(self._node)
-        self.lost = self._node.overrun
+        self.overruns = self._node.overrun
         return frame
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits

@@ -65,7 +65,7 @@ class WiredLine:
         self.wire = Wire(settings, seed)
         self.robot_end = CanBus(f"wire:{settings.name}", lambda _: WireInterface(self.wire, settings.robot))
         self.notebook_end = CanBus(f"wire:{settings.name}", lambda _: WireInterface(self.wire, settings.notebook))
-        self.robot_end.listen_to({CONTROL_ID})  # all that the robot reads; its own frames need not come back
+        self.robot_end.set_id_filter({CONTROL_ID})  # all that the robot reads; its own frames need not come back
         self._cycle_s = cycle_s
         self._phase_s = settings.notebook_phase_s
         self._cycles = 0

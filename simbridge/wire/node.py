@@ -81,7 +81,7 @@ class WireNode:
         else:
             self.queue.insert(0, queued)
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         """Keep only frames with these standard identifiers, and error frames, also of those that wait already."""
         self._wanted_ids = frame_ids
         self.heard = deque(frame for frame in self.heard if self._wants(frame))

@@ -98,11 +98,11 @@ class Wire:
             self._follow_clock()
             return node.heard.popleft() if node.heard else None
 
-    def listen_to(self, node: WireNode, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, node: WireNode, frame_ids: frozenset[int]) -> None:
         """Keep only frames with these standard identifiers, and error frames, for this node's reader."""
         with self._lock:
             self._follow_clock()
-            node.listen_to(frame_ids)
+            node.set_id_filter(frame_ids)
 
     def now_s(self) -> float:
         """The present on the clock that stamps the frames."""

@@ -35,7 +35,7 @@ def test_ctrl_c_brakes_while_the_wheels_turn(tmp_path: Path, key: signal.Signals
     earlier(tmp_path, "stop")
     bus = f"commission-{tmp_path.name}"
     onlooker = SharedBus(bus)
-    onlooker.listen_to(frozenset({0x01}))
+    onlooker.set_id_filter(frozenset({0x01}))
     with Workshop(spec=f"shared:{bus}") as workshop, live(workshop):
         with running("commission", f"shared:{bus}", "--name", "robbie", "--only", "stop", folder=tmp_path) as session:
             for line in ("wheels up", "", ""):

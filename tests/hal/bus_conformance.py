@@ -74,7 +74,7 @@ def identity(frame: can.Message) -> tuple[object, ...]:
 class BusConformance:
     """The behaviours of all kinds; `ends` are the robot's end and the controller's."""
 
-    confirms: ClassVar[bool] = False
+    receives_own_frames: ClassVar[bool] = False
     """Whether an end learns that its CONTROL was carried."""
     behind: ClassVar[Behind] = Behind.SENDER_IS_TOLD
     too_many_frames: ClassVar[int] = 10_000
@@ -170,19 +170,19 @@ class BusConformance:
 
     def test_only_what_is_listened_to_arrives_and_control_always(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        robot_end.listen_to({0x09, 0x20})
+        robot_end.set_id_filter({0x09, 0x20})
         far_end.control_port().send(encode_brake())
         send(far_end, [Frame(0x08, b""), Frame(0x09, b"a"), EXTENDED, Frame(0x20, b"b"), Frame(0x21, b"")])
         send(far_end, [can.Message(arbitration_id=0x09, is_extended_id=True, data=b"c")])
         send(far_end, [can.Message(arbitration_id=0x809, is_extended_id=True, data=b"d")])
         assert [identity(frame)[0] for frame in self.heard(robot_end)] == [CONTROL_ID, 0x09, 0x20]
-        robot_end.listen_to({0x08})
+        robot_end.set_id_filter({0x08})
         send(far_end, [Frame(0x08, b"e"), Frame(0x09, b"f")])
         assert [bytes(frame.data) for frame in self.heard(robot_end)] == [b"e"]
 
     def test_listening_to_nothing_is_not_listening_to_all(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        robot_end.listen_to(())
+        robot_end.set_id_filter(())
         far_end.control_port().send(encode_brake())
         send(far_end, cycle())
         assert [frame.arbitration_id for frame in self.heard(robot_end)] == [CONTROL_ID]
@@ -192,7 +192,7 @@ class BusConformance:
         watcher = join()
         send(far_end, [Frame(0x08, b""), Frame(0x09, b"")])
         assert len(self.heard(watcher)) == 2
-        robot_end.listen_to({0x09})
+        robot_end.set_id_filter({0x09})
         assert [frame.arbitration_id for frame in self.heard(robot_end)] == [0x09]
 
     def test_only_the_control_port_carries_control_and_nothing_else(self, ends: Ends) -> None:
@@ -220,11 +220,11 @@ class BusConformance:
 
     def test_own_control_waits_until_it_was_carried(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        robot_end.listen_to({0x09})  # the confirmation comes all the same
+        robot_end.set_id_filter({0x09})  # the confirmation comes all the same
         control = robot_end.control_port()
         for waiting in (1, 2, 3):
             control.send(encode_brake())
-            assert control.unconfirmed == (waiting if self.confirms else 0)
+            assert control.unconfirmed == (waiting if self.receives_own_frames else 0)
         send(robot_end, [numbered(1), can.Message(arbitration_id=CONTROL_ID, is_extended_id=True, data=b"")])
         assert self.heard(robot_end) == []
         assert control.unconfirmed == 0
@@ -267,14 +267,14 @@ class BusConformance:
         with pytest.raises(BusError, match="is shut down"):
             port.send(numbered(0))
         with pytest.raises(BusError, match="is shut down"):
-            robot_end.listen_to({0x09})
+            robot_end.set_id_filter({0x09})
         send(far_end, [numbered(1)])
         assert numbers(self.heard(other)) == [1]
 
     def test_a_reopened_end_hears_what_it_listened_to_and_its_ports_stay_good(self, ends: Ends) -> None:
         robot_end, far_end = ends
         port, control = robot_end.telemetry_port(), robot_end.control_port()
-        robot_end.listen_to({0x09})
+        robot_end.set_id_filter({0x09})
         control.send(encode_brake())
         robot_end.reopen()
         assert control.unconfirmed == 0
@@ -299,7 +299,7 @@ class BusConformance:
 
     def test_frames_for_a_listener_that_takes_none(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        robot_end.listen_to({_NUMBERED_ID})
+        robot_end.set_id_filter({_NUMBERED_ID})
         port = far_end.telemetry_port()
         sent = 0
         try:
@@ -318,7 +318,7 @@ class BusConformance:
         port.send(numbered(sent))
         assert numbers(self.heard(robot_end)) == [sent]  # it goes on as if nothing had been
         lost = sent - len(heard)
-        assert robot_end.lost == lost
+        assert robot_end.overruns == lost
         assert (lost == 0) is (self.behind is Behind.SENDER_IS_TOLD)
         first = lost if self.behind is Behind.OLDEST_ARE_LOST else 0
         assert heard == list(range(first, first + len(heard)))
@@ -337,6 +337,6 @@ class ErrorFrameConformance(BusConformance):
 
     def test_error_frames_pass_every_filter(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        robot_end.listen_to(())
+        robot_end.set_id_filter(())
         send(far_end, [*cycle(), BUS_OFF, *cycle(), RESTARTED])
         assert [identity(frame) for frame in self.heard(robot_end)] == [identity(BUS_OFF), identity(RESTARTED)]

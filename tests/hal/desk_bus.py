@@ -18,7 +18,7 @@ _numbers = itertools.count()
 class DeskBus(InProcessBus):
     """One end that stamps frames and confirms its own, as the kernel's does; the others on its bus are as ever."""
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(self, name: str) -> None:
         super().__init__(name)

@@ -37,7 +37,7 @@ class FuzzedRobot:
         name = f"can-fuzz-{os.getpid()}-{next(_numbers)}"
         spec = f"{kind}:{name}"
         self._stranger: CanInterface = InProcessBus(name) if kind == "virtual" else SharedBus(name)
-        self._stranger.listen_to(frozenset())
+        self._stranger.set_id_filter(frozenset())
         self._controller_bus = open_bus(spec)
         robot_bus = open_bus(spec)
         self.onlooker = robot_bus.tap = Onlooker()

@@ -40,10 +40,10 @@ class Onlooker:
         self._before_m_s = (0.0, 0.0)
         self._braked_before = True
 
-    def heard(self, frame: can.Message, age_s: float) -> None:
+    def on_rx(self, frame: can.Message, age_s: float) -> None:
         self._heard.append((frame, age_s))
 
-    def sent(self, frame: can.Message) -> None:
+    def on_tx(self, frame: can.Message) -> None:
         assert (frame.arbitration_id, frame.is_extended_id, len(frame.data)) == (CONTROL_ID, False, 8)
         self._sent.append(bytes(frame.data))
 

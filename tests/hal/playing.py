@@ -25,9 +25,9 @@ MakeGuard = Callable[[RobotSettings, CanBus], Guard]
 class SlowBus:
     """A bus end that can refuse frames, hold back confirmations, and be interrupted by a signal while it sends."""
 
-    def __init__(self, *, confirms: bool) -> None:
-        self.confirms = confirms
-        self.lost = 0
+    def __init__(self, *, receives_own_frames: bool) -> None:
+        self.receives_own_frames = receives_own_frames
+        self.overruns = 0
         self.refuses = False
         self.interrupt: Callable[[], None] | None = None
         self.attempts: list[can.Message] = []
@@ -51,7 +51,7 @@ class SlowBus:
     def now_s(self) -> float | None:
         return None
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         pass
 
     def recv(self, timeout: float | None) -> can.Message | None:  # noqa: ARG002 - it never waits
@@ -65,7 +65,7 @@ class SlowBus:
         if self.refuses:
             self.refused.append(len(self.attempts) - 1)
             raise can.CanOperationError("transmit queue is full")
-        if self.confirms:
+        if self.receives_own_frames:
             self.waiting += 1
             confirmation = Frame(msg.arbitration_id, bytes(msg.data))
             confirmation.is_rx = False
@@ -135,7 +135,7 @@ guard is latched."""
 
 def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
     """Let one guard for each stream live through it."""
-    end = SlowBus(confirms=streams.confirms)
+    end = SlowBus(receives_own_frames=streams.receives_own_frames)
     grants: list[GuardResult] = []
     noted: list[_Noted] = []
     send_failures = [_play_one(streams, at, end, make_guard, grants, noted) for at in range(streams.shape[0])]
@@ -206,7 +206,7 @@ def _play_one(
         )
     ):
         first = len(attempts)
-        if end.confirms:
+        if end.receives_own_frames:
             if carries:
                 end.carry()
             bus.drain()

@@ -26,7 +26,7 @@ class Streams:
     """
 
     robot: RobotSettings
-    confirms: bool
+    receives_own_frames: bool
     """The bus tells when it has carried a frame."""
     left_m_s: Floats
     right_m_s: Floats
@@ -78,7 +78,7 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
     now_s, backwards = _times(chance, robot.can.cycle_s)
     left_m_s, right_m_s = _wishes(chance, limits, robot.can.cycle_s)
     stormy = chance.streams(0.2)
-    confirms = bool(chance.generator.random() < 0.5)
+    receives_own_frames = bool(chance.generator.random() < 0.5)
     stalls = chance.spells(0.2, starts=0.05, ends=0.2)
     signal = chance.ticks(0.002)
     refuses = ~signal & chance.spells(0.15, starts=0.02, ends=0.5)
@@ -93,7 +93,7 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
     )
     return Streams(
         robot=robot,
-        confirms=confirms,
+        receives_own_frames=receives_own_frames,
         left_m_s=left_m_s,
         right_m_s=right_m_s,
         now_s=now_s,

@@ -58,7 +58,7 @@ def test_its_own_frames_are_no_alarm_and_extended_or_remote_ones_are_no_control(
 
 
 def test_what_slips_past_the_filter_is_neither(ride: Ride) -> None:
-    ride.desk.listen_to(frozenset({0x123}))
+    ride.desk.set_id_filter(frozenset({0x123}))
     ride.desk.arrive(Frame(0x123, bytes(8)))
     assert not ride.decide().latched
     assert (ride.kurt2.health.foreign_control, ride.kurt2.health.junk) == (0, 0)

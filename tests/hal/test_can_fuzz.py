@@ -66,7 +66,7 @@ def tell_the_controller(seed: int, cycles: int) -> MicroController:
     """Bad frames for the simulated controller; whatever it is told, its motors do what motors can."""
     name = f"control-fuzz-{next(_numbers)}"
     bus, stranger = open_bus(f"virtual:{name}"), InProcessBus(name)
-    stranger.listen_to(frozenset())
+    stranger.set_id_filter(frozenset())
     robot = SimulatedRobot(ROBOT, load_world("a", ROBOT), bus, seed)
     controller = robot.controller
     frames = FuzzFrames(seed)

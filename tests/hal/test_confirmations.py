@@ -18,10 +18,10 @@ FAST = Frame(CONTROL_ID, bytes((0, 2, 0, 9, 0, 1, 0, 9)))
 class HeldEnd:
     """An end (hal.can_interface.CanInterface) whose controller sends only what it is told to."""
 
-    confirms = True
+    receives_own_frames = True
 
     def __init__(self) -> None:
-        self.lost = 0
+        self.overruns = 0
         self.held: deque[can.Message] = deque()
         self.arrived: deque[can.Message] = deque()
         self.at_once: CanBus | None = None
@@ -30,7 +30,7 @@ class HeldEnd:
     def now_s(self) -> float | None:
         return None
 
-    def listen_to(self, frame_ids: frozenset[int]) -> None:
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
         if CONTROL_ID not in frame_ids:
             raise ValueError("confirmations would be filtered out")
 
@@ -121,9 +121,9 @@ def test_what_a_controller_forgot_is_not_waited_for(
 
 def test_confirmations_that_were_lost_are_not_waited_for(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
-    end.lost = 5
+    end.overruns = 5
     assert bus.drain() == []
-    assert (port.unconfirmed, bus.lost) == (0, 5)
+    assert (port.unconfirmed, bus.overruns) == (0, 5)
     port.send(encode_brake())
     bus.drain()
     assert port.unconfirmed == 1
@@ -229,13 +229,13 @@ def test_after_a_controller_began_anew_nothing_forgotten_is_waited_for(
         case "restarted":
             end.arrived.append(RESTARTED)
         case "lost":
-            end.lost = 1
+            end.overruns = 1
         case "reopened":
             bus.reopen()
     end.held.clear()
     if happens != "reopened":
         bus.drain()
-    end.lost = 0 if happens != "lost" else 1
+    end.overruns = 0 if happens != "lost" else 1
     assert port.unconfirmed == 0
     port.send(encode_brake())
     end.carry()
@@ -250,5 +250,5 @@ def test_a_bus_that_was_opened_anew_begins_at_none(bus: CanBus, port: FramePort)
 
 
 def test_a_filter_always_lets_confirmations_through(bus: CanBus) -> None:
-    bus.listen_to({0x09})
+    bus.set_id_filter({0x09})
     bus.reopen()

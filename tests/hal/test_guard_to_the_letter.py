@@ -62,7 +62,7 @@ class RefusesOne(SlowBus):
 
 
 def test_a_frame_that_was_refused_is_told_of_though_its_brake_went_out() -> None:
-    end = RefusesOne(confirms=False)
+    end = RefusesOne(receives_own_frames=False)
     guard = Guard(ROBOT, CanBus("slow", lambda _: end))
     assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (words.BUS_LOST,)
     assert guard.send_failures == 1
@@ -70,7 +70,7 @@ def test_a_frame_that_was_refused_is_told_of_though_its_brake_went_out() -> None
 
 
 def test_a_frame_is_made_only_when_it_says_something_new() -> None:
-    end = SlowBus(confirms=False)
+    end = SlowBus(receives_own_frames=False)
     guard = Guard(ROBOT, CanBus("slow", lambda _: end))
     for tick, speeds in enumerate([(0.01, 0.0), (0.01, 0.0), (0.01, 0.01), (0.01, 0.01), (0.0, 0.01)]):
         guard.drive(WheelSpeeds(*speeds), fresh(tick * 0.01), tick * 0.01, tick * 0.01)

@@ -11,7 +11,7 @@ FROZEN_S = 1.5
 @pytest.fixture
 def watch() -> InfraredWatch:
     watch = InfraredWatch(CHANNELS, FROZEN_S)
-    assert watch.freeze(10.0, driving=False) == ""
+    assert watch.check_frozen(10.0, driving=False) == ""
     return watch
 
 
@@ -22,17 +22,17 @@ def test_channels_of_one_controller_share_their_board(watch: InfraredWatch) -> N
 
 
 def test_a_board_may_be_still_for_as_long_as_the_settings_say(watch: InfraredWatch) -> None:
-    assert watch.freeze(10.0 + FROZEN_S - 0.01, driving=True) == ""
-    assert watch.freeze(10.0 + FROZEN_S, driving=True) != ""
+    assert watch.check_frozen(10.0 + FROZEN_S - 0.01, driving=True) == ""
+    assert watch.check_frozen(10.0 + FROZEN_S, driving=True) != ""
 
 
 @pytest.mark.parametrize(
     ("alive", "frozen"), [("ADC00", "second controller (BDC*)"), ("BDC00", "first controller (ADC*)")]
 )
 def test_the_one_that_is_frozen_is_named(watch: InfraredWatch, alive: str, frozen: str) -> None:
-    assert watch.freeze(11.0, driving=True) == ""
+    assert watch.check_frozen(11.0, driving=True) == ""
     watch.board_of(alive).still_s = 0.0
-    said = watch.freeze(12.0, driving=True)
+    said = watch.check_frozen(12.0, driving=True)
     assert said == f"the distance sensors of the {frozen} repeated themselves for 1.5 s; switch the robot off and on"
 
 
@@ -41,35 +41,35 @@ def test_boards_that_change_are_alive(watch: InfraredWatch) -> None:
         now_s = 10.0 + tick * 0.01
         if tick % 140 == 0:
             watch.board_of("ADC07").still_s = watch.board_of("BDC00").still_s = 0.0
-        assert watch.freeze(now_s, driving=True) == ""
+        assert watch.check_frozen(now_s, driving=True) == ""
 
 
 def test_time_in_which_the_robot_stands_does_not_count(watch: InfraredWatch) -> None:
-    assert watch.freeze(50.0, driving=False) == ""
-    assert watch.freeze(50.0 + FROZEN_S - 0.01, driving=True) == ""
-    assert watch.freeze(60.0, driving=False) == ""
-    assert watch.freeze(60.005, driving=True) == ""
+    assert watch.check_frozen(50.0, driving=False) == ""
+    assert watch.check_frozen(50.0 + FROZEN_S - 0.01, driving=True) == ""
+    assert watch.check_frozen(60.0, driving=False) == ""
+    assert watch.check_frozen(60.005, driving=True) == ""
 
 
 def test_a_stop_in_between_does_not_make_a_board_alive(watch: InfraredWatch) -> None:
-    assert watch.freeze(10.0 + FROZEN_S - 0.01, driving=True) == ""
-    assert watch.freeze(60.0, driving=False) == ""
-    assert watch.freeze(60.02, driving=True) != ""
-    assert watch.freeze(70.0, driving=False) == ""
-    assert watch.freeze(70.01, driving=True) != ""
+    assert watch.check_frozen(10.0 + FROZEN_S - 0.01, driving=True) == ""
+    assert watch.check_frozen(60.0, driving=False) == ""
+    assert watch.check_frozen(60.02, driving=True) != ""
+    assert watch.check_frozen(70.0, driving=False) == ""
+    assert watch.check_frozen(70.01, driving=True) != ""
     watch.board_of("ADC07").still_s = watch.board_of("BDC00").still_s = 0.0
-    assert watch.freeze(70.02, driving=True) == ""
+    assert watch.check_frozen(70.02, driving=True) == ""
 
 
 def test_a_clock_that_runs_backwards_takes_nothing_back(watch: InfraredWatch) -> None:
-    assert watch.freeze(11.0, driving=True) == ""
-    assert watch.freeze(1.0, driving=True) == ""
-    assert watch.freeze(1.0 + FROZEN_S - 1.0, driving=True) != ""
+    assert watch.check_frozen(11.0, driving=True) == ""
+    assert watch.check_frozen(1.0, driving=True) == ""
+    assert watch.check_frozen(1.0 + FROZEN_S - 1.0, driving=True) != ""
 
 
 def test_a_robot_with_sensors_on_one_board_has_no_other() -> None:
     watch = InfraredWatch(("BDC01", "BDC02"), FROZEN_S)
-    assert watch.freeze(5.0, driving=True) == ""  # of the time before nobody knows
-    assert "second controller" in watch.freeze(5.0 + FROZEN_S, driving=True)
+    assert watch.check_frozen(5.0, driving=True) == ""  # of the time before nobody knows
+    assert "second controller" in watch.check_frozen(5.0 + FROZEN_S, driving=True)
     watch.board_of("BDC02").still_s = 0.0
-    assert watch.freeze(5.0 + FROZEN_S, driving=True) == ""
+    assert watch.check_frozen(5.0 + FROZEN_S, driving=True) == ""

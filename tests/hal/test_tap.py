@@ -16,10 +16,10 @@ class Onlooker:
         self.heard_frames: list[tuple[int, float]] = []
         self.sent_frames: list[int] = []
 
-    def heard(self, frame: can.Message, age_s: float) -> None:
+    def on_rx(self, frame: can.Message, age_s: float) -> None:
         self.heard_frames.append((frame.arbitration_id, age_s))
 
-    def sent(self, frame: can.Message) -> None:
+    def on_tx(self, frame: can.Message) -> None:
         self.sent_frames.append(frame.arbitration_id)
 
 

@@ -29,12 +29,12 @@ class Watched:
         self._watch = WheelWatch(robot)
         self._cycle_s = robot.can.cycle_s
         self.now_s = 8.0
-        assert self._watch.disobedience(first_ticks, first_ticks, 1, self.now_s) == ""
+        assert self._watch.check(first_ticks, first_ticks, 1, self.now_s) == ""
 
     def turn(self, told_m_s: float, left_ticks: int, right_ticks: int, elapsed_s: float | None = None) -> str:
-        self._watch.tell(WheelSpeeds(told_m_s, told_m_s))
+        self._watch.set_command(WheelSpeeds(told_m_s, told_m_s))
         self.now_s += self._cycle_s if elapsed_s is None else elapsed_s
-        return self._watch.disobedience(left_ticks, right_ticks, 1, self.now_s)
+        return self._watch.check(left_ticks, right_ticks, 1, self.now_s)
 
 
 @pytest.mark.parametrize(
@@ -91,17 +91,17 @@ def test_two_looks_at_the_same_time_forget_nothing() -> None:
 
 def test_a_board_is_frozen_after_just_the_time_it_may_repeat_itself() -> None:
     watch = InfraredWatch(("ADC00", "BDC00"), 1.0)
-    assert watch.freeze(50.0, driving=False) == ""
-    assert watch.freeze(50.5, driving=True) == ""
+    assert watch.check_frozen(50.0, driving=False) == ""
+    assert watch.check_frozen(50.5, driving=True) == ""
     watch.board_of("BDC00").still_s = 0.0
-    assert watch.freeze(51.0 - 2**-20, driving=True) == ""
-    assert watch.freeze(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
+    assert watch.check_frozen(51.0 - 2**-20, driving=True) == ""
+    assert watch.check_frozen(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
     watch.board_of("ADC00").still_s = 0.0
-    assert watch.freeze(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
+    assert watch.check_frozen(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
 
 
 def test_the_time_before_the_first_look_is_no_time_of_repeating() -> None:
     watch = InfraredWatch(("ADC00",), 1.0)
-    assert watch.freeze(50.0, driving=True) == ""
-    assert watch.freeze(50.5, driving=True) == ""
-    assert watch.freeze(51.0, driving=True) != ""
+    assert watch.check_frozen(50.0, driving=True) == ""
+    assert watch.check_frozen(50.5, driving=True) == ""
+    assert watch.check_frozen(51.0, driving=True) != ""

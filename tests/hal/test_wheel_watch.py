@@ -49,11 +49,11 @@ class Trial:
     def cycle(self, left_m_s: float, right_m_s: float, *, brake: bool = False, lost: bool = False) -> str:
         """Tell them, let them turn for a cycle, and look."""
         self.told = WheelSpeeds(left_m_s, right_m_s)
-        self.watch.tell(self.told)
+        self.watch.set_command(self.told)
         self.wheels.turn(*self.obey(self.told), brake, brake)
         left, right = self.count(*self.wheels.take_ticks())
         self.now_s += TICK_S
-        return self.watch.disobedience(*((0, 0, 0) if lost else (left, right, 1)), self.now_s)
+        return self.watch.check(*((0, 0, 0) if lost else (left, right, 1)), self.now_s)
 
     def drive(self, seconds: float, left_m_s: float, right_m_s: float) -> str:
         """Go on so for a while, speeding up as the guard lets it; what the watch said first."""
@@ -117,7 +117,7 @@ def test_ticks_that_were_missed_are_no_disobedience(orders: list[tuple[float, fl
     watch, wheels = WheelWatch(ROBOT), Wheels(ROBOT)
     now_s = 0.0
     for left_m_s, right_m_s, ticks in orders:
-        watch.tell(WheelSpeeds(left_m_s, right_m_s))
+        watch.set_command(WheelSpeeds(left_m_s, right_m_s))
         for cycles in ticks:
             counted = []
             for _ in range(cycles):
@@ -125,7 +125,7 @@ def test_ticks_that_were_missed_are_no_disobedience(orders: list[tuple[float, fl
                 counted.append(wheels.take_ticks())
             now_s += cycles * TICK_S
             left, right = (sum(side) for side in zip(*counted, strict=True))
-            assert watch.disobedience(left, right, cycles, now_s) == ""
+            assert watch.check(left, right, cycles, now_s) == ""
 
 
 @pytest.mark.parametrize("mode", SpeedMode)
@@ -166,8 +166,8 @@ def test_encoders_that_come_back_find_the_wheels_as_they_are(driving: Trial) -> 
     """A controller that hung for a second: it goes on at the old speed and has yet to hear that it should stand."""
     for _ in range(100):
         driving.now_s += TICK_S
-        driving.watch.tell(STANDSTILL)
-        assert driving.watch.disobedience(0, 0, 0, driving.now_s) == ""
+        driving.watch.set_command(STANDSTILL)
+        assert driving.watch.check(0, 0, 0, driving.now_s) == ""
     driving.told = STANDSTILL
     assert driving.drive(1.0, 0.0, 0.0) == ""
 
@@ -176,14 +176,14 @@ def test_a_controller_that_is_slow_by_itself_is_judged_by_its_own_cycles(trial: 
     """A simulation on a busy machine: two of three cycles do not take place."""
     for tick in range(600):
         trial.told = WheelSpeeds(*(slewed(m_s, (-0.3, 0.3)[tick // 100 % 2]) for m_s in trial.told))
-        trial.watch.tell(trial.told)
+        trial.watch.set_command(trial.told)
         trial.now_s += TICK_S
         left = right = frames = 0
         if tick % 3 == 0:
             trial.wheels.turn(*trial.told)
             left, right = trial.wheels.take_ticks()
             frames = 1
-        assert trial.watch.disobedience(left, right, frames, trial.now_s) == ""
+        assert trial.watch.check(left, right, frames, trial.now_s) == ""
 
 
 def test_a_short_silence_is_no_excuse(driving: Trial) -> None:

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.hil
 def listener(vcan0: str) -> Iterator[CanBus]:
     """A third end, which hears CONTROL alone."""
     bus = open_bus(vcan0)
-    bus.listen_to({0x01})
+    bus.set_id_filter({0x01})
     yield bus
     bus.shutdown()
 

@@ -75,7 +75,7 @@ def link_goes_down_and_up(vcan0: str) -> Iterator[str]:
 
 
 class TestSocketCan(ErrorFrameConformance):
-    confirms = True
+    receives_own_frames = True
     behind = Behind.NEWEST_ARE_LOST
 
     @pytest.fixture
@@ -138,7 +138,7 @@ def test_a_waiting_frame_is_as_old_as_its_wait(ends: Ends) -> None:
 def test_a_link_that_goes_down_is_told_until_it_is_up_and_reopened(ends: Ends, link_goes_down_and_up: str) -> None:
     robot_end, far_end = ends
     name = link_goes_down_and_up
-    robot_end.listen_to({0x09})
+    robot_end.set_id_filter({0x09})
     link("set", name, "down")
     for _ in range(3):
         with pytest.raises(BusError, match=f"receiving failed .*the interface is down: ip link set {name} up"):
@@ -203,11 +203,11 @@ def test_an_adapter_that_is_unplugged_is_told_until_it_is_plugged_in_again(passi
 
 def test_filters_are_the_kernels(ends: Ends) -> None:
     robot_end, far_end = ends
-    robot_end.listen_to({0x09})
+    robot_end.set_id_filter({0x09})
     send(far_end, (Frame(0x0A, b"") for _ in range(6000)))  # more than wait for a listener
     send(far_end, [Frame(0x09, b"x")])
     assert [frame.arbitration_id for frame in take(robot_end, 1)] == [0x09]
-    assert robot_end.lost == 0
+    assert robot_end.overruns == 0
 
 
 def test_a_full_transmit_queue_is_told_at_once_and_no_frame_of_it_is_taken_for_carried(passing_interface: str) -> None:

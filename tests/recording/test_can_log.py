@@ -76,9 +76,9 @@ def test_stamps_are_when_the_bus_carried_the_frame_and_one_frame_sent_twice_has_
     shelf = Shelf()
     log = CanLog(shelf, "x.log", "can1")
     brake = encode_brake()
-    log.heard(encoder(1), 0.5)
-    log.sent(brake)
-    log.sent(brake)
+    log.on_rx(encoder(1), 0.5)
+    log.on_tx(brake)
+    log.on_tx(brake)
     log.write_waiting()
     old, first, second = (frame.timestamp for frame in shelf.frames)
     assert first - old >= 0.5
@@ -91,10 +91,10 @@ def test_a_writer_that_hangs_costs_frames_but_no_time() -> None:
     stuck = Stuck()
     log = CanLog(stuck, "x.log", "can0", capacity_frames=10)
     log.start()
-    log.heard(encoder(0), 0.0)
+    log.on_rx(encoder(0), 0.0)
     assert stuck.hangs.wait(30.0)
     for left in range(1, 16):
-        log.heard(encoder(left), 0.0)
+        log.on_rx(encoder(left), 0.0)
     assert (log.written, log.lost) == (0, 5)
     assert log.trouble == "CAN log x.log: 5 frames lost"
     stuck.free.set()
@@ -107,7 +107,7 @@ def test_the_end_of_the_run_gives_a_writer_up_that_hangs() -> None:
     stuck = Stuck()
     log = CanLog(stuck, "x.log", "can0")
     log.start()
-    log.heard(encoder(0), 0.0)
+    log.on_rx(encoder(0), 0.0)
     assert stuck.hangs.wait(30.0)
     log.close(0.0)
     assert log.trouble == "CAN log x.log: the disk does not answer; the end is missing"
@@ -119,12 +119,12 @@ def test_a_writer_that_fails_is_told_of_and_tried_again(failure: Exception) -> N
     shelf = Shelf()
     log = CanLog(shelf, "x.log", "can0")
     shelf.failure = failure
-    log.heard(encoder(1), 0.0)
-    log.heard(encoder(2), 0.0)
+    log.on_rx(encoder(1), 0.0)
+    log.on_rx(encoder(2), 0.0)
     log.write_waiting()
     assert log.trouble == f"CAN log x.log: writing failed ({failure}), 2 frames lost"
     shelf.failure = None
-    log.heard(encoder(3), 0.0)
+    log.on_rx(encoder(3), 0.0)
     log.write_waiting()
     assert (lefts(shelf), log.written, log.lost) == ([3], 1, 2)
     assert log.trouble == "CAN log x.log: 2 frames lost"
@@ -144,7 +144,7 @@ def test_the_log_of_a_robot_without_an_interface_can_be_played_on_one() -> None:
     for bus, channel in (("sim", "can0"), ("shared:desk", "can0"), ("virtual:x", "can0"), ("vcan7", "vcan7")):
         shelf = Shelf()
         log = CanLog(shelf, "x.log", bus)
-        log.heard(encoder(1), 0.0)
+        log.on_rx(encoder(1), 0.0)
         log.write_waiting()
         assert [frame.channel for frame in shelf.frames] == [channel]
 

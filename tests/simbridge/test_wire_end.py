@@ -18,7 +18,7 @@ DEEP = NodeSettings(order=SendingOrder.FIFO, queue_frames=256, restart_s=0.1)
 
 
 class TestWireEnd(BusConformance):
-    confirms: ClassVar[bool] = True
+    receives_own_frames: ClassVar[bool] = True
     behind: ClassVar[Behind] = Behind.NEWEST_ARE_LOST
     too_many_frames: ClassVar[int] = 4200
 

@@ -13,7 +13,7 @@ from tests.hal.bus_conformance import Behind, ErrorFrameConformance, Join, joini
 
 
 class TestChangingEnd(ErrorFrameConformance):
-    confirms: ClassVar[bool] = True
+    receives_own_frames: ClassVar[bool] = True
     behind: ClassVar[Behind] = Behind.NEWEST_ARE_LOST
 
     @pytest.fixture
