@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import standing
+from tests.texts import complaints, standing
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -30,6 +30,10 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "terminal": {
         "standing": standing.in_terminal,
         "stops": standing.stops,
+    },
+    "reports": {
+        "complaints of fault drill and soak": complaints.complaints,
+        "checks of a soak": complaints.soak_checks,
     },
     "log": {
         "standing": standing.in_log,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.knowledge.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal import Journal
@@ -121,14 +122,16 @@ class FailingDisk:
         self._journal.given_up = True
         self._writer.close()
 
-    def what_it_lost(self) -> str:
-        """What is wrong with the closed file, in a line; empty when it holds all lessons, once, and in order."""
+    def lost_lessons(self) -> Complaint | None:
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
         kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
         if kept != self.submitted:
-            return f"{len(self.submitted)} lessons were taught, the file holds {len(kept)}: {kept}"
+            taught, names = len(self.submitted), f": {kept}"
+            return complaint(ComplaintCode.LESSONS_NOT_STORED, taught=taught, stored=len(kept), names=names)
         if self.acknowledged != self.submitted:
-            return f"{len(self.submitted)} lessons were saved, {len(self.acknowledged)} were said to be"
-        return ""
+            saved, acknowledged = len(self.submitted), len(self.acknowledged)
+            return complaint(ComplaintCode.LESSONS_NOT_ACKNOWLEDGED, saved=saved, acknowledged=acknowledged)
+        return None
 
     def _in_step(self) -> bool:
         now_s = self._simulated.now_s()

@@ -7,6 +7,7 @@ from pathlib import Path
 from hal.errors import UserError
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.clocks import DisturbedClock, DrillClock
+from kurt2rt.faults.complaint import Complaint
 from kurt2rt.faults.disk import FailingDisk
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.hand_link import HandLink
@@ -94,7 +95,7 @@ class _Drill:
             self._start_anew()
             await self._serve()
 
-    def outcome(self, seed: int, problems: tuple[str, ...]) -> Outcome:
+    def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> Outcome:
         """What it came to."""
         witness, word_at_s = self._witness, self._script.word_at_s
         begin_s, end_s = self._place.disturbance.begin_s, self._place.disturbance.end_s
@@ -214,11 +215,11 @@ async def drill(
             stack.callback(recorder.close)
         running = _Drill(place, case, table, settings, task, chance, keeper, recorder)
         await running.run()
-        problems: list[str] = []
+        problems: list[Complaint | None] = []
         if disk is not None:
             disk.close()
-            problems.append(disk.what_it_lost())
+            problems.append(disk.lost_lessons())
         if recorder is not None:
             recorder.close()
-            problems.append(recorder.what_is_uncounted())
-        return running.outcome(seed, tuple(each for each in problems if each))
+            problems.append(recorder.uncounted_frames())
+        return running.outcome(seed, tuple(each for each in problems if each is not None))

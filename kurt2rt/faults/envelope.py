@@ -7,6 +7,7 @@ of the other's.
 import struct
 from typing import NamedTuple
 
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, Value, complaint
 from kurt2rt.faults.table import EnvelopeSettings
 
 _SPEED_CM, _RAW = 2, 0
@@ -88,11 +89,11 @@ class _UnderWay:
 
 
 class Envelope:
-    """Follows all frames of one driver; `violations` says in words what was beyond the limits."""
+    """Follows all frames of one driver; `violations` holds what was beyond the limits."""
 
     def __init__(self, limits: EnvelopeSettings, slew_share: float = 1.0) -> None:
         """`slew_share`: so many times the slew limits are allowed; may be changed later."""
-        self.violations: list[str] = []
+        self.violations: list[Complaint] = []
         self.frames = 0
         """Handed to the bus."""
         self.oldest_age_s = 0.0
@@ -119,14 +120,14 @@ class Envelope:
         put = _Put(at_s, age_s, told, self.off_a_bumper)
         self._under_way.put(number, put)
         if told is None:
-            self._violate(at_s, f"no set point and no brake: {payload.hex(' ')}")
+            self._violate(at_s, ComplaintCode.UNKNOWN_FRAME, payload=payload.hex(" "))
             return
         if not told.standing:
             self.oldest_age_s = max(self.oldest_age_s, age_s)
             if not age_s <= self._limits.command_age_s + _ROUNDING:
-                self._violate(at_s, f"a command {age_s * 1000:.1f} ms old")
+                self._violate(at_s, ComplaintCode.OLD_COMMAND, age_ms=age_s * 1000)
         if latched and not told.brake:
-            self._violate(at_s, "no brake though the robot is to stay stopped")
+            self._violate(at_s, ComplaintCode.NO_BRAKE)
         self._require_slow(at_s, told)
         if self._last_put is not None and self._last_put.told is not None:
             longest_s = self._limits.longest_step_s
@@ -143,7 +144,7 @@ class Envelope:
             return None
         put = self._under_way.pop(number)
         if put is None:
-            self._violate(at_s, f"frame {number} arrives twice, or after {_MOST_UNDER_WAY} others")
+            self._violate(at_s, ComplaintCode.ARRIVED_TWICE, frame=number, others=_MOST_UNDER_WAY)
             return told
         if not told.standing and put.age_s + at_s - put.at_s > self._limits.command_age_s + _ROUNDING:
             self.old_frames += 1
@@ -167,7 +168,7 @@ class Envelope:
     def _require_slow(self, at_s: float, told: Told) -> None:
         fastest_m_s = max(abs(told.left_m_s), abs(told.right_m_s))
         if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
-            self._violate(at_s, f"{fastest_m_s:.2f} m/s")
+            self._violate(at_s, ComplaintCode.TOO_FAST, speed_m_s=fastest_m_s)
 
     def _require_smooth(
         self, at_s: float, before: Told, put: _Put, told: Told, elapsed_s: float, *, follows: bool = True
@@ -184,7 +185,7 @@ class Envelope:
             if old_m_s * new_m_s < 0.0 and put.off_a_bumper:
                 old_m_s = 0.0
             if old_m_s * new_m_s < 0.0:
-                self._violate(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
+                self._violate(at_s, ComplaintCode.TURNED_ROUND, side=side, from_m_s=old_m_s, to_m_s=new_m_s)
                 continue
             gained_m_s = abs(new_m_s) - abs(old_m_s)
             limit_m_s2 = limits.acceleration_m_s2 if gained_m_s > 0 else limits.braking_m_s2
@@ -192,9 +193,13 @@ class Envelope:
             if abs(gained_m_s) > allowed_m_s + _ROUNDING:
                 self._violate(
                     at_s,
-                    f"{side} from {old_m_s:.2f} to {new_m_s:.2f} m/s in {elapsed_s * 1000:.0f} ms, "
-                    f"allowed are {allowed_m_s:.3f} m/s",
+                    ComplaintCode.JUMPED,
+                    side=side,
+                    from_m_s=old_m_s,
+                    to_m_s=new_m_s,
+                    within_ms=elapsed_s * 1000,
+                    allowed_m_s=allowed_m_s,
                 )
 
-    def _violate(self, at_s: float, what: str) -> None:
-        self.violations.append(f"at {at_s:.3f} s: {what}")
+    def _violate(self, at_s: float, code: ComplaintCode, **values: Value) -> None:
+        self.violations.append(complaint(code, at_s, **values))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from kurt2rt.faults.complaint import Complaint
 from kurt2rt.faults.table import Kind, Target
 
 LOST_FRAMES = "lost frames"
@@ -49,5 +50,5 @@ class Outcome:
     """CONTROL frames that the driver sent."""
     counted: dict[str, int]
     """What was lost, refused or not understood."""
-    problems: tuple[str, ...] = field(default=())
+    problems: tuple[Complaint, ...] = field(default=())
     """Everything beyond the envelope, and what went wrong beside the robot's motion."""

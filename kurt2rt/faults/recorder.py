@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import can
 
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.recording.can_log import CanLog
 
@@ -88,11 +89,12 @@ class FailingRecorder:
             self._thread.join()
         self._log.write_waiting()
 
-    def what_is_uncounted(self) -> str:
-        """What is wrong with the log's own count once it is closed, in a line; empty when it adds up."""
+    def uncounted_frames(self) -> Complaint | None:
+        """Compare the closed log's own count with the frames; None if it adds up."""
         if self._log.written + self._log.lost != self._noted:
-            return f"{self._noted} frames passed, {self._log.written} were written and {self._log.lost} lost"
-        return ""
+            noted, written, lost = self._noted, self._log.written, self._log.lost
+            return complaint(ComplaintCode.LOG_MISCOUNTED, noted=noted, written=written, lost=lost)
+        return None
 
     def _plan(self) -> None:
         self._next_s += _PERIOD_S

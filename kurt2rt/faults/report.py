@@ -7,6 +7,7 @@ from dataclasses import asdict
 from rich.console import Console
 from rich.text import Text
 
+from kurt2rt.faults.complaint import text_of
 from kurt2rt.faults.outcome import Standstill
 from kurt2rt.faults.stop_times import StopTime
 from kurt2rt.faults.suite import Trial
@@ -51,7 +52,9 @@ def as_json(trials: Sequence[Trial], times: Sequence[StopTime]) -> str:
                     "last": _row(outcome.last),
                     "must": case.must.model_dump(exclude_none=True),
                     "passed": verdict.passed,
-                    "complaints": verdict.complaints,
+                    "problems": [text_of(each) for each in outcome.problems],
+                    "complaints": [text_of(each) for each in verdict.complaints],
+                    "codes": [each.code for each in verdict.complaints],
                 }
                 for case, outcome, verdict in trials
             ],
@@ -106,7 +109,7 @@ def _print_complaints(trials: Sequence[Trial], console: Console) -> None:
         print_whole(console, Text(f"{case}: known gap: {case.must.known_gap}", "yellow"))
     for case, outcome, verdict in failed:
         for complaint in verdict.complaints:
-            print_whole(console, Text(f"{case}, seed {outcome.seed}: {complaint}", "red"))
+            print_whole(console, Text(f"{case}, seed {outcome.seed}: {text_of(complaint)}", "red"))
     tried = len({trial.case for trial in trials})
     told = f"{tried} cases, {len(trials)} trials, {len(failed)} not as they must be, {len(gaps)} known gaps"
     print_whole(console, told)

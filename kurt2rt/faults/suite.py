@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.drill import drill
-from kurt2rt.faults.judge import Verdict, judge
+from kurt2rt.faults.judge import DrillVerdict, judge
 from kurt2rt.faults.outcome import Outcome
 from kurt2rt.faults.place import Stage
 from kurt2rt.faults.table import FaultCase, FaultTable
@@ -19,7 +19,7 @@ class Trial(NamedTuple):
 
     case: FaultCase
     outcome: Outcome
-    verdict: Verdict
+    verdict: DrillVerdict
 
 
 async def try_case(

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from hal.robot import STANDSTILL, Robot, SensorReadings
 from hal.robot_proxy import RobotProxy
+from kurt2rt.faults.complaint import ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.place import Place
 from kurt2rt.tick import TickRecord
@@ -45,7 +46,8 @@ class Witness(RobotProxy):
         if record.grant.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
             if not record.decision.driving:
-                self.envelope.violations.append(f"at {now_s:.3f} s: drives though {record.decision.cause}")
+                drove = complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause)
+                self.envelope.violations.append(drove)
         else:
             # A layer that wants to drive is not why the robot stands.
             cause = () if record.decision.driving else (str(record.decision.cause),)

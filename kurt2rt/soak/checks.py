@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from statistics import median
 
+from kurt2rt.faults.complaint import Complaint
 from kurt2rt.soak.faults import FaultSeen
-from kurt2rt.soak.result import Check, Minute, Start
+from kurt2rt.soak.result import Check, CheckCode, Minute, Start
 from kurt2rt.soak.settings import LimitSettings
 from kurt2rt.soak.witness import Complaints
 
@@ -20,17 +21,17 @@ def memory_base_mb(minutes: Sequence[Minute]) -> float | None:
 
 def memory_check(minutes: Sequence[Minute], limits: LimitSettings) -> Check:
     """No growth after the first hour: the median of any ten minutes against the last ten of that hour."""
-    what = f"memory grows by no more than {limits.memory_mb:g} MB after the first hour"
     base_mb = memory_base_mb(minutes)
     later = [each for each in minutes if each.at_s > HOUR_S]
     if base_mb is None or len(later) < _ABOUT_S / 60:
-        return Check(what, passed=True, found="shorter than an hour and ten minutes: not asked")
+        return Check(CheckCode.MEMORY, passed=True, values={"limit_mb": limits.memory_mb}, judged=False)
     spans: dict[int, list[float]] = {}
     for each in later:
         spans.setdefault(int(each.at_s / _ABOUT_S), []).append(each.resident_mb)
     grown_mb = max(median(each) for each in spans.values()) - base_mb
     end_mb = later[-1].resident_mb - base_mb
-    return Check(what, grown_mb <= limits.memory_mb, f"{grown_mb:+.1f} MB at most, {end_mb:+.1f} MB at the end")
+    values = {"limit_mb": limits.memory_mb, "grown_mb": grown_mb, "end_mb": end_mb}
+    return Check(CheckCode.MEMORY, grown_mb <= limits.memory_mb, values)
 
 
 def memory_told(minutes: Sequence[Minute], starts: Sequence[Start]) -> str:
@@ -57,43 +58,32 @@ def memory_told(minutes: Sequence[Minute], starts: Sequence[Start]) -> str:
 
 def steady_check(minutes: Sequence[Minute]) -> Check:
     """As many files and threads at the end as after the first minutes."""
-    what = "open files and threads do not become more"
     if len(minutes) < 2:
-        return Check(what, passed=True, found="shorter than two minutes: not asked")
+        return Check(CheckCode.FILES_AND_THREADS, passed=True, values={}, judged=False)
     first, last = minutes[0], minutes[-1]
     # At the full minute something may be open that is not for long, so the least of the last ten counts.
     files = min(each.open_files for each in minutes[-10:])
     alive = min(each.threads for each in minutes[-10:])
-    found = f"{first.open_files} files and {first.threads} threads first, {files} and {alive} at the end"
-    return Check(what, files <= first.open_files and alive <= first.threads and last.at_s > first.at_s, found)
+    passed = files <= first.open_files and alive <= first.threads and last.at_s > first.at_s
+    values = {"first_files": first.open_files, "first_threads": first.threads, "files": files, "threads": alive}
+    return Check(CheckCode.FILES_AND_THREADS, passed, values)
 
 
 def fault_check(faults: Sequence[FaultSeen]) -> Check:
     """Each fault led to the standstill that it must lead to."""
-    wrong = [each for each in faults if each.complaint]
-    drove = sum(each.drove for each in faults)
-    found = f"{len(faults)} faults, {drove} of them while it drove; {len(wrong)} not as they must"
-    return Check("every fault leads to what it must", not wrong, found)
+    wrong = sum(bool(each.complaints) for each in faults)
+    values = {"faults": len(faults), "drove": sum(each.drove for each in faults), "wrong": wrong}
+    return Check(CheckCode.FAULTS, not wrong, values)
 
 
-def starts_check(starts: Sequence[Start], unexpected: Sequence[str]) -> Check:
+def starts_check(starts: Sequence[Start], unexpected: Sequence[Complaint]) -> Check:
     """The program ended only where a fault must end it, and left every lesson."""
-    wrong = [each for each in starts if each.complaint]
+    lost = sum(each.complaint is not None for each in starts)
     ended = sum(bool(each.ended_by) for each in starts)
-    found = (
-        f"{len(starts)} starts, {ended} ended by a fault; {len(unexpected)} unexpected ends, {len(wrong)} lost lessons"
-    )
-    return Check(
-        "every lesson is kept over every start, and nothing ends the program that must not",
-        not (wrong or unexpected),
-        found,
-    )
+    values = {"starts": len(starts), "ended": ended, "unexpected": len(unexpected), "lost": lost}
+    return Check(CheckCode.STARTS, not (lost or unexpected), values)
 
 
 def envelope_check(complaints: Complaints, frames: int) -> Check:
     """Nothing that the witness of every tick complained about."""
-    return Check(
-        "the motion envelope holds, the robot stands until it is told to drive, and every tick is accounted for",
-        complaints.count == 0,
-        f"{complaints.count} complaints about {frames} frames",
-    )
+    return Check(CheckCode.ENVELOPE, complaints.count == 0, {"complaints": complaints.count, "frames": frames})

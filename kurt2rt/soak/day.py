@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.table import FaultTable
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.recording.recording import Recording
@@ -28,7 +29,7 @@ from kurt2rt.soak.meters import objects_by_type, used_mb
 from kurt2rt.soak.odometry import OdometryCheck
 from kurt2rt.soak.person import Person
 from kurt2rt.soak.place import SoakPlace
-from kurt2rt.soak.result import Check, SoakResult, Start
+from kurt2rt.soak.result import Check, CheckCode, SoakResult, Start
 from kurt2rt.soak.settings import SoakSettings
 from kurt2rt.soak.spool import Spool
 from kurt2rt.soak.teacher import SoakTeacher
@@ -73,7 +74,7 @@ class Day:
         self._odometry = OdometryCheck(place, settings.geometry.metres_per_tick)
         self._log = MinuteLog()
         self._starts: Spool[Start] = Spool()
-        self._unexpected: list[str] = []
+        self._unexpected: list[Complaint] = []
         self._objects: dict[str, dict[str, int]] = {}
         self._first_hour: tracemalloc.Snapshot | None = None
         self._next_minute_s = _MINUTE_S
@@ -149,11 +150,12 @@ class Day:
         expected = self._faults.expects_the_end
         self._faults.life = None
         if life.ended_by and not expected:
-            self._unexpected.append(f"at {self._place.time.now_s():.3f} s: {life.ended_by}")
+            now_s = self._place.time.now_s()
+            self._unexpected.append(complaint(ComplaintCode.ENDED_UNEXPECTEDLY, now_s, error=life.ended_by))
         try:
-            complaint = life.close()
+            lost = life.close()
         except KnowledgeError as error:
-            complaint = str(error)
+            lost = complaint(ComplaintCode.NOT_SAVED, error=str(error))
         ledger = life.runtime.ledger
         self._witness.ticks += ledger.ticks
         self._witness.missed_ticks += ledger.missed_ticks
@@ -164,7 +166,7 @@ class Day:
             self._troubles.append(life.recorder.trouble)
         self._most_waiting = max(self._most_waiting, life.most_waiting)
         lasted_s = self._place.time.now_s() - begun_s
-        return Start(begun_s, lasted_s, wire, life.ended_by, complaint)
+        return Start(begun_s, lasted_s, wire, life.ended_by, lost)
 
     def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
         now_s = self._place.time.now_s()
@@ -222,22 +224,26 @@ class Day:
             memory_check(minutes, limits),
             steady_check(minutes),
             Check(
-                "what waits for a tick stays little",
+                CheckCode.WAITING,
                 self._most_waiting <= limits.waiting,
-                f"{self._most_waiting} commands at most, {limits.waiting} are allowed",
+                {"commands": self._most_waiting, "allowed": limits.waiting},
             ),
             Check(
-                "encoders and wheels agree",
+                CheckCode.ODOMETRY,
                 self._odometry.worst_m <= limits.odometry_m,
-                f"{self._odometry.worst_m * 1000:.1f} mm at most in a minute",
+                {"worst_mm": self._odometry.worst_m * 1000},
             ),
             Check(
-                "every tick is recorded",
+                CheckCode.RECORDED,
                 self._unrecorded == 0 and self._recorded == witness.ticks,
-                f"{self._recorded} of {witness.ticks}, {self._unrecorded} notes lost"
-                + "".join(f"; {each}" for each in self._troubles[:1]),
+                {
+                    "recorded": self._recorded,
+                    "ticks": witness.ticks,
+                    "lost": self._unrecorded,
+                    "trouble": "".join(f"; {each}" for each in self._troubles[:1]),
+                },
             ),
-            Check("the teaching clock does not drift", self._session_off == 0, f"{self._session_off} ticks off"),
+            Check(CheckCode.TEACHING_CLOCK, self._session_off == 0, {"ticks": self._session_off}),
         )
         return SoakResult(
             name=self._soak.name,

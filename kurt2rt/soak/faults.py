@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from hal.guard import WHEELS_DISOBEY
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.place import Disturbance
 from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
@@ -33,8 +34,7 @@ class FaultSeen(NamedTuple):
     """Until its first standstill; None where it drove all the while."""
     latched: str | None
     """Why the robot was stopped for good at its end."""
-    complaint: str
-    """What was not as it must be; empty where nothing was."""
+    complaints: tuple[Complaint, ...] = ()
 
 
 class SoakFaults:
@@ -128,17 +128,17 @@ class SoakFaults:
         assert self._disturbance is not None
         begin_s = self._disturbance.begin_s
         stood_at_s = witness.first_stand_s()
-        complaints = []
+        complaints: list[Complaint] = []
         # A robot that stood already shows nothing. One that is told to drive on by a teacher who has not seen what is
         # wrong may try again, and may put as many old set points into a queue that is blocked as the first time.
         # And wheels show only at some speed whether they obey: in a narrow curve one side nearly stands.
         shows = WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
         if case.must.leads_to == "stands" and self._drove and stood_at_s is None and shows:
-            complaints.append("must stand, drove all the while")
+            complaints.append(complaint(ComplaintCode.DROVE_ALL_THE_WHILE))
         old_frames = witness.envelope.old_frames - self._old_frames
         allowed = case.must.old_frames * (1 + witness.resumes - self._resumes)
         if old_frames > allowed and self.life is self._suffered and not self.lossy:
-            complaints.append(f"{old_frames} old set points arrived at the robot, allowed are {allowed}")
+            complaints.append(complaint(ComplaintCode.OLD_FRAMES, frames=old_frames, allowed=allowed))
         self._newest = FaultSeen(
             at_s=begin_s,
             target=case.target,
@@ -146,7 +146,7 @@ class SoakFaults:
             drove=self._drove,
             stood_after_s=None if stood_at_s is None else max(0.0, stood_at_s - begin_s),
             latched=None if robot is None else robot.health.latched,
-            complaint="; ".join(complaints),
+            complaints=tuple(complaints),
         )
 
     @property
@@ -165,9 +165,9 @@ class SoakFaults:
         if self._recorder is not None:
             self._place.look_on(None)
             self._recorder.close()
-            uncounted = self._recorder.what_is_uncounted()
-            if uncounted:
-                seen = seen._replace(complaint=uncounted)
+            uncounted = self._recorder.uncounted_frames()
+            if uncounted is not None:
+                seen = seen._replace(complaints=(uncounted,))
             self._recorder = None
         self.seen.append(seen)
         if life is not None and life is self._suffered:

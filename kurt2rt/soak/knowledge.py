@@ -5,6 +5,7 @@ from itertools import chain
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.disk import DiskOutOfStepError, DisturbedJournal, exchange_file
 from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.knowledge.journal import Journal
@@ -88,18 +89,20 @@ class SoakKnowledge:
         for acknowledgement in self.writer.acknowledged():
             self.settled(acknowledgement)
 
-    def what_it_lost(self) -> str:
-        """What is wrong with the closed file, in a line; empty when it holds all lessons, once, and in order."""
+    def lost_lessons(self) -> Complaint | None:
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
         # One by one, for all at once would be more than the program itself takes; whether they fit one another is
         # looked at when it is opened again.
         awaited = chain(self._before, self.submitted)
         with Journal.read_only(self._path) as journal:
             agree = [entry.event.origin.command_id == next(awaited, None) for entry in journal.each_entry()]
         if not all(agree) or len(agree) != self.lessons:
-            return f"{len(self._before)} lessons were there and {len(self.submitted)} came, the file holds {len(agree)}"
+            taught = len(self._before) + len(self.submitted)
+            return complaint(ComplaintCode.LESSONS_NOT_STORED, taught=taught, stored=len(agree), names="")
         if self.acknowledged != self.submitted:
-            return f"{len(self.submitted)} lessons were saved, {len(self.acknowledged)} were said to be"
-        return ""
+            saved, acknowledged = len(self.submitted), len(self.acknowledged)
+            return complaint(ComplaintCode.LESSONS_NOT_ACKNOWLEDGED, saved=saved, acknowledged=acknowledged)
+        return None
 
     def _in_step(self) -> bool:
         now_s, disturbance = self._simulated.now_s(), self._disturbance

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from kurt2rt.faults.complaint import Complaint
 from kurt2rt.faults.drill import SERVICE_ENDS
 from kurt2rt.faults.hand_link import TEACHER, HandLink
 from kurt2rt.faults.place import Disturbance
@@ -141,8 +142,8 @@ class Life:
                 self._witness.emergency_stop(SERVICE_ENDS)
         self._started_s = None
 
-    def close(self) -> str:
-        """Save what was counted, end the driver and close the file; what is wrong then, in a line. KnowledgeError."""
+    def close(self) -> Complaint | None:
+        """Save statistics, end the driver, close the file and compare it with the lessons. Raises KnowledgeError."""
         self.runtime.scheduler.end()
         self._place.end_driver()
         if not self.ended_by:
@@ -150,7 +151,7 @@ class Life:
         self.recorder.close()
         self.knowledge.mend()
         self.knowledge.close()
-        return self.knowledge.what_it_lost()
+        return self.knowledge.lost_lessons()
 
     def take_by_hand(self, disturbance: Disturbance) -> None:
         """Somebody takes the robot and drives it by hand, over a link that will fail."""

@@ -86,7 +86,7 @@ def _draw_faults(axes: Axes, result: SoakResult) -> None:
         ("while it stood", _GREY, "|", [each for each in result.faults if not each.drove]),
         ("drove on", _BLUE, "|", [each for each in result.faults if each.drove and each.stood_after_s is None]),
         ("stood", _ORANGE, "|", [each for each in result.faults if each.drove and each.stood_after_s is not None]),
-        ("not as it must", _RED, "x", [each for each in result.faults if each.complaint]),
+        ("not as it must", _RED, "x", [each for each in result.faults if each.complaints]),
     ):
         axes.plot(
             [each.at_s / HOUR_S for each in chosen],

@@ -9,7 +9,9 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
+from kurt2rt.faults.complaint import Complaint, text_of
 from kurt2rt.faults.table import TARGETS
+from kurt2rt.soak.check_text import found_of, what_of
 from kurt2rt.soak.checks import memory_told
 from kurt2rt.soak.faults import FaultSeen
 from kurt2rt.soak.result import SoakResult
@@ -43,16 +45,34 @@ def print_report(result: SoakResult, console: Console) -> None:
 def as_json(result: SoakResult) -> str:
     """A JSON object with everything in it; tuples with names as objects."""
     plain: dict[str, Any] = asdict(result)
-    for name in ("checks", "minutes", "starts", "faults"):
-        plain[name] = [each._asdict() for each in getattr(result, name)]
+    plain["minutes"] = [each._asdict() for each in result.minutes]
+    plain["checks"] = [
+        {"code": each.code, "what": what_of(each), "passed": each.passed, "found": found_of(each)}
+        for each in result.checks
+    ]
+    plain["starts"] = [
+        {**each._asdict(), "complaint": "" if each.complaint is None else text_of(each.complaint)}
+        for each in result.starts
+    ]
+    faults = [(each._asdict(), each.complaints) for each in result.faults]
+    for row, complaints in faults:
+        del row["complaints"]
+        row |= {"complaint": texts_of(complaints), "codes": [each.code for each in complaints]}
+    plain["faults"] = [row for row, _ in faults]
+    plain["complaints"] = [text_of(each) for each in result.complaints]
     return json.dumps({"passed": result.passed, **plain}, indent=1)
+
+
+def texts_of(complaints: Sequence[Complaint]) -> str:
+    """Return all texts in one line."""
+    return "; ".join(map(text_of, complaints))
 
 
 def _checks(result: SoakResult) -> TextTable:
     table = TextTable("what must hold", "", "found")
     for check in result.checks:
         verdict = Text("yes") if check.passed else Text("NO", style="bold red")
-        table.add_row(check.what, verdict, check.found)
+        table.add_row(what_of(check), verdict, found_of(check))
     return table
 
 
@@ -94,10 +114,10 @@ def _print_day(result: SoakResult, console: Console) -> None:
 
 
 def _complaints(result: SoakResult) -> list[str]:
-    faults = [f"at {each.at_s:.3f} s: {each.target} {each.kind}: {each.complaint}" for each in result.faults]
-    starts = [f"at {each.at_s:.3f} s: {each.complaint}" for each in result.starts if each.complaint]
+    faults = [each for each in result.faults if each.complaints]
+    starts = [(each.at_s, each.complaint) for each in result.starts if each.complaint is not None]
     return [
-        *result.complaints,
-        *(line for line, each in zip(faults, result.faults, strict=True) if each.complaint),
-        *starts,
+        *map(text_of, result.complaints),
+        *(f"at {each.at_s:.3f} s: {each.target} {each.kind}: {texts_of(each.complaints)}" for each in faults),
+        *(f"at {at_s:.3f} s: {text_of(complaint)}" for at_s, complaint in starts),
     ]

@@ -1,8 +1,11 @@
 """What a soak came to."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import NamedTuple
 
+from kurt2rt.faults.complaint import Complaint, Value
 from kurt2rt.soak.faults import FaultSeen
 
 
@@ -36,18 +39,35 @@ class Start(NamedTuple):
     wire: str
     ended_by: str
     """The error that ended it; empty where it was told to."""
-    complaint: str
-    """What was wrong with what it left."""
+    complaint: Complaint | None = None
+    """What was wrong with the knowledge file that it left."""
     left_mb: float = 0.0
     """What objects took when it was over, with all that it knew: what grows here is no knowledge."""
 
 
-class Check(NamedTuple):
-    """Something that must hold."""
+class CheckCode(StrEnum):
+    """Property that must hold in a soak."""
 
-    what: str
+    ENVELOPE = "envelope"
+    FAULTS = "faults"
+    STARTS = "starts"
+    MEMORY = "memory"
+    FILES_AND_THREADS = "files and threads"
+    WAITING = "waiting"
+    ODOMETRY = "odometry"
+    RECORDED = "recorded"
+    TEACHING_CLOCK = "teaching clock"
+
+
+class Check(NamedTuple):
+    """Whether a property held, with the numbers that were measured."""
+
+    code: CheckCode
     passed: bool
-    found: str
+    values: Mapping[str, Value]
+    """Fields of the check's text."""
+    judged: bool = True
+    """False if the soak was too short to judge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,8 +87,8 @@ class SoakResult:
     minutes: tuple[Minute, ...]
     starts: tuple[Start, ...]
     faults: tuple[FaultSeen, ...]
-    complaints: tuple[str, ...]
-    """The first of them, word for word."""
+    complaints: tuple[Complaint, ...]
+    """The first ones."""
     counted: dict[str, int]
     objects: dict[str, dict[str, int]] = field(default_factory=dict)
     """How many objects of which types there were, by the hour."""

@@ -3,6 +3,7 @@
 import math
 
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.table import EnvelopeSettings
 from kurt2rt.layers.decision import Cause
@@ -12,7 +13,7 @@ from kurt2rt.tick import TickRecord
 from kurt2rt.timing.ledger import Ledger
 
 _MOST_TOLD = 200
-"""Complaints that are kept word for word."""
+"""Complaints that are stored."""
 _ROUNDING_S = 1e-6
 
 
@@ -21,13 +22,13 @@ class Complaints:
 
     def __init__(self) -> None:
         self.count = 0
-        self.told: list[str] = []
+        self.told: list[Complaint] = []
 
-    def add(self, at_s: float, what: str) -> None:
-        """One more."""
+    def add(self, found: Complaint) -> None:
+        """Count a complaint; store it while there are few."""
         self.count += 1
         if len(self.told) < _MOST_TOLD:
-            self.told.append(f"at {at_s:.3f} s: {what}")
+            self.told.append(found)
 
 
 class SoakWitness:
@@ -72,27 +73,25 @@ class SoakWitness:
         now_s = self._place.time.now_s()
         moves = record.grant.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
-            self.complaints.add(now_s, f"drives though {record.decision.cause}")
+            self.complaints.add(complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause))
         accepted = {result.command_id for result in record.results if result.accepted}
         if any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands):
             self._must_stand = ""
             self.resumes += 1
         # A teacher's hand tells it to drive, until it lets go.
         if moves and self._must_stand and record.decision.cause is not Cause.TEACHER:
-            self.complaints.add(now_s, f"drives though {self._must_stand}, and nobody said resume")
+            self.complaints.add(complaint(ComplaintCode.DROVE_UNTOLD, now_s, must_stand=self._must_stand))
         if record.grant.latched:
             self._must_stand = ", ".join(record.grant.reasons) or "stopped for good"
         if ledger.ticks + 1 + ledger.missed_ticks != record.tick:
-            self.complaints.add(
-                now_s, f"tick {record.tick}: {ledger.ticks + 1} done and {ledger.missed_ticks} missed are not as many"
-            )
+            done, missed = ledger.ticks + 1, ledger.missed_ticks
+            code = ComplaintCode.TICKS_UNACCOUNTED
+            self.complaints.add(complaint(code, now_s, tick=record.tick, done=done, missed=missed))
         late_s = self.late_s = record.now_s - begun_s - record.tick * self._period_s
         if not -_ROUNDING_S <= late_s < self._period_s + _ROUNDING_S and not self.clock_is_wrong:
-            self.complaints.add(now_s, f"tick {record.tick} is {late_s:.6f} s off its deadline")
+            self.complaints.add(complaint(ComplaintCode.OFF_DEADLINE, now_s, tick=record.tick, late_s=late_s))
         for each in self.envelope.violations:
-            self.complaints.count += 1
-            if len(self.complaints.told) < _MOST_TOLD:
-                self.complaints.told.append(each)
+            self.complaints.add(each)
         self.envelope.violations.clear()
 
     @property

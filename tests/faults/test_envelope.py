@@ -5,7 +5,9 @@ import struct
 import pytest
 
 from hal.control import Mode, SpeedControl, control_frame, encode_brake
+from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope, told_by
+from kurt2rt.faults.suite import Trial
 from tests.faults.helpers import TABLE, tried, with_guard
 
 BRAKE = bytes(encode_brake().data)
@@ -47,8 +49,14 @@ class Drive:
         return self
 
     @property
-    def violations(self) -> str:
-        return "; ".join(self.envelope.violations)
+    def violations(self) -> list[Complaint]:
+        return self.envelope.violations
+
+    @property
+    def jumps_m_s(self) -> set[tuple[object, object, object]]:
+        """Side, speed before and speed after of each jump."""
+        jumps = [each.values for each in self.violations if each.code is ComplaintCode.JUMPED]
+        return {(each["side"], each["from_m_s"], each["to_m_s"]) for each in jumps}
 
 
 def test_it_reads_what_the_robot_reads() -> None:
@@ -71,24 +79,26 @@ def test_a_good_drive_passes() -> None:
 
 
 @pytest.mark.parametrize(
-    ("drive", "said"),
+    ("drive", "code", "value"),
     [
-        (Drive().to(60).put(set_point(61)), "0.61 m/s"),
-        (Drive().to(10).put(set_point(13)), "left from 0.10 to 0.13"),
-        (Drive().to(10).put(set_point(10, 13)), "right from 0.10 to 0.13"),
-        (Drive().put(set_point(0)).put(set_point(5), after_s=0.5), "left from 0.00 to 0.05"),
-        (Drive().put(BRAKE).put(set_point(5)), "left from 0.00 to 0.05"),
-        (Drive().to(30).put(set_point(25)), "left from 0.30 to 0.25"),
-        (Drive().to(1).put(set_point(-1)), "without a rest"),
-        (Drive().to(10).put(set_point(10), age_s=0.021), "a command 21.0 ms old"),
-        (Drive().put(set_point(0), latched=True), "no brake"),
-        (Drive().put(struct.pack(">HhhH", 1, 10, 10, 1)), "no set point and no brake"),
-        (Drive().put(bytes(7)), "no set point and no brake"),
+        (Drive().to(60).put(set_point(61)), ComplaintCode.TOO_FAST, 0.61),
+        (Drive().to(10).put(set_point(13)), ComplaintCode.JUMPED, "left"),
+        (Drive().to(10).put(set_point(10, 13)), ComplaintCode.JUMPED, "right"),
+        (Drive().put(set_point(0)).put(set_point(5), after_s=0.5), ComplaintCode.JUMPED, 0.05),
+        (Drive().put(BRAKE).put(set_point(5)), ComplaintCode.JUMPED, 0.05),
+        (Drive().to(30).put(set_point(25)), ComplaintCode.JUMPED, 0.25),
+        (Drive().to(1).put(set_point(-1)), ComplaintCode.TURNED_ROUND, -0.01),
+        (Drive().to(10).put(set_point(10), age_s=0.021), ComplaintCode.OLD_COMMAND, 21.0),
+        (Drive().put(struct.pack(">HhhH", 1, 10, 10, 1)), ComplaintCode.UNKNOWN_FRAME, "00 01 00 0a 00 0a 00 01"),
+        (Drive().put(bytes(7)), ComplaintCode.UNKNOWN_FRAME, "00 00 00 00 00 00 00"),
     ],
-    ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_it_sees_what_is_beyond_the_limits(drive: Drive, said: str) -> None:
-    assert said in drive.violations
+def test_drive_beyond_the_limits_is_a_complaint(drive: Drive, code: ComplaintCode, value: float | str) -> None:
+    assert any(each.code is code and value in each.values.values() for each in drive.violations)
+
+
+def test_set_point_of_a_latched_driver_is_a_complaint() -> None:
+    assert Drive().put(set_point(0), latched=True).violations == [complaint(ComplaintCode.NO_BRAKE, 0.01)]
 
 
 def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
@@ -96,21 +106,21 @@ def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
     assert not drive.violations
     drive = Drive().put(set_point(0)).put(set_point(1), late_s=None).put(set_point(2), late_s=None)
     drive.envelope.arrived(3, drive.now_s, set_point(9))
-    assert "left from 0.00 to 0.09" in drive.violations
+    assert ("left", 0.0, 0.09) in drive.jumps_m_s
 
 
 @pytest.mark.parametrize(("cm_s", "allowed"), [(6, True), (8, False)])
 def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s: int, allowed: bool) -> None:
     drive = Drive().put(BRAKE, latched=True).put(set_point(3), late_s=None).put(set_point(4), late_s=None)
-    assert drive.violations == ""
+    assert drive.violations == []
     drive.put(set_point(cm_s))
-    heard = [each for each in drive.envelope.violations if "30 ms" in each or "40 ms" in each]
+    heard = [each for each in drive.violations if round(float(each.values["within_ms"])) in (30, 40)]
     assert (heard == []) is allowed
 
 
 def test_the_first_step_after_a_brake_may_be_the_longest_however_soon_it_comes() -> None:
     drive = Drive().put(BRAKE, latched=True).put(set_point(3), after_s=0.002)
-    assert drive.violations == ""
+    assert drive.violations == []
 
 
 def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
@@ -121,14 +131,15 @@ def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
 
 
 def test_what_follows_one_another_at_the_robot_must_rest_in_between() -> None:
-    assert "turns round" in Drive().put(set_point(1)).put(set_point(-1)).violations
+    codes = [each.code for each in Drive().put(set_point(1)).put(set_point(-1)).violations]
+    assert ComplaintCode.TURNED_ROUND in codes
 
 
 def test_off_a_bumper_a_wheel_may_turn_round_at_once_but_not_jump() -> None:
     drive = Drive().put(set_point(1)).put(set_point(2)).put(set_point(3))
     drive.envelope.off_a_bumper = True
     assert not drive.put(set_point(-1)).violations
-    assert "left from 0.00 to 0.09" in drive.put(set_point(9)).violations
+    assert ("left", 0.0, 0.09) in drive.put(set_point(9)).jumps_m_s
 
 
 def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
@@ -136,7 +147,7 @@ def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
     drive.envelope.clock_is_wrong = True
     drive.put(set_point(1)).put(set_point(4), after_s=0.003)
     assert not drive.violations
-    assert "left from 0.04 to 0.09" in drive.put(set_point(9), after_s=0.003).violations
+    assert ("left", 0.04, 0.09) in drive.put(set_point(9), after_s=0.003).jumps_m_s
 
 
 def test_it_counts_what_arrives_too_late_and_what_is_garbled() -> None:
@@ -153,31 +164,45 @@ def test_it_counts_what_arrives_too_late_and_what_is_garbled() -> None:
 def test_a_guard_without_a_speed_limit_is_seen() -> None:
     trial = tried("tick", "wrong", robot=with_guard(maximum_speed_m_s=0.9))
     assert not trial.verdict.passed
-    assert "at 2.215 s: 0.62 m/s" in trial.outcome.problems
+    (first, *_) = [each for each in trial.outcome.problems if each.code is ComplaintCode.TOO_FAST]
+    assert first.at_s == pytest.approx(2.215, abs=5e-4)
+    assert first.values["speed_m_s"] == 0.62
 
 
 def test_a_guard_that_slews_too_fast_is_seen() -> None:
     trial = tried("tick", "wrong", robot=with_guard(acceleration_m_s2=4.0))
     assert not trial.verdict.passed
-    assert "allowed are 0.025 m/s" in " ".join(trial.outcome.problems)
+    jumps = [each.values for each in trial.outcome.problems if each.code is ComplaintCode.JUMPED]
+    assert any(each["allowed_m_s"] == pytest.approx(0.025, abs=5e-4) for each in jumps)
 
 
 def test_a_guard_that_takes_old_commands_is_seen() -> None:
     trial = tried("tick", "slow", robot=with_guard(command_age_s=0.05))
     assert not trial.verdict.passed
-    assert "a command 30.0 ms old" in " ".join(trial.outcome.problems)
+    ages = [each.values["age_ms"] for each in trial.outcome.problems if each.code is ComplaintCode.OLD_COMMAND]
+    assert any(each == pytest.approx(30.0, abs=0.05) for each in ages)
+
+
+def late_ms(trial: Trial) -> list[object]:
+    """Return the limits that standstills came too late for."""
+    return [each.values["must_ms"] for each in trial.verdict.complaints if each.code is ComplaintCode.STOOD_LATE]
 
 
 def test_a_guard_that_trusts_old_readings_is_seen() -> None:
     trial = tried("sensor_board_1", "off", robot=with_guard(stale_infrared_s=0.2))
-    assert any("must stand within 60 ms" in each for each in trial.verdict.complaints)
+    assert [each.values["must_ms"] for each in trial.verdict.complaints if each.code is ComplaintCode.STOOD_LATE] == [
+        60.0
+    ]
 
 
 def test_a_watchdog_that_sleeps_is_seen() -> None:
     trial = tried("tick", "stuck", robot=with_guard(ticks_ceased_s=0.5))
-    assert any("must stand within 120 ms" in each for each in trial.verdict.complaints)
+    assert [each.values["must_ms"] for each in trial.verdict.complaints if each.code is ComplaintCode.STOOD_LATE] == [
+        120.0
+    ]
 
 
 def test_wheels_that_nobody_watches_are_seen() -> None:
     trial = tried("left_motor", "off", robot=with_guard(wheel_error_s=10.0))
-    assert any("must stand because of wheels disobey, stood because of" in each for each in trial.verdict.complaints)
+    codes = {each.code: each.values for each in trial.verdict.complaints}
+    assert codes[ComplaintCode.STOOD_FOR_ANOTHER_CAUSE]["must"] == "wheels disobey"

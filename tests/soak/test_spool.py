@@ -1,13 +1,16 @@
 """What a soak notes goes to the disk and comes back as it was."""
 
+from kurt2rt.faults.complaint import ComplaintCode, complaint
 from kurt2rt.soak.result import Start
 from kurt2rt.soak.spool import Spool
+
+LOST = complaint(ComplaintCode.LESSONS_NOT_STORED, taught=3, stored=2, names="")
 
 
 def test_notes_come_back_in_order_also_between_two_more() -> None:
     spool: Spool[Start] = Spool()
     assert list(spool) == []
-    first, second = Start(0.0, 12.5, "none", "", ""), Start(13.0, 2.25, "lossy", "ValueError()", "")
+    first, second = Start(0.0, 12.5, "none", ""), Start(13.0, 2.25, "lossy", "ValueError()", LOST)
 
     spool.append(first)
     assert list(spool) == [first]

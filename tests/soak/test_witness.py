@@ -8,6 +8,7 @@ import pytest
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt import tick
+from kurt2rt.faults.complaint import ComplaintCode
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.level import Level
 from kurt2rt.perception.perception import Situation
@@ -68,7 +69,7 @@ def run(life: Life, place: LongRunRig, until_s: float) -> None:
 def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 1.0)
-    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
     assert witness.stands
 
 
@@ -82,7 +83,7 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
     run(life, place, 1.0)
     life.close()
     assert witness.complaints.count > 80
-    assert "drives though the program was started, and nobody said resume" in witness.complaints.told[0]
+    assert witness.complaints.told[0].code is ComplaintCode.DROVE_UNTOLD
 
 
 def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
@@ -92,7 +93,7 @@ def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_w
     assert life.level.behind is not None
     life.level.behind = Careless(life.level.behind)
     run(life, place, 1.0)
-    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", "")
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
     assert witness.stands
 
 
@@ -103,14 +104,17 @@ def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRun
     life.runtime.ledger.missed_ticks += 1
     run(life, place, 0.6)
     life.close()
-    assert "done and 1 missed are not as many" in witness.complaints.told[0]
+    (first, *_) = witness.complaints.told
+    assert (first.code, first.values["missed"]) == (ComplaintCode.TICKS_UNACCOUNTED, 1)
 
 
 def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
     life = started(tmp_path, place, witness, patient=PATIENT)
     run(life, place, 3.0)
     life.knowledge.submitted.append("soak-999")
-    assert "lessons were there and" in life.close()
+    lost = life.close()
+    assert lost is not None
+    assert lost.code is ComplaintCode.LESSONS_NOT_STORED
 
 
 def test_an_error_in_the_loop_ends_the_program_and_says_where(
@@ -120,6 +124,6 @@ def test_an_error_in_the_loop_ends_the_program_and_says_where(
     life.level.behind = None
     run(life, place, 1.0)
     assert life.ended_by.startswith("AssertionError() in level.py, line ")
-    assert life.close() == ""
+    assert life.close() is None
     place.time.run_until(1.0)
     assert place.standing
