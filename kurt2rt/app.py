@@ -7,10 +7,9 @@ from typing import NamedTuple, Protocol
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulatedWorld, Simulation
 from hal.tap import Tap
 from kurt2rt.bus_names import NO_WIRE, SIMULATED
-from kurt2rt.channel.ground import Ground
-from kurt2rt.experiments.arena import Arena
 from kurt2rt.timing.simulated_clock import HeldWorld
 
 
@@ -18,12 +17,12 @@ class OpenedRobot(NamedTuple):
     """A robot, and the ground it stands on where that is simulated."""
 
     robot: Kurt2
-    ground: Ground | None
+    ground: SimulatedWorld | None
     lives: Callable[[], bool]
     """Whether the simulator still runs; always so where there is none."""
     world: HeldWorld | None = None
     """Of a simulated robot whose time may pass faster than real time."""
-    arena: Arena | None = None
+    simulation: Simulation | None = None
     """The simulated robot seen from above, for measures."""
 
 
@@ -50,10 +49,10 @@ def open_robot(
         # Here, because a robot carries no simulator: the packages it needs are an extra.
         from kurt2rt.simulated import simulated_robot
 
-        with simulated_robot(settings, world, seed, wire, tap) as (arena, ground):
+        with simulated_robot(settings, world, seed, wire, tap) as (simulation, ground):
             # A wire has a time of its own, in real time.
             held_world = ground.held_world if wire == NO_WIRE else None
-            yield OpenedRobot(arena.robot, ground, lambda: ground.lives, held_world, arena)
+            yield OpenedRobot(simulation.robot, ground, lambda: ground.lives, held_world, simulation)
         return
     end = open_bus(bus)
     end.tap = tap

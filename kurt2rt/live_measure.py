@@ -4,7 +4,7 @@ import random
 from typing import Final
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena
+from hal.simulation import Simulation
 from kurt2rt.experiments.courses.course import Course, CourseSettings
 from kurt2rt.experiments.courses.eights import EightsSettings
 from kurt2rt.experiments.courses.laps import LapsSettings
@@ -24,9 +24,9 @@ _FOLLOW_EVERY: Final = 5
 class LiveMeasure:
     """The course of the task on the robot that is taught, or metres of way where that course measures no such drive."""
 
-    def __init__(self, task: TaskSettings, arena: Arena) -> None:
+    def __init__(self, task: TaskSettings, simulation: Simulation) -> None:
         self._task = task
-        self._arena = arena
+        self._simulation = simulation
         self._course = self._begin()
 
     @property
@@ -42,10 +42,10 @@ class LiveMeasure:
     def follow(self, record: TickRecord) -> None:
         """Look at the robot, once in a few ticks; call it after each tick."""
         if any(isinstance(each, SetDown) for each in record.commands):
-            self._course.put(self._arena.pose)
+            self._course.put(self._simulation.pose)
         # The simulation counts laps by itself, and the distance to the wall is not told.
         elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
-            self._course.follow(self._arena.pose)
+            self._course.follow(self._simulation.pose)
 
     def _begin(self) -> Course:
         course: CourseSettings = self._task.course
@@ -57,4 +57,4 @@ class LiveMeasure:
             return self._built(_WAY)
 
     def _built(self, course: CourseSettings) -> Course:
-        return course.build(self._arena, self._task.behaviours, random.Random(0))
+        return course.build(self._simulation, self._task.behaviours, random.Random(0))

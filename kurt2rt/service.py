@@ -11,8 +11,8 @@ import anyio
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
-from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.requests import BOOT_BYTES, FASTEST
 from kurt2rt.channel.simulation import Simulation
 from kurt2rt.channel.teachers import Teachers
@@ -63,7 +63,7 @@ class Openness:
 
     bus_trouble: Callable[[], str]
     """What is wrong with the robot's bus, in a line; empty when nothing is."""
-    ground: Ground | None
+    ground: SimulatedWorld | None
     """Of a simulated robot."""
     listening: Callable[[Channel], None]
     """Called when the channel is open."""

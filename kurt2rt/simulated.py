@@ -9,27 +9,24 @@ from typing import TYPE_CHECKING
 
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
+from hal.simulation import Pose, Position, WorldPlan
 from hal.tap import Tap
-from kurt2rt.experiments.arena import Plan, Position, Post, Street
-from kurt2rt.experiments.arena import Pose as TruePose
-from kurt2rt.simulated_ground import SimulatedGround
+from kurt2rt.simulated_ground import Kurt2World, plan_of
 from kurt2rt.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.drawing import draw_robot, draw_world
 from simbridge.free_poses import FreePoses
 from simbridge.nearest import Clearance
-from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.wire.line import NO_WIRE, open_line, require_wire
 from simbridge.world_loading import load_world
-from simbridge.world_settings import WorldSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-class SimulatedArena:
-    """The simulated KURT2 in one world, on a CAN bus of its own (kurt2rt.experiments.arena.Arena)."""
+class Kurt2Simulation:
+    """The simulated KURT2 in one world, on a CAN bus of its own (hal.simulation.Simulation)."""
 
     def __init__(
         self,
@@ -50,66 +47,66 @@ class SimulatedArena:
         chance = random.Random(f"{purpose} in world {world}, seed {seed}")
         noise_seed = chance.getrandbits(32)
         self._line = open_line(wire, self._cycle_s, noise_seed)
-        self.simulation = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
+        self.simulated_robot = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
         self.robot = driver(settings, self._line.notebook_end)
         self._settings = settings
         self._starts = [start.pose for start in self._world.start_poses]
-        self.simulation.place(chance.choice(self._starts))
+        self.simulated_robot.place(chance.choice(self._starts))
 
     @property
     def position(self) -> Position:
         """True position."""
-        pose = self.simulation.pose
+        pose = self.simulated_robot.pose
         return Position(pose.x_m, pose.y_m)
 
     @property
-    def pose(self) -> TruePose:
+    def pose(self) -> Pose:
         """True pose."""
-        return TruePose(*self.simulation.pose)
+        return self.simulated_robot.pose
 
     @property
-    def plan(self) -> Plan:
+    def plan(self) -> WorldPlan:
         """What a course may go by, with walls where they stand now."""
-        return _plan(self.simulation.world.settings)
+        return plan_of(self.simulated_robot.world.settings)
 
     # Surveys of the whole world, which a run on a large map never asks for.
     @cached_property
     def _nearest(self) -> Clearance:
-        return Clearance(self.simulation.world)
+        return Clearance(self.simulated_robot.world)
 
     @cached_property
     def _free(self) -> FreePoses:
-        return FreePoses(self.simulation.world, self._settings)
+        return FreePoses(self.simulated_robot.world, self._settings)
 
     @property
     def nearest_m(self) -> float:
         """From the robot's centre to the nearest wall or obstacle."""
-        pose = self.simulation.pose
+        pose = self.simulated_robot.pose
         return self._nearest.distance_m((pose.x_m, pose.y_m))
 
     @property
     def collisions(self) -> int:
         """Contacts so far."""
-        return self.simulation.collisions
+        return self.simulated_robot.collisions
 
     @property
     def touching(self) -> bool:
         """Whether the robot touches something now."""
-        return self.simulation.touching
+        return self.simulated_robot.touching
 
     @property
     def laps(self) -> float:
         """Progress along walls, in laps."""
-        return self.simulation.laps
+        return self.simulated_robot.laps
 
     @property
     def lap_m(self) -> float:
         """Length of a lap."""
-        return self.simulation.lap_m
+        return self.simulated_robot.lap_m
 
     def step(self) -> None:
         """One cycle of 10 ms."""
-        self._line.cycle(self.simulation.step)
+        self._line.cycle(self.simulated_robot.step)
 
     def look_on(self, tap: Tap | None) -> None:
         """Somebody who sees what passes the notebook's end of the bus; None: nobody."""
@@ -117,30 +114,30 @@ class SimulatedArena:
 
     def rescue(self) -> None:
         """Set the robot down at the nearest start pose."""
-        here = self.simulation.pose
+        here = self.simulated_robot.pose
 
         def squared_distance(pose: Pose) -> float:
             return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
 
-        self.simulation.place(min(self._starts, key=squared_distance))
+        self.simulated_robot.place(min(self._starts, key=squared_distance))
 
     def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Set the robot down elsewhere."""
-        self.simulation.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
+        self.simulated_robot.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
 
-    def put(self, pose: TruePose) -> None:
+    def put(self, pose: Pose) -> None:
         """Set the robot down here."""
-        self.simulation.place(Pose(*pose))
+        self.simulated_robot.place(pose)
 
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:
         """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
         with (
             self._line.live(),
-            RealtimeSimulation(self.simulation, self._cycle_s) as simulation,
+            RealtimeSimulation(self.simulated_robot, self._cycle_s) as realtime,
             self.robot.watchdog,
         ):
-            yield simulation
+            yield realtime
 
     def close(self) -> None:
         """Stop the robot and shut both ends of the bus."""
@@ -149,15 +146,15 @@ class SimulatedArena:
 
 
 @dataclass(frozen=True, slots=True)
-class SimulatedStage:
-    """Opens simulated arenas (kurt2rt.experiments.arena.Stage); can be sent to another process."""
+class Kurt2SimulationFactory:
+    """Opens simulated simulations (hal.simulation.SimulationFactory); can be sent to another process."""
 
     settings: RobotSettings
     wire: str = NO_WIRE
 
-    def open(self, world: str, seed: int, purpose: str) -> SimulatedArena:
+    def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
         """The simulated robot in a world."""
-        return SimulatedArena(self.settings, world, seed, purpose, self.wire)
+        return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
 
     def require_worlds(self, *worlds: str) -> None:
         """Look at the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
@@ -165,9 +162,9 @@ class SimulatedStage:
         for world in worlds:
             load_world(world, self.settings)
 
-    def plan_of(self, world: str) -> Plan:
+    def plan_of(self, world: str) -> WorldPlan:
         """What stands where in a world, and where its streets lead."""
-        return _plan(load_world(world, self.settings))
+        return plan_of(load_world(world, self.settings))
 
     def draw(self, axes: "Axes", world: str) -> None:
         """Draw a world from above."""
@@ -182,34 +179,25 @@ class SimulatedStage:
         return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
 
 
-def _plan(world: WorldSettings) -> Plan:
-    return Plan(
-        world=world.name,
-        posts=tuple(Post(post.x_m, post.y_m, post.radius_m) for post in world.round_obstacles),
-        streets=tuple(Street(street.from_m, street.to_m, street.width_m) for street in world.streets),
-        junctions=tuple(world.junctions),
-    )
-
-
 @contextmanager
 def simulated_robot(
     settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
-) -> Iterator[tuple[SimulatedArena, SimulatedGround]]:
-    """Yield the arena with the simulated robot in real time, its second guard awake, and the ground that it stands on.
+) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
+    """Yield a simulation that runs in real time, its second guard awake, and its world for a teacher.
 
     A stall of this program does not keep the robot stopped: its wheels stalled with it.
 
     `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
     """
-    arena = SimulatedArena(settings, world, seed, "run", wire, StallTolerantKurt2)
-    arena.look_on(tap)
+    simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
+    simulation.look_on(tap)
     try:
-        with arena.live() as simulation:
+        with simulation.live() as realtime:
             yield (
-                arena,
-                SimulatedGround(arena.simulation, load_world(world, settings), settings.geometry, simulation),
+                simulation,
+                Kurt2World(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
             )
             # While the simulation still runs, so that the last frame finds a listener.
-            arena.robot.emergency_stop("the run is over")
+            simulation.robot.emergency_stop("the run is over")
     finally:
-        arena.close()
+        simulation.close()

@@ -1,19 +1,32 @@
-"""The simulated world for a teacher who looks at it from above and reaches into it (kurt2rt.channel.ground.Ground)."""
+"""World of a simulation for a teacher who sees and changes it from above (hal.simulation.SimulatedWorld)."""
 
 import shapely
 
 from hal.robot_settings import GeometrySettings
-from kurt2rt.channel.ground import Post, Wall, WorldView
-from kurt2rt.channel.state import SimulatedPlace
-from kurt2rt.timing.simulated_clock import HeldWorld
+from hal.simulation import Pose, Post, SimulatedPlace, Street, Wall, WorldPlan
 from simbridge.geometry import rectangle
-from simbridge.pose import Pose
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.world_settings import WorldSettings
 
 
-class SimulatedGround:
+def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
+    """Return a world from above; `version`: number of changes since the run began."""
+    walls = [Wall(each.name, each.corners) for each in world.walls]
+    walls += [Wall(each.name, each.corners) for each in world.polygon_obstacles]
+    return WorldPlan(
+        version=version,
+        name=world.name,
+        size_m=world.size_m,
+        outline=world.outline,
+        walls=tuple(walls),
+        posts=tuple(Post(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles),
+        streets=tuple(Street(each.from_m, each.to_m, each.width_m) for each in world.streets),
+        junctions=tuple(world.junctions),
+    )
+
+
+class Kurt2World:
     """Reads what the simulation's thread writes, and hands changes to that thread."""
 
     def __init__(
@@ -27,7 +40,7 @@ class SimulatedGround:
         self._start = robot.pose
 
     @property
-    def held_world(self) -> HeldWorld:
+    def held_world(self) -> RealtimeSimulation:
         """The simulation, for a clock that steps it."""
         return self._simulation
 
@@ -43,13 +56,9 @@ class SimulatedGround:
             pose.x_m, pose.y_m, pose.heading_rad, self._robot.laps, self._robot.collisions, self._version
         )
 
-    def world(self) -> WorldView:
+    def world(self) -> WorldPlan:
         """The world as it is as soon as the simulation has taken its next step."""
-        world = self._world
-        walls = [Wall(each.name, each.corners) for each in world.walls]
-        walls += [Wall(each.name, each.corners) for each in world.polygon_obstacles]
-        posts = [Post(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles]
-        return WorldView(self._version, world.name, world.size_m, world.outline, tuple(walls), tuple(posts))
+        return plan_of(self._world, self._version)
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         """Shift a wall or obstacle; not onto the robot. Raises ValueError."""

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import pymunk
 
 from hal.robot_settings import GeometrySettings
+from hal.simulation import Pose
 from simbridge.geometry import rectangle
 from simbridge.noise import Noise
-from simbridge.pose import Pose
 from simbridge.world import ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
 
 SLIP_FRACTION = 0.03

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
 from simbridge.geometry import Point, rectangle
-from simbridge.pose import Pose
 from simbridge.world_settings import WorldSettings
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ import random
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from simbridge.pose import Pose
+from hal.simulation import Pose
 from simbridge.sight import RayCaster
 from simbridge.world import World
 

@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from hal.robot_settings import InfraredSettings
+from hal.simulation import Pose
 from simbridge.noise import Noise
-from simbridge.pose import Pose
 from simbridge.sight import RayCaster
 from simbridge.world import World
 

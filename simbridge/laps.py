@@ -2,7 +2,7 @@
 
 import math
 
-from simbridge.pose import Pose
+from hal.simulation import Pose
 from simbridge.wall_rings import RingPlace, WallRings
 from simbridge.world import World
 

@@ -5,6 +5,7 @@ import struct
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
 from simbridge.body import Body
 from simbridge.bumpers import Bumpers, CollisionCounter
 from simbridge.controller_bus import ControllerBus
@@ -13,7 +14,6 @@ from simbridge.instruments import Instruments
 from simbridge.laps import WallProgress
 from simbridge.microcontroller import MicroController
 from simbridge.noise import Noise
-from simbridge.pose import Pose
 from simbridge.wheels import Wheels
 from simbridge.world import World
 from simbridge.world_settings import WorldSettings

@@ -10,6 +10,7 @@ from pydantic import Field, field_validator, model_validator
 
 from hal.robot_settings import GeometrySettings
 from hal.settings import Settings
+from hal.simulation import Pose
 from simbridge.geometry import Point, polygons_of, rectangle
 from simbridge.obstacle_settings import (
     Coordinate,
@@ -18,7 +19,6 @@ from simbridge.obstacle_settings import (
     RoundObstacleSettings,
     WallSettings,
 )
-from simbridge.pose import Pose
 
 Size = Annotated[float, Field(gt=0, le=200)]
 

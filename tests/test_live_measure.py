@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import pytest
 
-from kurt2rt.experiments.arena import Plan, Pose, Post
+from hal.simulation import Pose, Post, WorldPlan
 from kurt2rt.live_measure import LiveMeasure
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.happenings import SetDown
@@ -13,29 +13,29 @@ from kurt2rt.tick import TickRecord
 
 NOTHING = cast(Any, None)
 A_RECORD = TickRecord(0, 0.0, NOTHING, NOTHING, NOTHING, NOTHING, ())
-POST = Post(2.0, 2.0, 0.1)
+POST = Post("post", 2.0, 2.0, 0.1)
 
 
 class FromAbove:
-    """As much of an arena as a measure looks at."""
+    """As much of an simulation as a measure looks at."""
 
     def __init__(self, *posts: Post) -> None:
         self.pose = Pose(2.5, 2.0, 0.0)
         self.laps = 0.0
-        self.plan = Plan("yard", posts, (), ())
+        self.plan = WorldPlan(0, "yard", (4.0, 4.0), (), (), posts)
 
 
 class Drive:
     """A measure that is shown one tick after the other."""
 
     def __init__(self, task: str, *posts: Post) -> None:
-        self.arena = FromAbove(*posts)
-        self.measure = LiveMeasure(load_task(task), cast(Any, self.arena))
+        self.simulation = FromAbove(*posts)
+        self.measure = LiveMeasure(load_task(task), cast(Any, self.simulation))
         self._tick = 0
 
     def go(self, x_m: float, y_m: float, *happened: SetDown) -> None:
         """The robot is there, for as long as a measure needs to see it."""
-        self.arena.pose = Pose(x_m, y_m, 0.0)
+        self.simulation.pose = Pose(x_m, y_m, 0.0)
         for happening in (happened, *((),) * 4):
             self._tick += 1
             record = A_RECORD._replace(tick=self._tick, commands=happening)
@@ -56,7 +56,7 @@ def test_rounds_about_the_post_are_counted_and_being_set_down_is_none() -> None:
 
 def test_laps_are_those_of_the_simulation() -> None:
     drive = Drive("wall_following")
-    drive.arena.laps = 1.25
+    drive.simulation.laps = 1.25
     drive.go(1.0, 1.0)
     assert (drive.measure.progress, drive.measure.unit) == (1.25, "laps")
 

@@ -17,7 +17,7 @@ from kurt2rt.rla.rla import MID
 from kurt2rt.rounds import Rounds, Screen, Status
 from kurt2rt.runtime import build_runtime
 from kurt2rt.service_settings import load_service
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.commands import Command, Correct, Teach
 from kurt2rt.teaching.question import Question, WayQuestion
@@ -33,7 +33,7 @@ ROUTE = STREETS.model_copy(update={"name": "route", "system": "streets", "mid": 
 class Service:
     """The robot in Manhattan and its knowledge file, from when the program is started until it ends."""
 
-    def __init__(self, arena: SimulatedArena, clock: LockstepClock, path: Path) -> None:
+    def __init__(self, simulation: Kurt2Simulation, clock: LockstepClock, path: Path) -> None:
         opened = go_on_teaching(path, ROBOT, ROUTE)
         self.writer = JournalWriter(opened.journal, lambda: STAMP)
         self.settled: list[Acknowledgement] = []
@@ -41,7 +41,7 @@ class Service:
         wanted = Wanted(ROUTE.behaviours)
         driver = PolicyLevel(ROUTE.policy.build(ROBOT.infrared), load_repertoire(ROUTE.repertoire, ROBOT), 10, wanted)
         self.runtime = build_runtime(
-            arena.robot,
+            simulation.robot,
             ROBOT,
             ROUTE,
             opened.events,
@@ -55,7 +55,7 @@ class Service:
         screen = Screen(status=lambda _: None, question=self.questions.append, settled=self.settled.append)
         self.rounds = Rounds(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
         self.record: TickRecord
-        self.health: Health = arena.robot.health
+        self.health: Health = simulation.robot.health
 
     async def run(self, seconds: float, *commands: Command) -> TickRecord:
         """For so long, or until a junction has been passed."""
@@ -81,17 +81,17 @@ class Service:
 
 
 @pytest.fixture
-def arena() -> Iterator[SimulatedArena]:
-    with closing(SimulatedArena(ROBOT, "manhattan", 1, "exam")) as arena:
-        yield arena
+def simulation() -> Iterator[Kurt2Simulation]:
+    with closing(Kurt2Simulation(ROBOT, "manhattan", 1, "exam")) as simulation:
+        yield simulation
 
 
 async def test_it_asks_the_way_is_taught_a_few_junctions_and_another_day_goes_on_by_what_it_knows(
-    arena: SimulatedArena, tmp_path: Path
+    simulation: Kurt2Simulation, tmp_path: Path
 ) -> None:
-    path, clock = tmp_path / "streets.knowledge", LockstepClock(arena.step)
-    where_it_began = arena.simulation.pose
-    with closing(Service(arena, clock, path)) as first:
+    path, clock = tmp_path / "streets.knowledge", LockstepClock(simulation.step)
+    where_it_began = simulation.simulated_robot.pose
+    with closing(Service(simulation, clock, path)) as first:
         await first.run(0.5)
         (question,) = first.questions
         assert str(question) == "I don't know any way yet, teach me which behaviour to follow"
@@ -111,8 +111,8 @@ async def test_it_asks_the_way_is_taught_a_few_junctions_and_another_day_goes_on
         await first.run(0.05)
         assert [(each.command_id, each.error) for each in first.settled] == [("way-1", None), ("way-2", None)]
 
-    arena.simulation.place(where_it_began)
-    with closing(Service(arena, clock, path)) as second:
+    simulation.simulated_robot.place(where_it_began)
+    with closing(Service(simulation, clock, path)) as second:
         events = []
         for _ in range(2):
             record = await second.run(20.0)

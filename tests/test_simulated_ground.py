@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from kurt2rt.channel.ground import Ground, Post
-from kurt2rt.simulated_ground import SimulatedGround
+from hal.simulation import Post, SimulatedWorld
+from kurt2rt.simulated_ground import Kurt2World
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.realtime import RealtimeSimulation
 from tests.simbridge.rig import ROBOT, Rig, facing_wall, room
@@ -25,7 +25,7 @@ class Yard:
     def __init__(self, rig: Rig, simulation: RealtimeSimulation) -> None:
         self.rig = rig
         self.simulation = simulation
-        self.ground: Ground = SimulatedGround(rig.robot, WORLD, ROBOT.geometry, simulation)
+        self.ground: SimulatedWorld = Kurt2World(rig.robot, WORLD, ROBOT.geometry, simulation)
 
     def step(self) -> None:
         """Until the thread has done all that was asked."""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.layers.decision import Cause
 from kurt2rt.replay.comparing import compare
 from kurt2rt.replay.reading import read_run
@@ -166,7 +166,7 @@ def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
     """Taught to drive forward whatever it sees; two seconds after it asks what to do at the wall, to drive back."""
     inbox, tick = scene.runtime.inbox, record.tick
     if tick == 1:
-        scene.arena.put(Pose(2.5, 2.0, 0.0))
+        scene.simulation.put(Pose(2.5, 2.0, 0.0))
         inbox.put(Resume("go", NAME))
     inbox.put(Watch(NAME, tick))
     if record.decision.cause is Cause.UNKNOWN and tick % 20 == 0:

@@ -38,14 +38,14 @@ async def measure_closed_loop(
             on_progress(blocks_done / blocks)
         begun_ns = time.perf_counter_ns()
 
-    arena = subject.open_arena("bench closed_loop")
+    simulation = subject.open_simulation("bench closed_loop")
     try:
         with on_one_core() as core, kept_knowledge(subject, folder / "closed_loop.knowledge") as writer:
             lesson = await teach(
-                arena, subject.settings, task, writer, subject.events, seed=SEED, on_progress=after_second
+                simulation, subject.settings, task, writer, subject.events, seed=SEED, on_progress=after_second
             )
     finally:
-        arena.close()
+        simulation.close()
     tick = share_of(tick_ns)
     reference = Reference("period", period_s * 1e6, tick.median_us)
     best = period_s * 1e9 / min(tick_ns)

@@ -33,16 +33,16 @@ async def measure_lessons(
     chance = random.Random(SEED)
     took_ns: list[int] = []
     syncs_ns: list[int] = []
-    arena = subject.open_arena("bench lesson")
+    simulation = subject.open_simulation("bench lesson")
     try:
         with (
             kept_knowledge(subject, folder / "lesson.knowledge") as writer,
             (folder / "sync").open("wb", buffering=0) as file,
             TimerfdClock() as clock,
-            arena.live(),
+            simulation.live(),
             quiet_gc(),
         ):
-            runtime = build_runtime(arena.robot, subject.settings, subject.task, subject.events, writer, clock)
+            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
             taken = anyio.Event()
 
@@ -71,7 +71,7 @@ async def measure_lessons(
                 why = writer.trouble or f"{folder}: the disk did not answer within {patience_s:g} s"
                 raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
     finally:
-        arena.close()
+        simulation.close()
     took = share_of(took_ns)
     return Result(
         "lesson",

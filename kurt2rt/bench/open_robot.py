@@ -98,16 +98,16 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
     pairing = local_pairing(folder / "teachers", folder / "devices")
     service = load_service().model_copy(update={"knowledge": str(folder / "bench.knowledge")})
     failed: Exception | None = None
-    arena = subject.open_arena(f"bench {folder.name}")
+    simulation = subject.open_simulation(f"bench {folder.name}")
     try:
         with (
             kept_knowledge(subject, Path(service.knowledge)) as writer,
             TimerfdClock() as real_clock,
-            arena.live(),
+            simulation.live(),
             quiet_gc(),
         ):
             clock = NotingClock(real_clock)
-            witness = WitnessedRobot(arena.robot, clock)
+            witness = WitnessedRobot(simulation.robot, clock)
             runtime = build_runtime(
                 witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
             )
@@ -142,6 +142,6 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
             finally:
                 teachers.close()
     finally:
-        arena.close()
+        simulation.close()
     if failed is not None:
         raise failed

@@ -50,10 +50,10 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
     period_s = subject.settings.can.cycle_s
     asyncio_ledger = Ledger()
     driving = 0
-    arena = subject.open_arena("bench real_time")
+    simulation = subject.open_simulation("bench real_time")
     try:
         with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, quiet_gc():
-            runtime = build_runtime(arena.robot, subject.settings, subject.task, subject.events, writer, clock)
+            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
             teacher = teacher_of(subject.task, subject.settings, actions, seed=SEED, session="bench")
             runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
@@ -70,7 +70,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
                     writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
 
             for number in range(turns.rounds):
-                with arena.live():
+                with simulation.live():
                     # The controller's cycle and ours are not in step: each round meets another phase of it.
                     await clock.wait_until(clock.now_s() + period_s * number / turns.rounds)
                     await runtime.scheduler.run(turns.ticks, after_tick)
@@ -78,7 +78,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
                 # Only here: drawing a progress bar takes milliseconds that would show as lateness.
                 on_progress((number + 1) / turns.rounds)
     finally:
-        arena.close()
+        simulation.close()
     ledger = runtime.ledger
     return RealTimeRun(
         ticks=turns.rounds * turns.ticks,

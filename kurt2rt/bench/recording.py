@@ -75,7 +75,7 @@ async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_prog
         recorder.note(record)
         noted_ns.append(time.perf_counter_ns() - begun_ns)
 
-    arena = subject.open_arena("bench recording")
+    simulation = subject.open_simulation("bench recording")
     try:
         with (
             kept_knowledge(subject, folder / "recording.knowledge") as writer,
@@ -85,10 +85,10 @@ async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_prog
             recorder,
         ):
             clock = NotingClock(timer)
-            runtime = build_runtime(arena.robot, settings, subject.task, subject.events, writer, clock)
+            runtime = build_runtime(simulation.robot, settings, subject.task, subject.events, writer, clock)
             runtime.school.phase = Phase.AUTONOMOUS
             for number in range(shifts.rounds):
-                with arena.live():
+                with simulation.live():
                     await timer.wait_until(timer.now_s() + period_s * number / shifts.rounds)
                     for recorded, ledger in ledgers.items():
                         clock.ledger = ledger
@@ -96,7 +96,7 @@ async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_prog
                         clock.ledger = None
                 on_progress((number + 1) / shifts.rounds)
     finally:
-        arena.close()
+        simulation.close()
     return RecordedDrive(
         period_s=period_s,
         ticks=shifts.ticks,

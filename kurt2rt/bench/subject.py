@@ -1,13 +1,12 @@
 """What is measured: a robot in its world, a task, and knowledge good enough to drive with."""
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Arena
+from hal.simulation import Simulation
 from kurt2rt.experiments.lesson import teach
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
@@ -21,21 +20,13 @@ OnProgress = Callable[[float], None]
 SEED = 1
 
 
-class LiveArena(Arena, Protocol):
-    """An arena that can also go on by itself, in real time."""
-
-    def live(self) -> AbstractContextManager[object]:
-        """The world goes on while the context lasts, the second guard awake; may be entered again and again."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class Subject:
     """The robot, where it drives and what it knows."""
 
     settings: RobotSettings
     task: TaskSettings
-    open_arena: Callable[[str], LiveArena]
+    open_simulation: Callable[[str], Simulation]
     """Sets the robot down in the world that the task is taught in, for a purpose."""
     events: tuple[TeachingEvent, ...] = ()
 
@@ -57,10 +48,10 @@ async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) ->
     """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
     notebook = _Notebook()
     task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
-    arena = subject.open_arena("lesson")
+    simulation = subject.open_simulation("lesson")
     try:
         await teach(
-            arena,
+            simulation,
             subject.settings,
             task,
             notebook,
@@ -69,8 +60,8 @@ async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) ->
             on_progress=lambda done_s: on_progress(done_s / duration_s),
         )
     finally:
-        arena.close()
-    return Subject(subject.settings, subject.task, subject.open_arena, tuple(notebook.events))
+        simulation.close()
+    return Subject(subject.settings, subject.task, subject.open_simulation, tuple(notebook.events))
 
 
 def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:

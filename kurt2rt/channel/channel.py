@@ -8,9 +8,9 @@ from typing import Any
 
 import anyio
 
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.exam_standing import ExamStanding
-from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.off_tick_requests import Copies
 from kurt2rt.channel.reception import Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
@@ -44,7 +44,7 @@ class Surroundings:
     safekeeping: Safekeeping
     copies: Copies
     bus_trouble: Callable[[], str]
-    ground: Ground | None
+    ground: SimulatedWorld | None
     boot: bytes = field(default_factory=lambda: secrets.token_bytes(BOOT_BYTES))
     """Random bytes of this start."""
     health: Callable[[], HealthReport | None] = lambda: None

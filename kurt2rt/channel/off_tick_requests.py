@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, Protocol
 
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
-from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, restarted, unsaved
 from kurt2rt.channel.requests import (
@@ -93,7 +93,7 @@ class OffTickRequests:
         outcomes: Outcomes,
         tick: Callable[[], int],
         copies: Copies,
-        ground: Ground | None,
+        ground: SimulatedWorld | None,
         exam: Callable[[], ExamStanding] | None,
         simulation: Simulation | None,
         speed: Speed | None,

@@ -4,10 +4,10 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.allowance import Allowance
 from kurt2rt.channel.command_of import command_of
 from kurt2rt.channel.exam_standing import ExamStanding
-from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.off_tick_requests import Copies, OffTickCommand, OffTickRequests
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal, restarted, unsaved
@@ -79,7 +79,7 @@ class Reception:
         hello: Mapping[str, Any],
         stamp_of: Callable[[str], str],
         copies: Copies,
-        ground: Ground | None,
+        ground: SimulatedWorld | None,
         *,
         longest_wait_s: float = LONGEST_WAIT_S,
         health: Callable[[], HealthReport | None] = lambda: None,

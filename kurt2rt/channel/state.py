@@ -2,24 +2,12 @@
 
 from dataclasses import dataclass
 
+from hal.simulation import SimulatedPlace
 from kurt2rt.rla.rla import BASIC
 from kurt2rt.standing import DRIVES, Standing, standing_for
 from kurt2rt.teaching.active_stop import ActiveStop
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.teaching.question import FeatureDifference
-
-
-@dataclass(frozen=True, slots=True)
-class SimulatedPlace:
-    """Where the simulated robot really is; a real one does not know."""
-
-    x_m: float
-    y_m: float
-    heading_rad: float
-    laps: float
-    collisions: int
-    world_version: int
-    """Grows when a wall is moved: ask for the world again."""
 
 
 @dataclass(frozen=True, slots=True)

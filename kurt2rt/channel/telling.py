@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kurt2rt.channel.ground import Ground
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.health.report import SENSORS, HealthReport
@@ -37,7 +37,7 @@ class Telling:
         boot: bytes,
         safekeeping: Safekeeping,
         bus_trouble: Callable[[], str],
-        ground: Ground | None,
+        ground: SimulatedWorld | None,
         health: Callable[[], HealthReport | None] = lambda: None,
     ) -> None:
         """`health`: the newest report, which spares the loop the percentiles; None where nobody makes one."""

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
+from hal.simulation import SimulatedPlace
 from kurt2rt.channel.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
 from kurt2rt.channel.schema import (
     Check,
@@ -22,7 +23,7 @@ from kurt2rt.channel.schema import (
     decode_strictly,
     encode_plainly,
 )
-from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
+from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.rla.rla import BASIC, MID
 from kurt2rt.standing import Standing, StandReason
 from kurt2rt.standing_text import stop_of_text, stop_text

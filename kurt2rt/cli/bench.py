@@ -52,14 +52,14 @@ def bench(
         kurt2rt bench --only match,lesson --json
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     benches = _chosen(only)
     require_json_file(file, as_json=json)
     machine = look_at_machine()
     settings = load_robot()
     task = load_task("wall_following")
-    stage = SimulatedStage(settings)
+    stage = Kurt2SimulationFactory(settings)
     subject = Subject(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
     # A bar that redraws itself would do so in the middle of what is measured.
     with (

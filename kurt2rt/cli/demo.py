@@ -46,11 +46,11 @@ def demo(
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.drawing import draw_curriculum
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     taught = load_task(task, plain=plain, changes=changes_of(changes))
-    stage = SimulatedStage(settings, wire)
+    stage = Kurt2SimulationFactory(settings, wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)

@@ -50,7 +50,7 @@ def exam(
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     other = changes_of(changes)
@@ -60,7 +60,7 @@ def exam(
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
         taught = with_route(taught, seed)
     worlds = tuple(world) if world else taught.exam.worlds
-    stage = SimulatedStage(settings, wire)
+    stage = Kurt2SimulationFactory(settings, wire)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
     events = read_lessons(knowledge, settings, taught)

@@ -22,7 +22,7 @@ from kurt2rt.experiments.report import label_of, not_judged, verdict_of
 from kurt2rt.experiments.route.teaching import with_route
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.simulated import SimulatedStage
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 
 NICENESS = 10
@@ -46,7 +46,7 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
     if isinstance(task.course, RouteSettings) and task.course.seed is None:
         task = with_route(task, seed)
     worlds = task.exam.worlds
-    stage = SimulatedStage(robot)
+    stage = Kurt2SimulationFactory(robot)
     stage.require_worlds(*worlds)
     require_course(stage, task, worlds)
     events = read_lessons(knowledge, robot, task)

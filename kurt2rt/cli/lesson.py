@@ -42,7 +42,7 @@ from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
 _TASK = "wall_following"
 _FOLDER = Path("results/lesson")
@@ -121,7 +121,7 @@ def lesson(
         kurt2rt lesson --task errands --seeds 0-9 --controls
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     name = _one_of(task, task_word)
     if knowledge is not None and knowledge.exists():
@@ -129,7 +129,7 @@ def lesson(
     name = name or _TASK
     settings = load_robot(robot_settings)
     taught = load_task(name, plain=plain, changes=changes_of(changes))
-    stage = SimulatedStage(settings, wire)
+    stage = Kurt2SimulationFactory(settings, wire)
     if seeds is not None and knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     options = RouteOptions(tuple(decisions or ()), basic, controls)
@@ -178,7 +178,7 @@ def lesson(
 
 
 def _lesson(
-    stage: "SimulatedStage",
+    stage: "Kurt2SimulationFactory",
     settings: RobotSettings,
     task: TaskSettings,
     *,

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.printed import console_of, tables_of
 from kurt2rt.cli.progress import one_bar
@@ -12,7 +13,6 @@ from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.programme import conduct, plan, read_outcomes, robot_time_s
 from kurt2rt.experiments.errands.tables import sheets
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.route.programme import basic_task_of
 from kurt2rt.experiments.shown.sheet import as_rich
 from kurt2rt.tasks.settings import TaskSettings
@@ -28,7 +28,7 @@ def runs_errands(task: TaskSettings) -> bool:
 
 
 def errands(
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     *,

@@ -8,6 +8,7 @@ import anyio
 import typer
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.printed import console_of, print_study, tables_of
 from kurt2rt.cli.progress import job_bars, one_bar
@@ -15,7 +16,6 @@ from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.curriculum import Report, run_lesson
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.route.programme import basic_file, basic_task_of, decisions_of, plan
 from kurt2rt.experiments.route.study import conduct, read_study, robot_time_s
 from kurt2rt.experiments.route.tables import robot_sheet, sheets
@@ -56,7 +56,7 @@ def require_no_route_options(task: TaskSettings, options: RouteOptions) -> None:
 
 
 def one_route(
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     options: RouteOptions,
@@ -106,7 +106,7 @@ def one_route(
 
 
 def many_routes(
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     options: RouteOptions,

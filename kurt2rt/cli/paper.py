@@ -66,11 +66,11 @@ def paper(
     from kurt2rt.experiments.paper.settings import load_paper
     from kurt2rt.experiments.paper.study import conduct, read_study
     from kurt2rt.experiments.paper.tables import sheets
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
     robot = load_robot()
-    stage = SimulatedStage(robot)
+    stage = Kurt2SimulationFactory(robot)
     results = Results(out or (_QUICK_FOLDER if quick else _FOLDER))
     readings: tuple[Reading, ...] = ("shipped", "plain") if plain else ("shipped",)
     extent = QUICK if quick else WHOLE

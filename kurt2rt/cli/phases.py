@@ -55,13 +55,13 @@ def phases(
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
     from kurt2rt.experiments.phases.study import conduct, read_study
     from kurt2rt.experiments.phases.tables import sheets
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
     from kurt2rt.tasks.settings import load_task
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
     robot, settings = load_robot(), load_task(task, changes=changes_of(changes))
     results = Results(out or _FOLDER / (settings.name + ("-quick" if quick else "")))
-    programme = plan(settings, parse_seeds(typed_seeds), SimulatedStage(robot), robot, results, quick=quick)
+    programme = plan(settings, parse_seeds(typed_seeds), Kurt2SimulationFactory(robot), robot, results, quick=quick)
     with results.held():
         todo = programme.jobs
         missing = results.missing(todo)

@@ -54,8 +54,8 @@ from kurt2rt.timing.priority import take_real_time_priority
 from kurt2rt.upkeep import Upkeep
 
 if TYPE_CHECKING:
+    from hal.simulation import Simulation
     from kurt2rt.cli.simulated_runs import SimulatedRuns
-    from kurt2rt.experiments.arena import Arena
     from kurt2rt.live_measure import LiveMeasure
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
@@ -224,7 +224,7 @@ class RobotProgram:
             self._exam(opened),
             self._runs,
             opened.world,
-            None if opened.arena is None else self._measure(opened.arena),
+            None if opened.simulation is None else self._measure(opened.simulation),
             () if run is None else run.begin_with,
         )
         goes_on = run is not None and run.teacher is not None
@@ -361,10 +361,10 @@ class RobotProgram:
 
         return self._of_run.enter_context(LiveExam(command))
 
-    def _measure(self, arena: "Arena") -> "LiveMeasure":
+    def _measure(self, simulation: "Simulation") -> "LiveMeasure":
         from kurt2rt.live_measure import LiveMeasure
 
-        return LiveMeasure(self._task, arena)
+        return LiveMeasure(self._task, simulation)
 
     def _simulated_runs(self) -> "SimulatedRuns":
         # Here, because a robot carries no simulator: the packages it needs are an extra.

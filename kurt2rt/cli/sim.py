@@ -78,7 +78,7 @@ def sim(
         )
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from kurt2rt.cli.sim_desk import Desk, News, StatusLine, TypedLines
-    from kurt2rt.simulated_ground import SimulatedGround
+    from kurt2rt.simulated_ground import Kurt2World
     from simbridge.standalone import StandaloneRobot
     from simbridge.world_loading import load_world
 
@@ -107,9 +107,7 @@ def sim(
         ending.enter_context(short_turns())
         ending.enter_context(standalone)
         simulation = standalone.simulation
-        desk = Desk(
-            standalone, ground_plan, SimulatedGround(standalone.robot, ground_plan, settings.geometry, simulation)
-        )
+        desk = Desk(standalone, ground_plan, Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation))
         keyboard, news, line = TypedLines(sys.stdin), News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if seconds is None else time.monotonic() + seconds
         status_at_s = time.monotonic() + _STATUS_S

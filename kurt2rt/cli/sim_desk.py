@@ -7,8 +7,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TextIO
 
-from kurt2rt.simulated_ground import SimulatedGround
-from simbridge.pose import Pose
+from hal.simulation import Pose
+from kurt2rt.simulated_ground import Kurt2World
 from simbridge.standalone import StandaloneRobot
 from simbridge.world_settings import WorldSettings
 
@@ -23,7 +23,7 @@ help                  this"""
 class Desk:
     """Obeys what is typed."""
 
-    def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: SimulatedGround) -> None:
+    def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: Kurt2World) -> None:
         self._standalone = standalone
         self._starts = [each.pose for each in world.start_poses]
         self._ground = ground

@@ -48,11 +48,11 @@ def surprise(
         kurt2rt surprise results/lesson
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import SimulatedStage
+    from kurt2rt.simulated import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     what = load_task(task)
-    stage = SimulatedStage(settings)
+    stage = Kurt2SimulationFactory(settings)
     work = [
         SurpriseJob(stage, settings, what, taught / f"{what.name}-{seed}.knowledge", seed, learns_s, different_s)
         for seed in parse_seeds(seeds)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lesson import LessonResult, teach
@@ -44,7 +44,7 @@ class CurriculumResult:
 
 
 async def run_lesson(
-    stage: Stage,
+    stage: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     knowledge: Path,
@@ -62,9 +62,9 @@ async def run_lesson(
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
-        with closing(stage.open(world, seed, plan.purpose)) as arena:
+        with closing(stage.open(world, seed, plan.purpose)) as simulation:
             lesson = await teach(
-                arena,
+                simulation,
                 settings,
                 task,
                 keeping.writer,
@@ -81,7 +81,7 @@ async def run_lesson(
 
 
 async def run_exams(
-    stage: Stage,
+    stage: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     events: Sequence[TeachingEvent],
@@ -94,9 +94,9 @@ async def run_exams(
 
     async def drive(world: str, *, by_teacher: bool) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
-        with closing(stage.open(world, seed, "exam")) as arena:
+        with closing(stage.open(world, seed, "exam")) as simulation:
             return await examine(
-                arena,
+                simulation,
                 settings,
                 task,
                 world,

@@ -6,7 +6,7 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kurt2rt.experiments.arena import Position, Stage
+from hal.simulation import Position, SimulationFactory
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS
 from kurt2rt.experiments.report import label_of
@@ -18,7 +18,7 @@ _CARRIED_M = 0.2
 """Between two points of a trail, 0.1 s apart, it does not drive so far."""
 
 
-def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, path: Path) -> None:
+def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: SimulationFactory, path: Path) -> None:
     """Write a PNG: the lesson, each exam over the teacher's own drive, and the number of RLAs against time."""
     panels = 2 + len(result.exams)
     columns = (panels + 1) // 2
@@ -36,7 +36,7 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Stage, 
     figure.savefig(path, dpi=110)
 
 
-def draw_exams(exams: Sequence[WorldResult], stage: Stage, path: Path) -> None:
+def draw_exams(exams: Sequence[WorldResult], stage: SimulationFactory, path: Path) -> None:
     """Write a PNG: the panels of the exams that `draw_curriculum` draws, one below the other as a phone shows them."""
     figure = Figure(figsize=(5.2, 5.2 * len(exams)), layout="constrained")
     for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
@@ -44,7 +44,7 @@ def draw_exams(exams: Sequence[WorldResult], stage: Stage, path: Path) -> None:
     figure.savefig(path, dpi=110, format="png")
 
 
-def _draw_exam(panel: Axes, result: WorldResult, stage: Stage) -> None:
+def _draw_exam(panel: Axes, result: WorldResult, stage: SimulationFactory) -> None:
     exam, teachers = result.learned, result.teacher.trail
     draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
     unknown = _places("situation unknown", len(exam.unknown_positions))
@@ -57,7 +57,7 @@ def _draw_exam(panel: Axes, result: WorldResult, stage: Stage) -> None:
 
 
 def _draw_drive(
-    axes: Axes, stage: Stage, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
+    axes: Axes, stage: SimulationFactory, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
 ) -> None:
     stage.draw(axes, world)
     draw_trail(axes, trail, "the robot", carried_m=_CARRIED_M)

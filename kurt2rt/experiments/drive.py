@@ -3,7 +3,7 @@
 import math
 import random
 
-from kurt2rt.experiments.arena import Arena
+from hal.simulation import Simulation
 from kurt2rt.experiments.courses.course import RouteCourse
 from kurt2rt.experiments.progress import WayMade
 from kurt2rt.tasks.settings import TaskSettings
@@ -13,25 +13,25 @@ class Drive:
     """Shows the course where the robot is, measures the way it makes, and reaches in where that is needed."""
 
     def __init__(
-        self, arena: Arena, task: TaskSettings, *, no_way_s: float, period_s: float, chance: random.Random
+        self, simulation: Simulation, task: TaskSettings, *, no_way_s: float, period_s: float, chance: random.Random
     ) -> None:
         """`no_way_s`: how long a robot may stay about where it is. `chance` decides what the course and a hand do."""
-        self.course = task.course.build(arena, task.behaviours, chance)
+        self.course = task.course.build(simulation, task.behaviours, chance)
         self.way_m = 0.0
         """Way made on its own wheels."""
         self.repositions = 0
         """How often it was set down elsewhere, rescues left out."""
-        self._arena = arena
+        self._simulation = simulation
         self._chance = chance
         self._way = WayMade(no_way_s, period_s, least_m=task.exam.stuck_within_m)
         if isinstance(self.course, RouteCourse):
-            arena.put(self.course.set_down_at)
-        self._pose = arena.pose
+            simulation.put(self.course.set_down_at)
+        self._pose = simulation.pose
         self.course.put(self._pose)
 
     def follow(self) -> None:
         """One tick."""
-        pose = self._arena.pose
+        pose = self._simulation.pose
         self.way_m += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
         self.course.follow(pose)
@@ -44,14 +44,14 @@ class Drive:
         if waits:
             self._way.restart()
             return False
-        return self._way.none_since_window(self._arena.position)
+        return self._way.none_since_window(self._simulation.position)
 
     def rescue(self) -> None:
         """Set it down at the nearest start pose, or on its route."""
         if isinstance(self.course, RouteCourse):
-            self._arena.put(self.course.set_down_at)
+            self._simulation.put(self.course.set_down_at)
         else:
-            self._arena.rescue()
+            self._simulation.rescue()
         self._put()
 
     def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
@@ -60,13 +60,13 @@ class Drive:
         On a route it is set down there.
         """
         if isinstance(self.course, RouteCourse):
-            self._arena.put(self.course.set_down_at)
+            self._simulation.put(self.course.set_down_at)
         else:
-            self._arena.reposition(self._chance, in_sight=in_sight, close=close)
+            self._simulation.reposition(self._chance, in_sight=in_sight, close=close)
         self.repositions += 1
         self._put()
 
     def _put(self) -> None:
-        self._pose = self._arena.pose
+        self._pose = self._simulation.pose
         self._way.restart()
         self.course.put(self._pose)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Arena, Position
+from hal.simulation import Position, Simulation
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT, Course, Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.exam_verdict import ExamVerdict
@@ -93,7 +93,7 @@ class ExamResult:
 
 
 async def examine(
-    arena: Arena,
+    simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
     world: str,
@@ -130,9 +130,9 @@ async def examine(
             round(task.learning.minimum_action_s / period_s),
             wanted,
         )
-    clock = LockstepClock(arena.step)
+    clock = LockstepClock(simulation.step)
     runtime = build_runtime(
-        arena.robot,
+        simulation.robot,
         settings,
         task,
         events,
@@ -147,7 +147,7 @@ async def examine(
         runtime.reinforcement.rule.restore(_worths_in_phase_5(alone, runtime.level.system.rlas, task))
     # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
     chance = random.Random(f"course of the exam in world {world}, seed {seed}")
-    drive = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
+    drive = Drive(simulation, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
     if task.exam.start == "in_sight":
         drive.reposition(in_sight=True)
     trail: list[Position] = []
@@ -173,9 +173,9 @@ async def examine(
         ticks = record.tick
         unknown += decision.asking
         if decision.asking and not asking:
-            unknown_positions.append(arena.position)
+            unknown_positions.append(simulation.position)
         asking = decision.asking
-        collision_positions.extend([arena.position] * (arena.collisions - len(collision_positions)))
+        collision_positions.extend([simulation.position] * (simulation.collisions - len(collision_positions)))
         changes += decision.action != action
         action = decision.action
         drive.follow()
@@ -193,7 +193,7 @@ async def examine(
             else:
                 drive.rescue()
         if record.tick % TRAIL_STRIDE == 0:
-            trail.append(arena.position)
+            trail.append(simulation.position)
         if record.tick % 100 == 0:
             on_progress(record.now_s)
 
@@ -209,7 +209,7 @@ async def examine(
         progress=drive.course.progress,
         unit=drive.course.unit,
         way_m=drive.way_m,
-        collisions=arena.collisions,
+        collisions=simulation.collisions,
         stuck=stuck > 0,
         rescues=0 if stuck_ends else stuck,
         share_unknown=unknown / ticks,
@@ -219,7 +219,7 @@ async def examine(
         alarm=alarm,
         findings=drive.course.findings,
         collision_positions=tuple(collision_positions),
-        least_progress=task.course.least_progress(arena, task.exam.duration_s),
+        least_progress=task.course.least_progress(simulation, task.exam.duration_s),
     )
 
 

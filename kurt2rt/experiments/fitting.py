@@ -3,12 +3,12 @@
 from collections.abc import Iterable
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.courses.course import Course, RouteCourse
 from kurt2rt.tasks.settings import TaskSettings
 
 
-def require_course(stage: Stage, task: TaskSettings, worlds: Iterable[str]) -> None:
+def require_course(stage: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
     """Look, before anything is taught, whether each of these worlds has what the task's course needs.
 
     Raises hal.settings.SettingsError that names task, course and world.

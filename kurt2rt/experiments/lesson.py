@@ -7,8 +7,8 @@ from itertools import accumulate
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
+from hal.simulation import Position, Simulation
 from kurt2rt.critic.settings import load_critic
-from kurt2rt.experiments.arena import Arena, Position
 from kurt2rt.experiments.courses.course import Findings
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.fitting import route_of
@@ -93,7 +93,7 @@ class LessonResult:
 
 
 async def teach(
-    arena: Arena,
+    simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
     keeper: LessonKeeper,
@@ -113,7 +113,7 @@ async def teach(
     """
     plan = plan or plan_of(task)
     period_s = settings.can.cycle_s
-    runtime = build_lesson_runtime(arena, settings, task, keeper, events, statistics=statistics, saved=saved)
+    runtime = build_lesson_runtime(simulation, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"{plan.purpose}-{seed}-after-{len(events)}"
     teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     dispatcher = None
@@ -124,7 +124,7 @@ async def teach(
     critics = runtime.school.agreement
     chance = random.Random(f"course of {session}")
     rescue_s = task.teaching.rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s
-    drive = Drive(arena, task, no_way_s=rescue_s, period_s=period_s, chance=chance)
+    drive = Drive(simulation, task, no_way_s=rescue_s, period_s=period_s, chance=chance)
     in_sight = task.teaching.reposition_to == "in_sight"
     reposition_s = task.teaching.reposition_every_s if plan.reposition_every_s is None else plan.reposition_every_s
     reposition_every = round(reposition_s / period_s)
@@ -182,7 +182,7 @@ async def teach(
             runtime.inbox.put(teacher.go())
             lift_alarm(record.tick)
         if record.decision.asking and not asking:
-            ask_positions.append(arena.position)
+            ask_positions.append(simulation.position)
             mid_asks += record.decision.asks_at == MID
         asking = record.decision.asking
         unknown += asking
@@ -207,7 +207,7 @@ async def teach(
         if dispatcher is None and drive.course.behaviour != record.behaviour:
             runtime.inbox.put(teacher.pursue(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:
-            trail.append(arena.position)
+            trail.append(simulation.position)
         if record.tick % ticks_per_second == 0:
             growth.append(len(runtime.level.system))
             on_progress(record.now_s)
@@ -244,7 +244,7 @@ async def teach(
         praise=praise,
         blame=blame,
         refused_signals=refused,
-        collisions=arena.collisions,
+        collisions=simulation.collisions,
         unknown_rescues=unknown_rescues,
         share_unknown=unknown / max(ticks, 1),
         agreement=tuple(agreement),

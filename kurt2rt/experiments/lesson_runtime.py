@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Arena
+from hal.simulation import Simulation
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.statistics import StatisticsCounter
@@ -14,7 +14,7 @@ from kurt2rt.timing.clock import LockstepClock
 
 
 def build_lesson_runtime(
-    arena: Arena,
+    simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
     keeper: LessonKeeper,
@@ -29,12 +29,12 @@ def build_lesson_runtime(
     """
     # The scripted teacher feels no bumpers: it would give the answer that the robot has. A hand rescues the robot.
     return build_runtime(
-        arena.robot,
+        simulation.robot,
         settings,
         task,
         events,
         keeper,
-        LockstepClock(arena.step),
+        LockstepClock(simulation.step),
         statistics=statistics,
         saved=saved,
         asks_when_held=False,

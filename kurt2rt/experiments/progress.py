@@ -3,7 +3,7 @@
 import math
 from collections import deque
 
-from kurt2rt.experiments.arena import Position
+from hal.simulation import Position
 
 
 class WayMade:

@@ -7,7 +7,7 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.curriculum import CurriculumResult, run_exams, run_lesson
 from kurt2rt.experiments.pool import JobKilledError, Tell, run_jobs
 from kurt2rt.experiments.robot_time import RobotTime
@@ -18,7 +18,7 @@ from kurt2rt.tasks.settings import TaskSettings
 class SeedJob:
     """What one process does: teach with one seed into a knowledge file, then examine."""
 
-    stage: Stage
+    stage: SimulationFactory
     settings: RobotSettings
     task: TaskSettings
     worlds: tuple[str, ...]

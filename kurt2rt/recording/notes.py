@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.channel.ground import WorldView
-from kurt2rt.channel.state import SimulatedPlace
+from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.topics import Topics
@@ -19,7 +18,7 @@ class Ticked(NamedTuple):
     saved: bool
     """Statistics were saved after it."""
     truth: SimulatedPlace | None
-    world: WorldView | None
+    world: WorldPlan | None
 
 
 class Asked(NamedTuple):
@@ -39,7 +38,7 @@ class NoteLog:
         """`began_ns`: time since 1970 of what is noted before the first tick."""
         self.topics = topics
         self._time_ns = began_ns
-        self._world: WorldView | None = None
+        self._world: WorldPlan | None = None
 
     def log(self, note: Note) -> None:
         """One note. Raises RecordingError for one that cannot be written."""

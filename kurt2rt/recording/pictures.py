@@ -27,7 +27,7 @@ from foxglove.messages import (
 )
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import WorldView
+from hal.simulation import WorldPlan
 from kurt2rt.layers.decision import Decision
 from kurt2rt.recording.odometry import PlanePose
 from kurt2rt.recording.rays import SCAN_STEP_DEG, SensorRays
@@ -144,7 +144,7 @@ class RobotPictures:
         return SceneUpdate(entities=[entity])
 
 
-def world_scene(world: WorldView, time_ns: int) -> SceneUpdate:
+def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
     """The simulated world: its walls, each a face under a line, and posts."""
     outlines = [corners for corners in (world.outline, *(wall.corners for wall in world.walls)) if corners]
     faces = TriangleListPrimitive(

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import Ground
+from hal.simulation import SimulatedWorld
 from kurt2rt.knowledge.opening import OpenedKnowledge
 from kurt2rt.perception.definition import load_situation
 from kurt2rt.recording.attachments import attachments_of, fingerprints_of
@@ -47,7 +47,7 @@ class Recording:
     budget: Budget
     bus: str
     """sim, or the bus that the robot is on."""
-    ground: Ground | None = None
+    ground: SimulatedWorld | None = None
     """Of a simulated robot."""
     live: tuple[str, int] | None = None
     """Host and port of a live view; None: there is none."""

@@ -10,7 +10,7 @@ from typing import Self
 from foxglove import Context
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import Ground
+from hal.simulation import SimulatedWorld
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
@@ -49,7 +49,7 @@ class RunRecorder:
         live: LiveView | None,
         shown: NoteLog | None,
         *,
-        ground: Ground | None = None,
+        ground: SimulatedWorld | None = None,
         began_at_ns: int | None = None,
         capacity: int = CAPACITY,
     ) -> None:
@@ -255,7 +255,7 @@ def open_run_recorder(
     name: str,
     live: tuple[str, int] | None = None,
     opened: Callable[[LiveView], None] = lambda _: None,
-    ground: Ground | None = None,
+    ground: SimulatedWorld | None = None,
     began_at_ns: int | None = None,
     disk: Disk | None = None,
     capacity: int = CAPACITY,

@@ -17,8 +17,7 @@ from foxglove.messages import Log, LogLevel
 
 from hal.guard import SLEW_LIMIT
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.ground import WorldView
-from kurt2rt.channel.state import SimulatedPlace
+from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.events import encode_event
@@ -124,7 +123,7 @@ class Topics:
         """How the program is."""
         self._health.log(_json(plain_of(report)), log_time=time_ns)
 
-    def ground(self, world: WorldView, tick: int, time_ns: int) -> None:
+    def ground(self, world: WorldPlan, tick: int, time_ns: int) -> None:
         """The simulated world."""
         if tick >= self._next_ground:
             self._next_ground = tick + self._ground_ticks

@@ -4,7 +4,8 @@ import random
 from collections.abc import Callable
 from contextlib import suppress
 
-from kurt2rt.channel.state import SimulatedPlace, State
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.state import State
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings

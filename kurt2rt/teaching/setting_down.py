@@ -4,7 +4,8 @@ import math
 import random
 from collections import deque
 
-from kurt2rt.channel.state import SimulatedPlace, State
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.state import State
 
 _MOST_PLACES = 50
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.ground import Post, Wall
+from hal.simulation import Post, Wall
 from kurt2rt.channel.requests import LARGEST_NUMBER
 from kurt2rt.channel.schema import ManyOf, Real, Row, Text, Whole, WireError
 

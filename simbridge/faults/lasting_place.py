@@ -12,6 +12,7 @@ from hal.codec import load_codec
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S, TICKS_CEASED
 from simbridge.faults.cable import Cable
@@ -20,7 +21,6 @@ from simbridge.faults.disturbance import Kind, TimedFault
 from simbridge.faults.event_time import EventScheduler
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
-from simbridge.pose import Pose
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.wire.end import WireInterface
 from simbridge.wire.line import NO_WIRE

@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from hal.simulation import Pose
 from simbridge.geometry import polygons_of
-from simbridge.pose import Pose
 
 _STARTS = 8
 _APART_M = 0.5

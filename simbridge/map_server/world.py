@@ -10,12 +10,12 @@ from shapely.affinity import scale, translate
 
 from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, load_settings
+from hal.simulation import Pose
 from simbridge.map_server.occupancy import drivable_cells
 from simbridge.map_server.settings import MapSettings, MapWorldSettings
 from simbridge.map_server.starts import starts_beside_walls, turning_places
 from simbridge.map_server.tracing import TooRaggedError, trace
 from simbridge.obstacle_settings import PolygonObstacleSettings
-from simbridge.pose import Pose
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 
 MOST_WALLS = 5000

@@ -5,14 +5,14 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.bench.subject import SEED, Subject, learn
-from kurt2rt.simulated import SimulatedStage
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 
 
 @pytest.fixture(scope="session")
 def untaught() -> Subject:
     settings, task = load_robot(), load_task("wall_following")
-    stage = SimulatedStage(settings)
+    stage = Kurt2SimulationFactory(settings)
     return Subject(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
 
 

@@ -3,9 +3,9 @@
 import pytest
 
 from hal.robot_settings import load_robot
+from hal.simulation import Simulation
 from kurt2rt.bench.pace import Pace
 from kurt2rt.bench.subject import Subject
-from kurt2rt.experiments.arena import Arena
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tick import TickRecord
 
@@ -32,8 +32,8 @@ class Keeper:
 
 async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: Subject) -> None:
     clock, settings = PunctualClock(), load_robot()
-    arena: Arena = untaught.open_arena("pace")
-    runtime = build_runtime(arena.robot, settings, untaught.task, (), Keeper(), clock)
+    simulation: Simulation = untaught.open_simulation("pace")
+    runtime = build_runtime(simulation.robot, settings, untaught.task, (), Keeper(), clock)
     pace = Pace(runtime.scheduler, clock)
     seen: list[tuple[int, float]] = []
 
@@ -47,6 +47,6 @@ async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: Subject) -
     try:
         await pace.run(after_tick)
     finally:
-        arena.close()
+        simulation.close()
     assert [tick for tick, _ in seen] == [1, 2, 3, 4]
     assert [now_s for _, now_s in seen] == pytest.approx([0.01, 0.02, 0.034, 0.044])

@@ -6,10 +6,10 @@ from typing import Any, cast
 
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
+from hal.simulation import SimulatedWorld
 from kurt2rt.channel.channel import Channel, describe
 from kurt2rt.channel.endpoint import Endpoint
 from kurt2rt.channel.exam_standing import NO_EXAM
-from kurt2rt.channel.ground import Ground
 from kurt2rt.channel.off_tick_requests import Copies
 from kurt2rt.channel.reception import LONGEST_WAIT_S, Reception, Sender
 from kurt2rt.channel.reply import Reply
@@ -133,7 +133,7 @@ class Desk:
     def __init__(
         self,
         *,
-        ground: Ground | None = None,
+        ground: SimulatedWorld | None = None,
         keys: Keys | None = None,
         keeper: LessonKeeper | None = None,
         longest_wait_s: float = LONGEST_WAIT_S,

@@ -1,7 +1,6 @@
-"""A world that notes what is done to it (kurt2rt.channel.ground.Ground)."""
+"""A world that notes what is done to it (hal.simulation.SimulatedWorld)."""
 
-from kurt2rt.channel.ground import Post, Wall, WorldView
-from kurt2rt.channel.state import SimulatedPlace
+from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
 
 
 class Yard:
@@ -13,10 +12,10 @@ class Yard:
     def place(self) -> SimulatedPlace:
         return SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, len(self.changes))
 
-    def world(self) -> WorldView:
+    def world(self) -> WorldPlan:
         outline = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0))
         box = Wall("box", ((1.0, 1.0), (2.0, 1.0), (2.0, 2.0)))
-        return WorldView(len(self.changes), "yard", (4.0, 4.0), outline, (box,), (Post("post", 3.0, 3.0, 0.1),))
+        return WorldPlan(len(self.changes), "yard", (4.0, 4.0), outline, (box,), (Post("post", 3.0, 3.0, 0.1),))
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         if name != "box":

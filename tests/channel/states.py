@@ -3,7 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.teaching.question import FeatureDifference
 
 ASKING = State(

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from hal.simulation import SimulatedPlace
 from kurt2rt.channel.requests import (
     AppraiseRequest,
     BehaviourRequest,
@@ -15,7 +16,7 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     TakeRequest,
 )
-from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble

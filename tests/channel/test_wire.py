@@ -9,6 +9,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from hal.simulation import SimulatedPlace
 from kurt2rt.channel.requests import (
     AnswerRequest,
     AppraiseRequest,
@@ -37,7 +38,7 @@ from kurt2rt.channel.schema import (
     Text,
     Whole,
 )
-from kurt2rt.channel.state import MidState, SimulatedPlace, State, SurpriseState
+from kurt2rt.channel.state import MidState, State, SurpriseState
 from kurt2rt.channel.wire import (
     PATHS,
     WireError,

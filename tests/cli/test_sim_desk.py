@@ -10,7 +10,7 @@ import pytest
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
 from kurt2rt.cli.sim_desk import HELP, Desk, News, StatusLine, TypedLines
-from kurt2rt.simulated_ground import SimulatedGround
+from kurt2rt.simulated_ground import Kurt2World
 from simbridge.standalone import StandaloneRobot
 from simbridge.world_loading import load_world
 from tests.simbridge.rig import ROBOT
@@ -34,7 +34,7 @@ class Table:
         self.asked: list[object] = []
         simulation = self.standalone.simulation
         simulation.submit = lambda job: self.asked.append(job())  # type: ignore[method-assign]  # no thread runs here
-        self.desk = Desk(self.standalone, WORLD, SimulatedGround(self.robot, WORLD, ROBOT.geometry, simulation))
+        self.desk = Desk(self.standalone, WORLD, Kurt2World(self.robot, WORLD, ROBOT.geometry, simulation))
         self.news = News(self.standalone)
 
     def cycles(self, count: int, told: SpeedControl | SystemControl | None = None) -> list[str]:

@@ -11,11 +11,11 @@ from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.simulated import SimulatedStage
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
 ROBOT = load_robot()
-STAGE = SimulatedStage(ROBOT)
+STAGE = Kurt2SimulationFactory(ROBOT)
 
 
 def short_task(
@@ -71,12 +71,12 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
 def teachers_drive(task: TaskSettings) -> ExamResult:
     """How the teacher himself drives the exam in its first world."""
     world = task.exam.worlds[0]
-    arena = STAGE.open(world, 1, "exam")
+    simulation = STAGE.open(world, 1, "exam")
 
     async def drive() -> ExamResult:
-        return await examine(arena, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
+        return await examine(simulation, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
 
     try:
         return anyio.run(drive)
     finally:
-        arena.close()
+        simulation.close()

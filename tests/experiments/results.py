@@ -1,6 +1,6 @@
 """Results as a lesson and its exams leave them, written by hand."""
 
-from kurt2rt.experiments.arena import Position
+from hal.simulation import Position
 from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.exam import ExamResult
 from kurt2rt.experiments.lesson import LessonResult

@@ -11,7 +11,7 @@ from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.report import render_exams
 from kurt2rt.rla.rla import Phase
-from kurt2rt.simulated import SimulatedArena, SimulatedStage
+from kurt2rt.simulated import Kurt2Simulation, Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
 from tests.experiments.test_report import printed
 
@@ -20,22 +20,22 @@ ALARM_CYCLE = 500
 
 
 @dataclass(frozen=True)
-class StageWithAnAlarm(SimulatedStage):
+class StageWithAnAlarm(Kurt2SimulationFactory):
     """The guard latches in the 500th cycle, as it does when the bus is lost."""
 
-    def open(self, world: str, seed: int, purpose: str) -> SimulatedArena:
-        arena = super().open(world, seed, purpose)
-        step, cycles = arena.step, 0
+    def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
+        simulation = super().open(world, seed, purpose)
+        step, cycles = simulation.step, 0
 
         def step_on() -> None:
             nonlocal cycles
             cycles += 1
             if cycles == ALARM_CYCLE:
-                arena.robot.emergency_stop("bus lost")
+                simulation.robot.emergency_stop("bus lost")
             step()
 
-        arena.step = step_on  # type: ignore[method-assign]
-        return arena
+        simulation.step = step_on  # type: ignore[method-assign]
+        return simulation
 
 
 STAGE = StageWithAnAlarm(ROBOT)

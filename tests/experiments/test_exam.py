@@ -6,7 +6,7 @@ import anyio
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.experiments.arena import Position
+from hal.simulation import Position
 from kurt2rt.experiments.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.exam import ExamResult, NothingIsTaught, examine
 from kurt2rt.experiments.exam_verdict import ExamVerdict
@@ -115,14 +115,14 @@ def test_a_taught_robot_drives_by_what_it_was_taught(taught: Taught) -> None:
 
 def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
     task = short_task(radius=150.0)
-    arena = STAGE.open("a", 1, "exam")
+    simulation = STAGE.open("a", 1, "exam")
     records: list[TickRecord] = []
     try:
-        clock = LockstepClock(arena.step)
-        runtime = build_runtime(arena.robot, ROBOT, task, taught.events, NothingIsTaught(), clock)
+        clock = LockstepClock(simulation.step)
+        runtime = build_runtime(simulation.robot, ROBOT, task, taught.events, NothingIsTaught(), clock)
         anyio.run(runtime.scheduler.run, 400, records.append)
     finally:
-        arena.close()
+        simulation.close()
     asking = [record for record in records if record.decision.asking]
     assert 0 < len(asking) < len(records)
     assert all(record.decision.wheel_speeds == STANDSTILL for record in asking)
@@ -131,29 +131,29 @@ def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
 
 
 def test_a_lesson_in_an_exam_is_a_defect_and_no_silence() -> None:
-    arena = STAGE.open("a", 1, "exam")
+    simulation = STAGE.open("a", 1, "exam")
     try:
-        clock = LockstepClock(arena.step)
-        runtime = build_runtime(arena.robot, ROBOT, short_task(), [], NothingIsTaught(), clock)
+        clock = LockstepClock(simulation.step)
+        runtime = build_runtime(simulation.robot, ROBOT, short_task(), [], NothingIsTaught(), clock)
         runtime.inbox.put(Teach("t-1", "Ann", "forward"))
         with pytest.raises(RuntimeError, match="a lesson was given in an exam"):
             anyio.run(runtime.scheduler.run, 1, lambda _: None)
     finally:
-        arena.close()
+        simulation.close()
 
 
 def test_progress_is_told_each_second_and_at_the_end() -> None:
     task = short_task(exam_s=2.5)
     told: list[float] = []
-    arena = STAGE.open("a", 1, "exam")
+    simulation = STAGE.open("a", 1, "exam")
 
     async def run() -> ExamResult:
-        return await examine(arena, ROBOT, task, "a", [], seed=1, on_progress=told.append)
+        return await examine(simulation, ROBOT, task, "a", [], seed=1, on_progress=told.append)
 
     try:
         anyio.run(run)
     finally:
-        arena.close()
+        simulation.close()
     assert told == pytest.approx([1.0, 2.0, 2.5])
 
 

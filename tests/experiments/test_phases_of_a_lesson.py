@@ -124,16 +124,16 @@ def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
     task = short_task(exam_s=2.0, radius=1e5)
 
     async def drive() -> float:
-        arena = STAGE.open("a", 1, "exam")
+        simulation = STAGE.open("a", 1, "exam")
         events = [knows_only("stand"), rival("forward")]
         # What a teacher had said of them does not count there.
         saved = Statistics(values={2: -0.05})
         try:
             exam = await examine(
-                arena, ROBOT, task, "a", events, seed=1, on_progress=lambda _: None, saved=saved, alone=alone
+                simulation, ROBOT, task, "a", events, seed=1, on_progress=lambda _: None, saved=saved, alone=alone
             )
         finally:
-            arena.close()
+            simulation.close()
         return exam.way_m
 
     assert (anyio.run(drive) > 0.3) is drives
@@ -150,10 +150,10 @@ def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool
     task = short_task(exam_s=5.0, stuck_after_s=1.5, radius=1e5)
 
     async def drive() -> tuple[bool, int, float]:
-        arena = STAGE.open("a", 1, "exam")
+        simulation = STAGE.open("a", 1, "exam")
         try:
             exam = await examine(
-                arena,
+                simulation,
                 ROBOT,
                 task,
                 "a",
@@ -163,7 +163,7 @@ def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool
                 stuck_ends=stuck_ends,
             )
         finally:
-            arena.close()
+            simulation.close()
         return exam.stuck, exam.rescues, exam.duration_s
 
     stuck, rescues, duration_s = anyio.run(drive)

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from kurt2rt.experiments.arena import Position
+from hal.simulation import Position
 from kurt2rt.experiments.progress import WayMade
 
 PERIOD_S = 0.01

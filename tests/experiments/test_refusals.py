@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.experiments.arena import Arena
+from hal.simulation import Simulation
 from kurt2rt.experiments.courses.course import Course, CourseSettings
 from kurt2rt.experiments.courses.way import WaySettings
 from kurt2rt.experiments.curriculum import run_exams
@@ -37,8 +37,8 @@ def examined(task: TaskSettings) -> None:
 class FlySettings(CourseSettings):
     """Wants what no task teaches."""
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:
-        course = WaySettings(kind="way").build(arena, behaviours, chance)
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+        course = WaySettings(kind="way").build(simulation, behaviours, chance)
         course.behaviour = "fly"  # type: ignore[misc]
         return course
 

@@ -12,7 +12,7 @@ from kurt2rt.explain.tipping import Tip, tips
 from kurt2rt.recording.entries import TickEntry, tick_entry_of
 from kurt2rt.rla.rla import BASIC, TeachingEvent
 from kurt2rt.runtime import build_runtime
-from kurt2rt.simulated import SimulatedStage
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.commands import Command
 from kurt2rt.tick import TickRecord
@@ -38,14 +38,20 @@ class Lesson:
     def __init__(self, task: str = "wall_following", seed: int = 1, *, attended: bool = False) -> None:
         settings = load_task(task)
         self.notebook = Notebook()
-        self._arena = SimulatedStage(ROBOT).open(settings.teaching.world, seed, "why")
+        self._simulation = Kurt2SimulationFactory(ROBOT).open(settings.teaching.world, seed, "why")
         self.runtime = build_runtime(
-            self._arena.robot, ROBOT, settings, (), self.notebook, LockstepClock(self._arena.step), attended=attended
+            self._simulation.robot,
+            ROBOT,
+            settings,
+            (),
+            self.notebook,
+            LockstepClock(self._simulation.step),
+            attended=attended,
         )
         self.records: list[TickRecord] = []
 
     def close(self) -> None:
-        self._arena.close()
+        self._simulation.close()
 
     def go_on(self, ticks: int, *commands: Command) -> TickRecord:
         """Say something, and let some ticks pass; the record of the last one."""

@@ -9,6 +9,7 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.robot import SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.junctions import Junctions
 from kurt2rt.experiments.courses.streets import Junction, Side, StreetMap
 from kurt2rt.layers.policy_level import PolicyLevel
@@ -17,9 +18,8 @@ from kurt2rt.mid.junction_detector import JunctionDetector
 from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.perception import Situation
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
-from simbridge.pose import Pose
 from tests.layers.helpers import situation
 from tests.mid.walk import ROBOT
 
@@ -32,7 +32,7 @@ class Drive:
     """The policy drives; what is wanted may change in every tick."""
 
     def __init__(self, seed: int, robot: RobotSettings = ROBOT) -> None:
-        self.arena = SimulatedArena(robot, "manhattan", seed, "test")
+        self.simulation = Kurt2Simulation(robot, "manhattan", seed, "test")
         self.wanted = Wanted(TASK.behaviours)
         self._level = PolicyLevel(
             TASK.policy.build(robot.infrared), load_repertoire(TASK.repertoire, robot), 10, self.wanted
@@ -43,16 +43,16 @@ class Drive:
         """What the robot senses, tick by tick."""
         for tick in range(round(duration_s / self._period_s)):
             now_s = tick * self._period_s
-            self.arena.step()
-            senses = self.arena.robot.sense(now_s)
-            self.arena.robot.drive(self._level.decide(ANYWHERE, senses, None).wheel_speeds, now_s, now_s)
+            self.simulation.step()
+            senses = self.simulation.robot.sense(now_s)
+            self.simulation.robot.drive(self._level.decide(ANYWHERE, senses, None).wheel_speeds, now_s, now_s)
             yield senses
-        self.arena.close()
+        self.simulation.close()
 
 
 def test_corners_ts_and_crossings_each_tell_what_was_done_there_and_where_it_could_go() -> None:
     drive = Drive(1)
-    drive.arena.simulation.place(Pose(0.4, 1.3, math.pi / 2))
+    drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
     detector = JunctionDetector(load_mid("turns").junctions, ROBOT)
     way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
     drive.wanted.pursue(next(way))
@@ -82,7 +82,7 @@ class Truth:
 
     def passed(self, drive: Drive) -> tuple[int, bool, bool] | None:
         """Quarter turns, and whether there was a way to the left and to the right."""
-        pose = drive.arena.pose
+        pose = drive.simulation.pose
         if self._inside is None:
             self._inside = self._streets.junction_at(pose)
             if self._inside is not None:
@@ -100,9 +100,9 @@ class Truth:
 def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[list[object], list[object]]:
     """What was passed and what was told, by random commands."""
     drive = Drive(seed, robot)
-    streets = StreetMap(drive.arena.plan)
+    streets = StreetMap(drive.simulation.plan)
     course = Junctions(streets, TASK.behaviours, random.Random(seed))
-    course.put(drive.arena.pose)
+    course.put(drive.simulation.pose)
     truth, detector = Truth(streets), JunctionDetector(load_mid("turns").junctions, robot)
     passed: list[object] = []
     told: list[object] = []
@@ -110,7 +110,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
         event = detector.perceive(senses)
         if event is not None:
             told.append((event.quarters, event.left_open, event.right_open))
-        course.follow(drive.arena.pose)
+        course.follow(drive.simulation.pose)
         drive.wanted.pursue(course.behaviour)
         really = truth.passed(drive)
         if really is not None:

@@ -9,6 +9,7 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from hal.robot_settings import load_robot
+from hal.simulation import Pose
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
@@ -16,9 +17,8 @@ from kurt2rt.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
 from kurt2rt.mid.settings import load_mid
 from kurt2rt.perception.perception import Situation
 from kurt2rt.rla.condition import Condition
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
-from simbridge.pose import Pose
 
 ROBOT = load_robot()
 STREETS = load_task("streets")
@@ -38,8 +38,8 @@ class Drive:
 
     def __init__(self, place: Place, start: Pose) -> None:
         self.place = place
-        self.arena = SimulatedArena(ROBOT, "manhattan", 1, "reckoning")
-        self.arena.simulation.place(start)
+        self.simulation = Kurt2Simulation(ROBOT, "manhattan", 1, "reckoning")
+        self.simulation.simulated_robot.place(start)
         self._wanted = Wanted(STREETS.behaviours)
         self._leader = PolicyLevel(
             STREETS.policy.build(ROBOT.infrared), load_repertoire(STREETS.repertoire, ROBOT), 10, self._wanted
@@ -57,17 +57,17 @@ class Drive:
         """One tick; whether a junction was passed."""
         self._tick += 1
         now_s = self._tick * ROBOT.can.cycle_s
-        senses = self.arena.robot.sense(now_s)
+        senses = self.simulation.robot.sense(now_s)
         changed = self.place.perceive(senses, NOTHING)
         decision = self._leader.decide(NOWHERE, senses, None)
-        self.arena.robot.drive(decision.wheel_speeds, now_s, now_s)
-        self.arena.step()
+        self.simulation.robot.drive(decision.wheel_speeds, now_s, now_s)
+        self.simulation.step()
         return changed and self.place.passed is not None
 
     @property
     def off_m(self) -> float:
         """How far what it reckons is from where it is."""
-        pose, vector = self.arena.pose, self.place.vector
+        pose, vector = self.simulation.pose, self.place.vector
         return math.hypot(vector[X] - pose.x_m, vector[Y] - pose.y_m)
 
 
@@ -80,7 +80,7 @@ def drive() -> Iterator[Drive]:
     drives = Drive(place(), NORTHWARD)
     drives.place.be_at(AT_START)
     yield drives
-    drives.arena.close()
+    drives.simulation.close()
 
 
 def heading(place: Place) -> tuple[float, float]:
@@ -124,12 +124,12 @@ def test_set_down_elsewhere_it_is_lost_until_somebody_says_where_it_is(drive: Dr
     drive.lead("turn_right")
     drive.place.restart()
     assert drive.place.lost
-    assert drive.place.perceive(drive.arena.robot.sense(0.0), NOTHING)
-    drive.arena.simulation.place(NORTHWARD)
-    while not drive.arena.pose.y_m > 4.0:
+    assert drive.place.perceive(drive.simulation.robot.sense(0.0), NOTHING)
+    drive.simulation.simulated_robot.place(NORTHWARD)
+    while not drive.simulation.pose.y_m > 4.0:
         drive.step()
     assert drive.place.lost
-    drive.arena.simulation.place(NORTHWARD)
+    drive.simulation.simulated_robot.place(NORTHWARD)
     drive.place.be_at(AT_START)
     drive.lead("turn_right")
     assert drive.off_m < 0.15

@@ -9,10 +9,11 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
+from hal.simulation import SimulatedPlace
 from kurt2rt.channel.exam_standing import NO_EXAM, ExamStanding
 from kurt2rt.channel.requests import TABLE, VERSION
 from kurt2rt.channel.simulation_view import SimulationView, TaskName
-from kurt2rt.channel.state import SimulatedPlace, State
+from kurt2rt.channel.state import State
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.file_part import FilePart
 from kurt2rt.health.report import HealthReport

@@ -62,13 +62,15 @@ def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) 
     """Of the same robot at the same place, whatever it was taught."""
     task = load_task("fleeing")
     task = task.model_copy(update={"learning": task.learning.model_copy(update={"weights": weights})})
-    arena = STAGE.open("a", 1, "exam")
+    simulation = STAGE.open("a", 1, "exam")
     records: list[TickRecord] = []
     try:
-        runtime = build_runtime(arena.robot, ROBOT, task, taught, NothingIsTaught(), LockstepClock(arena.step))
+        runtime = build_runtime(
+            simulation.robot, ROBOT, task, taught, NothingIsTaught(), LockstepClock(simulation.step)
+        )
         anyio.run(runtime.scheduler.run, 1, records.append)
     finally:
-        arena.close()
+        simulation.close()
     return records[0]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from kurt2rt.channel.ground import Ground
+from hal.simulation import SimulatedWorld
 from kurt2rt.recording.attachments import attachments_of, fingerprints_of
 from kurt2rt.recording.disk import Disk
 from kurt2rt.recording.live_view import LiveView
@@ -41,7 +41,7 @@ class RecordedDesk:
         *,
         disk: Disk | None = None,
         budget: Budget | None = None,
-        ground: Ground | None = None,
+        ground: SimulatedWorld | None = None,
         capacity: int = 3000,
         name: str = NAME,
         live: tuple[str, int] | None = None,

@@ -11,8 +11,7 @@ from foxglove.messages import Log, LogLevel
 from mcap.reader import make_reader
 
 from hal.guard import FRONT_BUMPER, SLEW_LIMIT
-from kurt2rt.channel.ground import Post, Wall, WorldView
-from kurt2rt.channel.state import SimulatedPlace
+from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
 from kurt2rt.health.plain import report_of
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
@@ -432,9 +431,9 @@ class Elsewhere:
     def place(self) -> SimulatedPlace:
         return SimulatedPlace(1.0, 2.0, 0.0, 0.0, 0, 0)
 
-    def world(self) -> WorldView:
+    def world(self) -> WorldPlan:
         corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
-        return WorldView(0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (Post("post", 1.0, 1.0, 0.1),))
+        return WorldPlan(0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (Post("post", 1.0, 1.0, 0.1),))
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         raise AssertionError(name, dx_m, dy_m)

@@ -12,7 +12,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.robot import STANDSTILL
-from kurt2rt.experiments.arena import Arena, Pose
+from hal.simulation import Pose, Simulation
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import MID, TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
@@ -52,8 +52,8 @@ class Drive:
         self._pose: Pose | None = None
         self.last = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
-    def note(self, arena: Arena, wanted: str, record: TickRecord) -> None:
-        pose = arena.pose
+    def note(self, simulation: Simulation, wanted: str, record: TickRecord) -> None:
+        pose = simulation.pose
         before = self._pose or pose
         self.way_m[wanted] += math.hypot(pose.x_m - before.x_m, pose.y_m - before.y_m)
         self.turned_deg[wanted] += math.degrees(math.remainder(pose.heading_rad - before.heading_rad, math.tau))
@@ -77,13 +77,16 @@ def complete(tmp_path_factory: pytest.TempPathFactory) -> TaskSettings:
 
 
 @contextmanager
-def runtime_of(task: TaskSettings) -> Iterator[tuple[Runtime, Arena]]:
+def runtime_of(task: TaskSettings) -> Iterator[tuple[Runtime, Simulation]]:
     """In a street of Manhattan, with one RLA that answers wherever the robot is."""
-    arena = STAGE.open("manhattan", 1, "all kinds")
+    simulation = STAGE.open("manhattan", 1, "all kinds")
     try:
-        yield build_runtime(arena.robot, ROBOT, task, [WHEREVER], Keeper(), LockstepClock(arena.step)), arena
+        yield (
+            build_runtime(simulation.robot, ROBOT, task, [WHEREVER], Keeper(), LockstepClock(simulation.step)),
+            simulation,
+        )
     finally:
-        arena.close()
+        simulation.close()
 
 
 async def let_drive(runtime: Runtime, action: str, seconds: float, see: Callable[[TickRecord], None]) -> None:
@@ -98,9 +101,9 @@ def test_a_task_a_taught_behaviour_motor_values_a_control_loop_and_a_turn_drive(
 
     async def all_parts() -> None:
         for action, seconds in parts.items():
-            await let_drive(runtime, action, seconds, partial(told.note, arena, action))
+            await let_drive(runtime, action, seconds, partial(told.note, simulation, action))
 
-    with runtime_of(complete) as (runtime, arena):
+    with runtime_of(complete) as (runtime, simulation):
         anyio.run(all_parts)
     assert {(action, *causes) for action, causes in told.causes.items()} == {(each, Cause.RLA) for each in parts}
     assert told.way_m["patrol"] > 0.3
@@ -127,7 +130,7 @@ def test_where_the_task_is_lost_the_robot_stands_and_asks_until_somebody_answers
         runtime.inbox.put(Teach("answer", "Ann", "forward"))
         await runtime.scheduler.run(20, answered.append)
 
-    with runtime_of(complete) as (runtime, arena):
+    with runtime_of(complete) as (runtime, simulation):
         anyio.run(story)
     last = asked[-1].decision
     assert asked[-1].tick - asked[0].tick == 199  # it does not drive on by itself
@@ -135,4 +138,4 @@ def test_where_the_task_is_lost_the_robot_stands_and_asks_until_somebody_answers
     assert last.match is not None
     assert last.match.known
     assert [each.decision.action for each in answered] == ["forward"] * 20
-    assert arena.collisions == 0
+    assert simulation.collisions == 0

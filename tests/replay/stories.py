@@ -26,7 +26,7 @@ from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
 from kurt2rt.recording.segment_reader import SegmentReader
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.standing_text import stop_text
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.active_stop import STARTED, ActiveStop
@@ -72,7 +72,7 @@ class Notebook:
 class Scene:
     """A robot that runs, and whoever is about it."""
 
-    arena: SimulatedArena
+    simulation: Kurt2Simulation
     runtime: Runtime
     notebook: Notebook
     teacher: ScriptedTeacher
@@ -140,16 +140,16 @@ class Errand:
     """Led about in a town, and then sent home."""
 
     def __init__(self, scene: Scene, task: TaskSettings) -> None:
-        self._walk = errands_of(task).walk_in(scene.arena.plan, task.behaviours)
+        self._walk = errands_of(task).walk_in(scene.simulation.plan, task.behaviours)
         self._guide = Guide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
-        self._walk.put(scene.arena.pose)
+        self._walk.put(scene.simulation.pose)
         self._guide.begin()
         scene.runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
-        self._home = scene.arena.pose
+        self._home = scene.simulation.pose
 
     def __call__(self, scene: Scene, record: TickRecord) -> None:
         tick, inbox = record.tick, scene.runtime.inbox
-        self._walk.follow(scene.arena.pose)
+        self._walk.follow(scene.simulation.pose)
         said = self._guide.watch(record) if tick < at(34) else None
         if said is not None:
             inbox.put(said)
@@ -157,7 +157,7 @@ class Errand:
         if lesson is not None:
             inbox.put(lesson)
         if tick == at(22):
-            scene.arena.put(self._home)
+            scene.simulation.put(self._home)
             scene.runtime.set_down()
             self._walk.put(self._home)
             self._guide.set_down_at_home()
@@ -192,9 +192,9 @@ def record_story(
     """Let a story happen, or an`other` one in its place, and record it; the run's folder."""
     told = STORIES[name]
     settings, task = load_robot(), task or load_task(told.task)
-    arena = SimulatedArena(settings, task.teaching.world, 3, f"story {name}")
+    simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
     notebook = Notebook()
-    clock = LockstepClock(arena.step)
+    clock = LockstepClock(simulation.step)
     attachments = attachments_of(settings, task)
     head = RunHead(
         kurt2rt="story",
@@ -211,11 +211,13 @@ def record_story(
         fingerprints=fingerprints_of(attachments),
     )
     wanted = Wanted(task.behaviours)
-    runtime = build_runtime(arena.robot, settings, task, (), notebook, clock, attended=told.attended, wanted=wanted)
+    runtime = build_runtime(
+        simulation.robot, settings, task, (), notebook, clock, attended=told.attended, wanted=wanted
+    )
     if told.stopped:
         runtime.school.stop(told.stopped)
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
-    scene = Scene(arena, runtime, notebook, teacher)
+    scene = Scene(simulation, runtime, notebook, teacher)
     story: Story = other or (walls if name == "walls" else Errand(scene, task))
     recorder = open_run_recorder(
         recordings,
@@ -249,7 +251,7 @@ def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
     try:
         asyncio.run(runtime.scheduler.run(ticks, after_tick))
     finally:
-        scene.arena.close()
+        scene.simulation.close()
     recorder.close()
 
 

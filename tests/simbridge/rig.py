@@ -9,8 +9,8 @@ from hal.bus import open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, SystemControl, control_frame
 from hal.robot_settings import RobotSettings, load_robot
+from hal.simulation import Pose
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from simbridge.pose import Pose
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 

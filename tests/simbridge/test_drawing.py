@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from hal.simulation import Pose
 from simbridge.drawing import draw_marks, draw_robot, draw_trail, draw_world
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from simbridge.pose import Pose
 from tests.simbridge.rig import ROBOT, room
 
 

@@ -5,8 +5,8 @@ import pytest
 
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
 from simbridge.obstacle_settings import RoundObstacleSettings, WallSettings
-from simbridge.pose import Pose
 from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))

@@ -4,9 +4,9 @@ import random
 import pytest
 
 from hal.robot_settings import load_robot
+from hal.simulation import Pose
 from simbridge.free_poses import FreePoses
 from simbridge.nearest import Clearance
-from simbridge.pose import Pose
 from simbridge.world import World
 from simbridge.world_loading import load_world
 from tests.simbridge.rig import Rig, quiet_robot

@@ -3,8 +3,8 @@ import math
 import pymunk
 import pytest
 
+from hal.simulation import Pose
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from simbridge.pose import Pose
 from simbridge.sight import RayCaster
 from simbridge.world import World
 from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, quiet_robot, room

@@ -8,10 +8,10 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hal.simulation import Pose
 from simbridge.geometry import Point, polygons_of
 from simbridge.laps import WallProgress
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from simbridge.pose import Pose
 from simbridge.wall_rings import WallRings
 from simbridge.world import World
 from simbridge.world_loading import load_world

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from hal.settings import SettingsError
+from hal.simulation import Pose
 from simbridge.map_server import world as map_world
 from simbridge.map_server.occupancy import drivable_cells
 from simbridge.map_server.settings import MapSettings
 from simbridge.map_server.tracing import trace
 from simbridge.map_server.world import MOST_WALLS
-from simbridge.pose import Pose
 from simbridge.world_loading import load_world
 from simbridge.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, Rig

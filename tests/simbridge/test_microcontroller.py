@@ -5,7 +5,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
-from simbridge.pose import Pose
+from hal.simulation import Pose
 from simbridge.simulated_robot import SimulatedRobot
 from tests.simbridge.rig import BRAKE, CODEC, ROBOT, STAND, Rig, facing_wall, reset, room
 

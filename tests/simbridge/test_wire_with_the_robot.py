@@ -13,7 +13,7 @@ from hal.bus_state import ControllerState
 from hal.guard import BUS_BLOCKED, BUS_OFF, ENCODER_STALE
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.experiments.exam import examine
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
 from tests.simbridge.rig import ROBOT
 
@@ -34,10 +34,10 @@ def wire_with(folder: Path, **changes: dict[str, object]) -> str:
 class Drive:
     """Somebody who turns the robot on the spot, tick by tick."""
 
-    def __init__(self, arena: SimulatedArena) -> None:
-        self.arena = arena
+    def __init__(self, simulation: Kurt2Simulation) -> None:
+        self.simulation = simulation
         self.ticks = 0
-        self.senses = arena.robot.sense(0.0)
+        self.senses = simulation.robot.sense(0.0)
         self.grant = GuardResult(STANDSTILL, (), latched=False)
 
     @property
@@ -46,35 +46,37 @@ class Drive:
 
     def controller(self) -> ControllerState:
         """How the notebook's controller says it is."""
-        return self.arena.robot.health.controller
+        return self.simulation.robot.health.controller
 
     def until(self, time_s: float) -> list[GuardResult]:
         """What was granted in each tick up to this time."""
         grants = []
         while self.now_s < time_s - TICK_S / 2:
             self.ticks += 1
-            self.arena.step()
-            self.senses = self.arena.robot.sense(self.now_s)
-            self.grant = self.arena.robot.drive(TURN, self.now_s, self.now_s)
+            self.simulation.step()
+            self.senses = self.simulation.robot.sense(self.now_s)
+            self.grant = self.simulation.robot.drive(TURN, self.now_s, self.now_s)
             grants.append(self.grant)
         return grants
 
 
 @contextmanager
 def driving(wire: str, seed: int = 1) -> Iterator[Drive]:
-    with closing(SimulatedArena(ROBOT, "a", seed, "wire", wire)) as arena:
-        yield Drive(arena)
+    with closing(Kurt2Simulation(ROBOT, "a", seed, "wire", wire)) as simulation:
+        yield Drive(simulation)
 
 
 async def policy_drives(wire: str, seed: int, seconds: float = 1.5, world: str = "a") -> str:
     """Let the teacher's policy drive, which must not stop for the bus; the state that it ends in."""
     task = load_task("wall_following")
     task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
-    with closing(SimulatedArena(ROBOT, world, seed, "exam", wire)) as arena:
-        result = await examine(arena, ROBOT, task, world, [], seed=seed, on_progress=lambda _: None, by_teacher=True)
-        assert arena.robot.health.latched is None
+    with closing(Kurt2Simulation(ROBOT, world, seed, "exam", wire)) as simulation:
+        result = await examine(
+            simulation, ROBOT, task, world, [], seed=seed, on_progress=lambda _: None, by_teacher=True
+        )
+        assert simulation.robot.health.latched is None
         assert (result.collisions, result.stuck) == (0, False)
-        return arena.simulation.state_hash()
+        return simulation.simulated_robot.state_hash()
 
 
 async def test_a_good_wire_changes_nothing_to_the_last_bit() -> None:
@@ -121,7 +123,7 @@ def test_without_encoders_it_stands(tmp_path: Path) -> None:
     with driving(wire_with(tmp_path, loss={"shares_by_id": [[0x09, 1.0]]})) as drive:
         drive.until(0.5)
         assert drive.grant.reasons == (ENCODER_STALE,)
-        assert drive.arena.simulation.wheel_speeds == (0.0, 0.0)
+        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
 
 
 def test_noise_that_takes_the_controllers_off_the_bus_stops_it_until_it_is_released(tmp_path: Path) -> None:
@@ -134,12 +136,12 @@ def test_noise_that_takes_the_controllers_off_the_bus_stops_it_until_it_is_relea
         assert drive.grant.reasons == (BUS_OFF,)
         assert drive.controller() is ControllerState.OFF
         drive.until(1.1)  # nothing reaches the robot: its own watchdog has to brake
-        assert drive.arena.simulation.wheel_speeds != (0.0, 0.0)
+        assert drive.simulation.simulated_robot.wheel_speeds != (0.0, 0.0)
         drive.until(2.0)
-        assert drive.arena.simulation.wheel_speeds == (0.0, 0.0)
+        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
         assert drive.controller() is ControllerState.ACTIVE
         assert drive.grant.reasons == (BUS_OFF,)
-        drive.arena.robot.release()
+        drive.simulation.robot.release()
         drive.until(3.0)
         assert drive.grant.wheel_speeds == TURN
         assert not drive.grant.reasons
@@ -153,19 +155,19 @@ def test_a_robot_that_goes_off_the_bus_alone_leaves_control_unanswered_and_the_g
         assert drive.controller() is ControllerState.PASSIVE
         drive.until(2.0)  # the robot is back, and hears what waited: two old set points, then brakes
         assert drive.controller() is ControllerState.ACTIVE
-        assert drive.arena.simulation.wheel_speeds == (0.0, 0.0)
-        drive.arena.robot.release()
+        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
+        drive.simulation.robot.release()
         drive.until(3.0)
         assert drive.grant.wheel_speeds == TURN
 
 
 def test_in_real_time_the_wire_goes_by_the_clock() -> None:
-    with closing(SimulatedArena(ROBOT, "a", 1, "wire", "one_megabit")) as arena, arena.live() as simulation:
+    with closing(Kurt2Simulation(ROBOT, "a", 1, "wire", "one_megabit")) as simulation, simulation.live() as realtime:
         for _ in range(3):  # the frames of one cycle are out when the next one begins
             stepped = threading.Event()
-            simulation.submit(stepped.set)
+            realtime.submit(stepped.set)
             assert stepped.wait(5.0)
-        senses = arena.robot.sense(0.0)
+        senses = simulation.robot.sense(0.0)
         assert 0.0 <= senses.encoder_age_s < 5.0
         assert len(set(senses.infrared_counts)) > 1
 

@@ -16,7 +16,7 @@ from kurt2rt.exchange.given import read_given
 from kurt2rt.rla.rla import Phase
 from kurt2rt.rounds import Screen
 from kurt2rt.service import Openness, serve
-from kurt2rt.simulated_ground import SimulatedGround
+from kurt2rt.simulated_ground import Kurt2World
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.answer import RefusedError
 from simbridge.world_loading import load_world
@@ -36,7 +36,7 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
         ports.append(channel.endpoint.port)
         opened.set()
 
-    ground = SimulatedGround(live.simulated, load_world("a"), SETTINGS.geometry, live.simulation)
+    ground = Kurt2World(live.simulated, load_world("a"), SETTINGS.geometry, live.simulation)
     settings = settings_for(folder / "knowledge.sqlite").model_copy(
         update={"teachers": str(folder / "teachers"), "port": 0}
     )

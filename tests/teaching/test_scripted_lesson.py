@@ -7,6 +7,7 @@ import anyio
 import pytest
 
 from hal.robot_settings import load_robot
+from hal.simulation import SimulatedPlace
 from kurt2rt.channel.credentials import local_pairing
 from kurt2rt.channel.reply import Reply, Verdict, done, refusal
 from kurt2rt.channel.requests import (
@@ -19,7 +20,6 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     TakeRequest,
 )
-from kurt2rt.channel.state import SimulatedPlace
 from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task

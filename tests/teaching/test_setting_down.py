@@ -2,7 +2,7 @@
 
 import random
 
-from kurt2rt.channel.state import SimulatedPlace
+from hal.simulation import SimulatedPlace
 from kurt2rt.teaching.setting_down import SettingDown
 from tests.channel.states import state
 

@@ -2,7 +2,7 @@
 
 import math
 
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 
 
 class AngleAbout:

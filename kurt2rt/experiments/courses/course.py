@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from hal.settings_by_kind import KindSettings
-from kurt2rt.experiments.arena import Arena, Plan, Pose
+from hal.simulation import Pose, Simulation, WorldPlan
 
 LEAST_SPEED_M_S = 0.1
 """A drive that makes way more slowly than this on average gets nowhere; the shipped policies make 0.2 m/s and more."""
@@ -95,16 +95,16 @@ class RouteCourse(Course, Protocol):
 class CourseSettings(KindSettings):
     """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Look whether a world has what the course needs, for a task that teaches these behaviours.
 
         Raises hal.settings.SettingsError.
         """
 
-    def least_progress(self, arena: Arena, duration_s: float) -> float:  # noqa: ARG002 - for other courses
+    def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - for other courses
         """Return the progress up to which a drive of this length, in s, gets nowhere: 0 unless a course knows more."""
         return 0.0
 
     @abstractmethod
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:
-        """The course in an arena. Raises hal.settings.SettingsError as `require` does."""
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+        """The course in an simulation. Raises hal.settings.SettingsError as `require` does."""

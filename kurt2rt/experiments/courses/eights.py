@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose, Post
+from hal.simulation import Pose, Post, Simulation, WorldPlan
 from kurt2rt.experiments.courses.angle_about import AngleAbout
 from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
@@ -21,16 +21,16 @@ class EightsSettings(CourseSettings):
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance from the robot's centre to the face of the nearer post."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
         """Two posts."""
         if len(plan.posts) != 2:
             raise SettingsError(
-                f"course eights: world {plan.world} has {len(plan.posts)} round obstacles; choose one with two"
+                f"course eights: world {plan.name} has {len(plan.posts)} round obstacles; choose one with two"
             )
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        plan = arena.plan
+        plan = simulation.plan
         self.require(plan, behaviours)
         west, east = sorted(plan.posts)
         return Eights(self, west, east, behaviours[0])

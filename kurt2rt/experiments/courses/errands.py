@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose
+from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.experiments.courses.course import JUNCTIONS, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.junctions import QUARTERS
 from kurt2rt.experiments.courses.streets import StreetMap
@@ -26,18 +26,18 @@ class ErrandsSettings(CourseSettings):
     """A goal counts as reached by a way of at most so many times the shortest; and no way that it was led from there
     to there in one piece may be that short, else the goal was demonstrated."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Streets that meet, and behaviours that mean a way through."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course errands: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
-            raise SettingsError(f"course errands: world {plan.world} has no streets that meet; choose one with streets")
+            raise SettingsError(f"course errands: world {plan.name} has no streets that meet; choose one with streets")
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        return self.walk_in(arena.plan, behaviours)
+        return self.walk_in(simulation.plan, behaviours)
 
-    def walk_in(self, plan: Plan, behaviours: tuple[str, ...]) -> "Errands":
+    def walk_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> "Errands":
         """The same, for those who need to know where the robot is. Raises hal.settings.SettingsError."""
         self.require(plan, behaviours)
         return Errands(Town(StreetMap(plan), {each: QUARTERS[each] for each in behaviours}), behaviours[0])

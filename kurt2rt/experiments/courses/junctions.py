@@ -5,7 +5,7 @@ import random
 from collections import Counter
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose
+from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.experiments.courses.course import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
 from kurt2rt.experiments.courses.streets import Junction, Side, StreetMap, side_towards
@@ -20,18 +20,18 @@ _LEFT_BEHIND_M = 0.1
 class JunctionsSettings(CourseSettings):
     """Junctions."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Streets that meet, and behaviours that mean a way through."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
             raise SettingsError(
-                f"course junctions: world {plan.world} has no streets that meet; choose one with streets"
+                f"course junctions: world {plan.name} has no streets that meet; choose one with streets"
             )
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
         """The course."""
-        plan = arena.plan
+        plan = simulation.plan
         self.require(plan, behaviours)
         return Junctions(StreetMap(plan), behaviours, chance)
 

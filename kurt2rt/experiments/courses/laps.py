@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from kurt2rt.experiments.arena import Arena, Pose
+from hal.simulation import Pose, Simulation
 from kurt2rt.experiments.courses.course import DISTANCE_ERROR, LEAST_SPEED_M_S, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
 
@@ -16,13 +16,13 @@ class LapsSettings(CourseSettings):
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance that is wanted from the robot's centre to the nearest wall."""
 
-    def least_progress(self, arena: Arena, duration_s: float) -> float:
+    def least_progress(self, simulation: Simulation, duration_s: float) -> float:
         """Return the laps of a drive that makes 0.1 m/s along walls."""
-        return LEAST_SPEED_M_S * duration_s / arena.lap_m
+        return LEAST_SPEED_M_S * duration_s / simulation.lap_m
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        return Laps(self, arena, behaviours[0])
+        return Laps(self, simulation, behaviours[0])
 
 
 class Laps:
@@ -31,17 +31,17 @@ class Laps:
     unit = "laps"
     stranded = False
 
-    def __init__(self, settings: LapsSettings, arena: Arena, behaviour: str) -> None:
+    def __init__(self, settings: LapsSettings, simulation: Simulation, behaviour: str) -> None:
         self.behaviour = behaviour
         self._wanted_m = settings.wanted_m
-        self._arena = arena
+        self._simulation = simulation
         self._error_m = Mean()
         self._ticks = 0
 
     @property
     def progress(self) -> float:
         """Laps made."""
-        return self._arena.laps
+        return self._simulation.laps
 
     @property
     def findings(self) -> Findings:
@@ -49,12 +49,12 @@ class Laps:
         return self._error_m.named(DISTANCE_ERROR)
 
     def put(self, pose: Pose) -> None:
-        """The arena knows itself that this is no way made."""
+        """The simulation knows itself that this is no way made."""
 
-    def follow(self, pose: Pose) -> None:  # noqa: ARG002 - the arena looks itself
+    def follow(self, pose: Pose) -> None:  # noqa: ARG002 - the simulation looks itself
         """Measure the distance now and then."""
         if self._ticks % MEASURE_EVERY == 0:
-            self._error_m.add(abs(self._arena.nearest_m - self._wanted_m))
+            self._error_m.add(abs(self._simulation.nearest_m - self._wanted_m))
         self._ticks += 1
 
     def end_early(self) -> None:

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose, Post
+from hal.simulation import Pose, Post, Simulation, WorldPlan
 from kurt2rt.experiments.courses.angle_about import AngleAbout
 from kurt2rt.experiments.courses.course import DISTANCE_ERROR, Course, CourseSettings, Findings
 from kurt2rt.experiments.courses.mean import MEASURE_EVERY, Mean
@@ -23,16 +23,16 @@ class RoundsSettings(CourseSettings):
     turning: Literal["left", "right"]
     """Left: counter-clockwise, with the post on the left."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
         """One post."""
         if len(plan.posts) != 1:
             raise SettingsError(
-                f"course rounds: world {plan.world} has {len(plan.posts)} round obstacles; choose one with a single one"
+                f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles; choose one with a single one"
             )
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        plan = arena.plan
+        plan = simulation.plan
         self.require(plan, behaviours)
         return Rounds(self, plan.posts[0], behaviours[0])
 

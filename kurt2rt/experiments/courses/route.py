@@ -9,7 +9,7 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose
+from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.experiments.courses.course import (
     JUNCTIONS,
     LATERAL_DEVIATION,
@@ -40,21 +40,21 @@ class RouteSettings(CourseSettings):
     """So often in its lesson it is switched on anew at the start: what it decides there, before it has a history, is
     corrected only where it comes there again."""
 
-    def require(self, plan: Plan, behaviours: tuple[str, ...]) -> None:
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Streets with such a loop, and behaviours that mean a way through."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course route: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
-            raise SettingsError(f"course route: world {plan.world} has no streets that meet; choose one with streets")
+            raise SettingsError(f"course route: world {plan.name} has no streets that meet; choose one with streets")
         self.route_in(plan, behaviours)
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course; chance decides nothing of it, or another route would be examined than was taught."""
-        plan = arena.plan
+        plan = simulation.plan
         self.require(plan, behaviours)
         return FixedRoute(StreetMap(plan), self.route_in(plan, behaviours), behaviours)
 
-    def route_in(self, plan: Plan, behaviours: tuple[str, ...]) -> Route:
+    def route_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> Route:
         """The loop in a world. Raises hal.settings.SettingsError where there is none."""
         chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed or 0}")
         return random_route(StreetMap(plan), self.decisions, [QUARTERS[each] for each in behaviours], chance)

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.streets import ALONG, Junction, Side, StreetMap
 
 _TRIES = 100_000

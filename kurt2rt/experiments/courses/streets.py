@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from kurt2rt.experiments.arena import Plan, Pose
+from hal.simulation import Pose, WorldPlan
 
 _ON_LINE_M = 0.01
 
@@ -86,7 +86,7 @@ class Lane:
 class StreetMap:
     """All streets and junctions of a world."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: WorldPlan) -> None:
         self.lanes = tuple(_lane(each.from_m, each.to_m, each.width_m) for each in plan.streets)
         self.junctions = tuple(self._junction(x_m, y_m) for x_m, y_m in plan.junctions)
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import networkx as nx
 
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.streets import ALONG, Junction, Side, StreetMap, side_towards
 
 

@@ -3,20 +3,20 @@
 import math
 import random
 
-from kurt2rt.experiments.arena import Arena, Pose
+from hal.simulation import Pose, Simulation
 from kurt2rt.experiments.courses.course import LEAST_SPEED_M_S, Course, CourseSettings, Findings
 
 
 class WaySettings(CourseSettings):
     """Way."""
 
-    def least_progress(self, arena: Arena, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
+    def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
         """Return the way of a drive at 0.1 m/s, in m."""
         return LEAST_SPEED_M_S * duration_s
 
-    def build(self, arena: Arena, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""
-        return Way(arena.pose, behaviours[0])
+        return Way(simulation.pose, behaviours[0])
 
 
 class Way:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Arena, Pose
+from hal.simulation import Pose, Simulation
 from kurt2rt.experiments.courses.town import length_m
 from kurt2rt.experiments.errands.goals import GoalChosen
 from kurt2rt.experiments.errands.guide import HOME
@@ -49,7 +49,7 @@ class ByChance:
 
 
 async def run_errands(
-    arena: Arena,
+    simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
     events: Sequence[TeachingEvent],
@@ -67,10 +67,10 @@ async def run_errands(
     reached where the robot comes through it.
     """
     period_s = settings.can.cycle_s
-    walk = walk_in(arena.plan, task)
-    clock = LockstepClock(arena.step)
+    walk = walk_in(simulation.plan, task)
+    clock = LockstepClock(simulation.step)
     runtime = build_runtime(
-        arena.robot,
+        simulation.robot,
         settings,
         task,
         events,
@@ -91,7 +91,7 @@ async def run_errands(
     number = ticks = 0
     way_m = 0.0
     start = before = home
-    touched = arena.collisions
+    touched = simulation.collisions
     surprises = 0
 
     def say(make: Callable[[str], Command]) -> None:
@@ -101,14 +101,14 @@ async def run_errands(
 
     def begin() -> None:
         nonlocal start, before, way_m, ticks, touched, surprises
-        start = before = arena.pose
-        way_m, ticks, touched, surprises = 0.0, 0, arena.collisions, 0
+        start = before = simulation.pose
+        way_m, ticks, touched, surprises = 0.0, 0, simulation.collisions, 0
         way.restart()
         if how == "planning":
             say(lambda command_id: Seek(command_id, _EXAMINER, NamedGoal(goals[number].name)))
 
     def put(pose: Pose, name: str) -> None:
-        arena.put(pose)
+        simulation.put(pose)
         runtime.set_down()
         walk.put(pose)
         say(lambda command_id: StopSeeking(command_id, _EXAMINER))
@@ -130,14 +130,14 @@ async def run_errands(
             return "astray"
         if record.grant.latched:
             return record.grant.reasons[0]
-        if way.none_since_window(arena.position):
+        if way.none_since_window(simulation.position):
             return "stuck: " + (decision.cause.value if not decision.driving else "driving")
         return "time" if ticks >= limit else None
 
     def after_tick(record: TickRecord) -> None:
         nonlocal number, ticks, way_m, before, surprises
         require_carried_out(record, task)
-        pose = arena.pose
+        pose = simulation.pose
         walk.follow(pose)
         ticks += 1
         way_m += math.hypot(pose.x_m - before.x_m, pose.y_m - before.y_m)
@@ -146,7 +146,7 @@ async def run_errands(
             surprises = record.decision.plan.surprises
         ended = judge(record)
         if record.tick % TRAIL_STRIDE == 0:
-            trail.append(arena.position)
+            trail.append(simulation.position)
         if ended is None:
             return
         goal = goals[number]
@@ -161,7 +161,7 @@ async def run_errands(
                 junctions=len(goal.shortest) - 1,
                 demonstrated=None if math.isinf(goal.demonstrated) else goal.demonstrated,
                 surprises=surprises,
-                collisions=arena.collisions - touched,
+                collisions=simulation.collisions - touched,
             )
         )
         on_progress(number + 1.0)
@@ -171,7 +171,7 @@ async def run_errands(
             return
         if ended:
             if record.grant.latched:
-                arena.robot.release()
+                simulation.robot.release()
             put(goal.street.middle, goal.name)
         begin()
 

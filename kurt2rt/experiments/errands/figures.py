@@ -4,7 +4,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.errands.guide import HOME
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome
 from kurt2rt.experiments.shown.style import START, save
@@ -14,7 +14,7 @@ _LED = "#b0b0b0"
 _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
 
 
-def draw_errands(stage: Stage, world: str, outcome: ErrandsOutcome, path: Path) -> None:
+def draw_errands(stage: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
     """One robot."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()

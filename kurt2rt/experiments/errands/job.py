@@ -6,13 +6,13 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome, How
 from kurt2rt.experiments.errands.robot import teach_and_send
 from kurt2rt.experiments.kept.by_stem import KeptByStem
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.experiments.route.teaching import copy_knowledge
@@ -23,7 +23,7 @@ from kurt2rt.tasks.settings import TaskSettings
 class ErrandsJob(KeptByStem):
     """Lead one robot about, and send it to goals."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     hows: tuple[How, ...]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Arena, Plan, Pose
+from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.experiments.courses.errands import Errands, ErrandsSettings
 from kurt2rt.experiments.courses.town import Street
 from kurt2rt.experiments.errands.guide import Guide
@@ -61,13 +61,13 @@ def places_of(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...]:
     return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)
 
 
-def walk_in(plan: Plan, task: TaskSettings) -> Errands:
+def walk_in(plan: WorldPlan, task: TaskSettings) -> Errands:
     """Who follows the robot from street to street in a world. Raises hal.settings.SettingsError."""
     return errands_of(task).walk_in(plan, task.behaviours)
 
 
 async def lead_about(
-    arena: Arena,
+    simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
     keeper: LessonKeeper,
@@ -83,13 +83,13 @@ async def lead_about(
     The basic level is answered and corrected meanwhile, as in its own lesson. Raises LessonLostError.
     """
     period_s = settings.can.cycle_s
-    walk = walk_in(arena.plan, task)
-    runtime = build_lesson_runtime(arena, settings, task, keeper, events, statistics=statistics, saved=saved)
+    walk = walk_in(simulation.plan, task)
+    runtime = build_lesson_runtime(simulation, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"errands-{seed}-after-{len(events)}"
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)
     way = WayMade(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
-    home = arena.pose
+    home = simulation.pose
     unanswered_ticks = round(task.teaching.rescue_after_s / period_s)
     ticks, per_second = round(task.teaching.duration_s / period_s), round(1 / period_s)
     trail: list[tuple[float, float]] = []
@@ -100,7 +100,7 @@ async def lead_about(
         nonlocal rescues, corrections, mid_asks, latched_ticks, asked_ticks, asking
         require_carried_out(record, task)
         decision = record.decision
-        walk.follow(arena.pose)
+        walk.follow(simulation.pose)
         said = guide.watch(record)
         if said is not None:
             runtime.inbox.put(said)
@@ -117,15 +117,15 @@ async def lead_about(
         asked_ticks = asked_ticks + 1 if asking else 0
         if asking and asked_ticks < unanswered_ticks:
             way.restart()
-        elif way.none_since_window(arena.position):
-            arena.put(home)
+        elif way.none_since_window(simulation.position):
+            simulation.put(home)
             runtime.set_down()
             walk.put(home)
             guide.set_down_at_home()
             way.restart()
             rescues += 1
         if record.tick % TRAIL_STRIDE == 0:
-            trail.append(arena.position)
+            trail.append(simulation.position)
         if record.tick % per_second == 0:
             on_progress(record.now_s)
 

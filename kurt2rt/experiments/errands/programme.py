@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.errands.job import ErrandsJob
 from kurt2rt.experiments.errands.lesson import errands_of
 from kurt2rt.experiments.errands.outcome import ErrandsOutcome
@@ -13,7 +14,6 @@ from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.doing import do_waves, time_of_missing_s
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.pool import Standing
 from kurt2rt.experiments.route.job import BasicJob
 from kurt2rt.experiments.route.programme import streets_of
@@ -46,7 +46,7 @@ def plan(
     task: TaskSettings,
     basic: TaskSettings,
     seeds: Sequence[int],
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,

@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.courses.streets import ALONG
 from kurt2rt.experiments.courses.town import Street
 from kurt2rt.experiments.curriculum import Report
@@ -25,7 +25,7 @@ _BESIDE_M = 0.15
 
 
 async def teach_and_send(
-    stage: Stage,
+    stage: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     knowledge: Path,
@@ -42,9 +42,9 @@ async def teach_and_send(
     world, exam_world = task.teaching.world, task.exam.worlds[0]
     whole_s = task.teaching.duration_s
     with lessons_kept(knowledge, settings, task) as keeping:
-        with closing(stage.open(world, seed, "errands")) as arena:
+        with closing(stage.open(world, seed, "errands")) as simulation:
             led = await lead_about(
-                arena,
+                simulation,
                 settings,
                 task,
                 keeping.writer,
@@ -63,9 +63,9 @@ async def teach_and_send(
     goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
     runs = []
     for how in hows:
-        with closing(stage.open(exam_world, seed, "errands without teacher")) as arena:
+        with closing(stage.open(exam_world, seed, "errands without teacher")) as simulation:
             run = await run_errands(
-                arena,
+                simulation,
                 settings,
                 task,
                 events,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, content_of, find_config
-from kurt2rt.experiments.kept.stage import StudyStage
+from hal.simulation import SimulationFactory
 from kurt2rt.tasks.settings import TaskSettings
 
 _PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
@@ -82,7 +82,11 @@ class Fingerprints:
     """Takes them, with what many jobs share looked at once."""
 
     def __init__(
-        self, stage: StudyStage, robot: RobotSettings, source: str, leave_out: Collection[str] = ("paper", "plain")
+        self,
+        stage: SimulationFactory,
+        robot: RobotSettings,
+        source: str,
+        leave_out: Collection[str] = ("paper", "plain"),
     ) -> None:
         """`source`: as `source_hash` tells. `leave_out`: parts of a task that change nothing in these experiments.
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import anyio
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.curriculum import run_lesson
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.tasks.settings import TaskSettings
@@ -18,7 +18,7 @@ from kurt2rt.tasks.settings import TaskSettings
 class GrowthJob:
     """One radius, one reading of the paper, one seed."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     """With this radius, and no phase but the first."""

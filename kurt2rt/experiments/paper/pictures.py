@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from kurt2rt.experiments.kept.stage import StudyStage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.paper.figures.drives import draw_drives, draw_eight
 from kurt2rt.experiments.paper.figures.growth import draw_growth
 from kurt2rt.experiments.paper.figures.worlds import draw_testing_ground, draw_worlds
@@ -17,7 +17,7 @@ _MOST_UNSEEN = 1
 """Generated worlds in the picture of a task."""
 
 
-def draw_pictures(study: Study, stage: StudyStage, folder: Path) -> Iterator[Picture]:
+def draw_pictures(study: Study, stage: SimulationFactory, folder: Path) -> Iterator[Picture]:
     """Draw each figure into the folder: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
 
     Those are left out whose task is not in the study.

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import find_config
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.kept.results import Results, StudyError
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
 from kurt2rt.experiments.paper.outcome import Reading
@@ -73,7 +73,7 @@ def plan(
     extent: Extent,
     seeds: Sequence[int],
     readings: Sequence[Reading],
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from hal.settings import Settings, SettingsError, find_config, load_settings
-from kurt2rt.experiments.kept.stage import StudyStage
+from hal.simulation import SimulationFactory
 
 Share = Annotated[float, Field(gt=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=10_000)]
@@ -82,7 +82,7 @@ class PaperSettings(Settings):
         return self
 
 
-def load_paper(name_or_path: str = "basic_level", stage: StudyStage | None = None) -> PaperSettings:
+def load_paper(name_or_path: str = "basic_level", stage: SimulationFactory | None = None) -> PaperSettings:
     """Shipped settings by name, or a file by path; with a stage its worlds are looked at, too.
 
     Raises hal.settings.SettingsError that names file and key.

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import anyio
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Position
+from hal.simulation import Position, SimulationFactory
 from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.lesson import LessonResult
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Place, Reading, TaughtOutcome
 from kurt2rt.experiments.pool import Tell
@@ -26,7 +25,7 @@ _PLACE_STRIDE = 2
 class TaughtJob:
     """One task, one reading of the paper, one seed."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     reading: Reading

@@ -5,10 +5,10 @@ from contextlib import closing
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.curriculum import Report
 from kurt2rt.experiments.exam import ExamResult, examine
 from kurt2rt.experiments.exam_verdict import ExamVerdict
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 from kurt2rt.experiments.phases.scoring import Scoring
 from kurt2rt.knowledge.statistics import Statistics
@@ -21,7 +21,7 @@ from kurt2rt.tick import TickRecord
 class Examiner:
     """Examines one robot; a robot that gets stuck is set down elsewhere and goes on."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     seed: int
@@ -73,9 +73,9 @@ class Examiner:
         on_record: Callable[[TickRecord], None] = lambda _: None,
     ) -> ExamResult:
         who = "the teacher's own drive" if by_teacher else "exam without teacher"
-        with closing(self.stage.open(world, self.seed, "exam")) as arena:
+        with closing(self.stage.open(world, self.seed, "exam")) as simulation:
             return await examine(
-                arena,
+                simulation,
                 self.robot,
                 self.task,
                 world,

@@ -9,11 +9,11 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.experiments.curriculum import run_lesson
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results, StudyError
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lesson_plan import LessonPlan
 from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
@@ -38,7 +38,7 @@ from kurt2rt.tasks.settings import TaskSettings
 class Robot:
     """One seed: where it is taught and where what it comes to is kept."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     settings: RobotSettings
     task: TaskSettings
     seed: int

@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.critic.settings import CriticSettings, load_critic
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, MadeOf, source_hash
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.phases.job import Job, Robot, StepJob, TaughtJob
 from kurt2rt.experiments.phases.steps import PHASE_2, Step, phases_of, steps_of
 from kurt2rt.reinforcement.settings import LonelyWorths
@@ -46,7 +46,7 @@ class Programme:
 def plan(
     task: TaskSettings,
     seeds: Sequence[int],
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.route.outcome import LAYERS, Place, RouteOutcome
 from kurt2rt.experiments.shown.style import COLLIDED, START, legend_below, save
 from kurt2rt.experiments.trails import ASKED, columns, draw_trail
@@ -21,7 +21,7 @@ _BESIDE_M = 0.13
 """So far to the right of the middle of a street its way is drawn, so that both ways through it are seen."""
 
 
-def draw_route(stage: Stage, world: str, outcome: RouteOutcome, path: Path) -> None:
+def draw_route(stage: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
     """One robot: its route with the number of each decision, and its drive."""
     figure = Figure(figsize=(7.2, 7.8), layout="constrained")
     axes = figure.subplots()
@@ -31,7 +31,7 @@ def draw_route(stage: Stage, world: str, outcome: RouteOutcome, path: Path) -> N
     save(figure, path)
 
 
-def draw_routes(stage: Stage, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
+def draw_routes(stage: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
     """A panel per robot."""
     wide = min(_COLUMNS, len(outcomes))
     rows = math.ceil(len(outcomes) / wide)
@@ -45,7 +45,7 @@ def draw_routes(stage: Stage, world: str, outcomes: Sequence[RouteOutcome], path
     save(figure, path)
 
 
-def _draw(axes: Axes, stage: Stage, world: str, outcome: RouteOutcome) -> None:
+def _draw(axes: Axes, stage: SimulationFactory, world: str, outcome: RouteOutcome) -> None:
     stage.draw(axes, world)
     route = [*outcome.route, outcome.route[0]]
     label: str | None = f"the route, {len(outcome.route)} decisions"

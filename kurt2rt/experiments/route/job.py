@@ -6,11 +6,11 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.curriculum import Report, run_lesson
 from kurt2rt.experiments.kept.by_stem import KeptByStem
 from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.experiments.robot_time import RobotTime
 from kurt2rt.experiments.route.outcome import BasicOutcome, RouteOutcome
@@ -25,7 +25,7 @@ _BASIC = "basic"
 class BasicJob(KeptByStem):
     """The task that teaches the streets, with its own lesson."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     seed: int
@@ -75,7 +75,7 @@ class BasicJob(KeptByStem):
 class RouteJob(KeptByStem):
     """One route, taught in one way to one robot, and driven by it."""
 
-    stage: StudyStage
+    stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     """With the route of this robot."""

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.fitting import require_course
 from kurt2rt.experiments.kept.made_of import Fingerprints, source_hash
 from kurt2rt.experiments.kept.results import Results, StudyError
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.route.job import BasicJob, RouteJob
 from kurt2rt.experiments.route.teaching import route_of_task, with_route
 from kurt2rt.experiments.route.variants import Variant
@@ -61,7 +61,7 @@ def plan(
     seeds: Sequence[int],
     decisions: Sequence[int],
     variants: Sequence[Variant],
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,
@@ -115,7 +115,7 @@ class Streets(NamedTuple):
 def streets_of(
     basic: TaskSettings,
     seeds: Sequence[int],
-    stage: StudyStage,
+    stage: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     fingerprints: Fingerprints,

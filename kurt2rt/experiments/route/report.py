@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kurt2rt.experiments.kept.stage import StudyStage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.route.figures import draw_routes
 from kurt2rt.experiments.route.study import Study
 from kurt2rt.experiments.route.tables import sheets
@@ -14,7 +14,7 @@ from kurt2rt.experiments.shown.picture import Picture
 _TITLE = "KURT2: routes that its mid level was taught"
 
 
-def draw_pictures(study: Study, stage: StudyStage, folder: Path) -> Iterator[Picture]:
+def draw_pictures(study: Study, stage: SimulationFactory, folder: Path) -> Iterator[Picture]:
     """Draw each length and way of teaching into the folder: route-<way>-<decisions>.png."""
     world = study.programme.task.exam.worlds[0]
     for summary in study.summaries:

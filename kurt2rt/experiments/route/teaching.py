@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Position, Stage
+from hal.simulation import Position, SimulationFactory
 from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
 from kurt2rt.experiments.courses.route import RouteSettings
 from kurt2rt.experiments.courses.routes import Route
@@ -75,7 +75,7 @@ class TaughtRoute:
 
 
 async def teach_route(
-    stage: Stage,
+    stage: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     variant: Variant,
@@ -97,9 +97,9 @@ async def teach_route(
         )
         lessons.append(lesson)
     watching = Watching()
-    with closing(stage.open(world, seed, "exam of a route")) as arena:
+    with closing(stage.open(world, seed, "exam of a route")) as simulation:
         exam = await examine(
-            arena,
+            simulation,
             settings,
             task,
             world,

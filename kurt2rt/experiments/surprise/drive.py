@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.drive import Drive
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
@@ -45,7 +45,7 @@ class Surprises:
 
 
 async def drive(
-    stage: Stage,
+    stage: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     events: Sequence[TeachingEvent],
@@ -63,11 +63,13 @@ async def drive(
     `saved`: what was expected before.
     """
     period_s = settings.can.cycle_s
-    arena = stage.open(world, seed, purpose)
+    simulation = stage.open(world, seed, purpose)
     try:
         chance = random.Random(f"surprise {purpose} {different} {seed}")
         sensor = chance.randrange(len(settings.infrared.names))
-        robot = StuckSensor(arena.robot, sensor, _STUCK_FROM_S) if different == "stuck sensor" else arena.robot
+        robot = (
+            StuckSensor(simulation.robot, sensor, _STUCK_FROM_S) if different == "stuck sensor" else simulation.robot
+        )
         counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
         runtime = build_runtime(
             robot,
@@ -75,12 +77,12 @@ async def drive(
             task,
             events,
             NothingIsTaught(),
-            LockstepClock(arena.step),
+            LockstepClock(simulation.step),
             statistics=counter,
             saved=saved,
             asked=False,
         )
-        on_course = Drive(arena, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
+        on_course = Drive(simulation, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
         set_down_every = round(_SET_DOWN_EVERY_S / period_s)
         ends = surprising = new = firsts = surprising_firsts = unknown = ticks = said = 0
         just_set_down = False
@@ -104,7 +106,7 @@ async def drive(
             if surprise is not None or record.decision.asking:
                 just_set_down = False
             if record.grant.latched:
-                arena.rescue()
+                simulation.rescue()
                 runtime.inbox.put(Resume(say("go"), _WHO))
             on_course.follow()
             if on_course.course.stranded:
@@ -123,4 +125,4 @@ async def drive(
         counted = Surprises(different, ends, surprising, new, firsts, surprising_firsts, unknown / max(ticks, 1))
         return counted, runtime.to_save()
     finally:
-        arena.close()
+        simulation.close()

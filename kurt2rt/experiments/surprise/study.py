@@ -7,7 +7,7 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.experiments.arena import Stage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.pool import Tell
 from kurt2rt.experiments.shown.sheet import Sheet
 from kurt2rt.experiments.surprise.drive import Different, Surprises, drive
@@ -25,7 +25,7 @@ DIFFERENT_S = 300.0
 class SurpriseJob:
     """What one process does: one robot that was taught."""
 
-    stage: Stage
+    stage: SimulationFactory
     settings: RobotSettings
     task: TaskSettings
     knowledge: Path

@@ -9,7 +9,7 @@ from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.policy_level import PolicyLevel
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.runtime import build_runtime
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.clock import LockstepClock
@@ -31,12 +31,14 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
     task = load_task(task_name)
     assert task.judge is not None
     judge = task.judge.build()
-    arena = SimulatedArena(ROBOT, task.teaching.world, 1, "exam")
+    simulation = Kurt2Simulation(ROBOT, task.teaching.world, 1, "exam")
     wanted = Wanted(task.behaviours)
     policy = task.policy.build(ROBOT.infrared) if action is None else Always(action)
     level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
-    clock = LockstepClock(arena.step)
-    runtime = build_runtime(arena.robot, ROBOT, task, (), NothingIsTaught(), clock, level_override=level, wanted=wanted)
+    clock = LockstepClock(simulation.step)
+    runtime = build_runtime(
+        simulation.robot, ROBOT, task, (), NothingIsTaught(), clock, level_override=level, wanted=wanted
+    )
     heard: Counter[int] = Counter()
 
     def after_tick(record: TickRecord) -> None:
@@ -44,7 +46,7 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
             heard[judge.judge(record.circumstances)] += 1
 
     await runtime.scheduler.run(round(seconds * 100), after_tick)
-    arena.close()
+    simulation.close()
     return {value: heard[value] / heard.total() for value in (-1, 0, 1)}
 
 

@@ -1,7 +1,7 @@
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Post
+from hal.simulation import Post
 from kurt2rt.experiments.courses.eights import Eights, EightsSettings
 from tests.experiments.courses.paths import Point, arc, follow, put
 from tests.experiments.courses.worlds import course_in
@@ -16,7 +16,7 @@ MIDDLE = (2.45, 1.8)
 
 
 def eights() -> Eights:
-    course = Eights(SETTINGS, Post(*WEST, 0.2), Post(*EAST, 0.2), "")
+    course = Eights(SETTINGS, Post("west", *WEST, 0.2), Post("east", *EAST, 0.2), "")
     put(course, MIDDLE, 90.0)
     return course
 

@@ -21,9 +21,9 @@ WAYS_ON: dict[str, Point] = {"straight_on": (2.2, 3.1), "turn_left": (1.3, 2.2),
 
 @cache
 def manhattan() -> StreetMap:
-    arena = STAGE.open("manhattan", 1, "test")
-    arena.close()
-    return StreetMap(arena.plan)
+    simulation = STAGE.open("manhattan", 1, "test")
+    simulation.close()
+    return StreetMap(simulation.plan)
 
 
 def in_manhattan(behaviours: tuple[str, ...], seed: int = 1) -> Course:

@@ -4,13 +4,12 @@ import random
 import pytest
 
 from hal.robot import WheelSpeeds
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.course import Course
 from kurt2rt.experiments.courses.laps import LapsSettings
 from kurt2rt.experiments.courses.way import WaySettings
-from kurt2rt.simulated import SimulatedArena
+from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.tasks.settings import load_task
-from simbridge.pose import Pose as SimulatedPose
 from tests.experiments.courses.paths import Point, along
 from tests.experiments.helpers import STAGE, short_task, teachers_drive
 
@@ -19,73 +18,73 @@ WANTED_M = 0.365
 ROUND: list[Point] = [(0.4, 0.4), (0.4, 4.0), (4.0, 4.0), (4.0, 0.4), (0.4, 0.4)]
 
 
-def laps_in(arena: SimulatedArena) -> Course:
+def laps_in(simulation: Kurt2Simulation) -> Course:
     settings = LapsSettings(kind="laps", wanted_m=WANTED_M)
-    return settings.build(arena, ("",), random.Random(1))
+    return settings.build(simulation, ("",), random.Random(1))
 
 
-def carry(arena: SimulatedArena, course: Course, pose: Pose) -> None:
-    arena.simulation.place(SimulatedPose(*pose))
+def carry(simulation: Kurt2Simulation, course: Course, pose: Pose) -> None:
+    simulation.simulated_robot.place(pose)
     course.follow(pose)
 
 
 def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
-    arena = STAGE.open("one_object", 1, "test")
+    simulation = STAGE.open("one_object", 1, "test")
     try:
-        course = laps_in(arena)
+        course = laps_in(simulation)
         for pose in along(ROUND[:2], 0.02):
-            carry(arena, course, pose)
+            carry(simulation, course, pose)
         assert course.unit == "laps"
         assert course.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
     finally:
-        arena.close()
+        simulation.close()
 
 
 def test_what_was_carried_is_no_lap() -> None:
-    arena = STAGE.open("one_object", 1, "test")
+    simulation = STAGE.open("one_object", 1, "test")
     try:
-        course = laps_in(arena)
+        course = laps_in(simulation)
         for pose in along(ROUND, 0.02):
-            carry(arena, course, pose)
+            carry(simulation, course, pose)
         assert course.progress == 0.0
         course.end_early()
         course.put(Pose(0.4, 0.4, math.pi / 2))
         assert course.progress == 0.0
         assert not course.stranded
     finally:
-        arena.close()
+        simulation.close()
 
 
 @pytest.mark.parametrize(("towards_rad", "sign"), [(math.pi / 2, 1), (-math.pi / 2, -1)])
 def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(towards_rad: float, sign: int) -> None:
-    arena = STAGE.open("one_object", 1, "test")
+    simulation = STAGE.open("one_object", 1, "test")
     try:
-        course = laps_in(arena)
-        arena.simulation.place(SimulatedPose(0.4, 2.2, towards_rad))
+        course = laps_in(simulation)
+        simulation.simulated_robot.place(Pose(0.4, 2.2, towards_rad))
         before = course.progress
         for tick in range(300):
-            arena.robot.sense(tick * 0.01)
-            arena.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
-            arena.step()
-            course.follow(arena.pose)
-        way_m = abs(arena.pose.y_m - 2.2)
+            simulation.robot.sense(tick * 0.01)
+            simulation.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
+            simulation.step()
+            course.follow(simulation.pose)
+        way_m = abs(simulation.pose.y_m - 2.2)
         assert way_m > 0.5
         # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.
         assert sign * (course.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
     finally:
-        arena.close()
+        simulation.close()
 
 
 def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None:
-    arena = STAGE.open("one_object", 1, "test")
+    simulation = STAGE.open("one_object", 1, "test")
     try:
-        assert arena.lap_m == pytest.approx(4 * (4.4 - 2 * 0.35))
-        laps = LapsSettings(kind="laps", wanted_m=WANTED_M).least_progress(arena, 300.0)
-        assert laps * arena.lap_m == pytest.approx(30.0)
-        assert WaySettings(kind="way").least_progress(arena, 300.0) == pytest.approx(30.0)
-        assert load_task("circle").course.least_progress(arena, 300.0) == 0.0
+        assert simulation.lap_m == pytest.approx(4 * (4.4 - 2 * 0.35))
+        laps = LapsSettings(kind="laps", wanted_m=WANTED_M).least_progress(simulation, 300.0)
+        assert laps * simulation.lap_m == pytest.approx(30.0)
+        assert WaySettings(kind="way").least_progress(simulation, 300.0) == pytest.approx(30.0)
+        assert load_task("circle").course.least_progress(simulation, 300.0) == 0.0
     finally:
-        arena.close()
+        simulation.close()
 
 
 @pytest.mark.parametrize(
@@ -97,8 +96,8 @@ def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None
 )
 def test_laps_of_the_policy_in_narrow_places_are_its_way(world: str, drive_s: float) -> None:
     drive = teachers_drive(short_task(exam_s=drive_s, worlds=(world,)))
-    arena = STAGE.open(world, 1, "test")
+    simulation = STAGE.open(world, 1, "test")
     try:
-        assert drive.progress * arena.lap_m == pytest.approx(drive.way_m, rel=0.15)
+        assert drive.progress * simulation.lap_m == pytest.approx(drive.way_m, rel=0.15)
     finally:
-        arena.close()
+        simulation.close()

@@ -1,12 +1,12 @@
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.arena import Post
+from hal.simulation import Post
 from kurt2rt.experiments.courses.rounds import Rounds, RoundsSettings
 from tests.experiments.courses.paths import arc, follow, put
 from tests.experiments.courses.worlds import course_in
 
-POST = Post(2.0, 2.0, 0.05)
+POST = Post("post", 2.0, 2.0, 0.05)
 LEFT = RoundsSettings(kind="rounds", wanted_m=0.45, within_m=0.8, turning="left")
 RIGHT = LEFT.model_copy(update={"turning": "right"})
 CENTRE = (2.0, 2.0)

@@ -6,15 +6,15 @@ from itertools import pairwise
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.errands import ErrandsSettings
 from kurt2rt.experiments.courses.streets import Side
 from kurt2rt.experiments.courses.town import Street, Town, length_m
-from kurt2rt.simulated import SimulatedStage
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
-PLAN = SimulatedStage(load_robot()).plan_of("manhattan")
+PLAN = Kurt2SimulationFactory(load_robot()).plan_of("manhattan")
 COURSE = load_task("errands").course
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from kurt2rt.experiments.arena import Pose
+from hal.simulation import Pose
 from kurt2rt.experiments.courses.way import Way
 from tests.experiments.courses.paths import follow, put
 

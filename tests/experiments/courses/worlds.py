@@ -8,8 +8,8 @@ from tests.experiments.helpers import STAGE
 
 def course_in(world: str, settings: CourseSettings, behaviours: tuple[str, ...] = ("",), seed: int = 1) -> Course:
     """The course at its beginning."""
-    arena = STAGE.open(world, 1, "test")
+    simulation = STAGE.open(world, 1, "test")
     try:
-        return settings.build(arena, behaviours, random.Random(seed))
+        return settings.build(simulation, behaviours, random.Random(seed))
     finally:
-        arena.close()
+        simulation.close()

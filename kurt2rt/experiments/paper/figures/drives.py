@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
-from kurt2rt.experiments.kept.stage import StudyStage
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.shown.style import COLLIDED, START, legend_below, save
@@ -21,7 +21,7 @@ _COLUMNS = 3
 _VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
 
 
-def draw_eight(stage: StudyStage, drive: DriveOutcome, path: Path) -> None:
+def draw_eight(stage: SimulationFactory, drive: DriveOutcome, path: Path) -> None:
     """Fig. 7: the way round the two columns, with its start."""
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     axes = figure.subplots()
@@ -30,7 +30,7 @@ def draw_eight(stage: StudyStage, drive: DriveOutcome, path: Path) -> None:
     save(figure, path)
 
 
-def draw_drives(stage: StudyStage, drives: Sequence[DriveOutcome], path: Path) -> None:
+def draw_drives(stage: SimulationFactory, drives: Sequence[DriveOutcome], path: Path) -> None:
     """A panel per drive: the way, its start, where the robot did not know the situation and where it collided."""
     columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
     rows = math.ceil(len(drives) / columns)
@@ -55,7 +55,7 @@ def _told(drive: DriveOutcome) -> str:
     return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}{end}"
 
 
-def _draw_drive(axes: Axes, stage: StudyStage, drive: DriveOutcome) -> None:
+def _draw_drive(axes: Axes, stage: SimulationFactory, drive: DriveOutcome) -> None:
     stage.draw(axes, drive.world)
     draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_LIFTED_M, width=0.9)
     if drive.trail:

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from kurt2rt.experiments.kept.stage import StudyStage
+from hal.simulation import SimulationFactory
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.shown.style import save
 
 
-def draw_testing_ground(stage: StudyStage, world: str, path: Path) -> None:
+def draw_testing_ground(stage: SimulationFactory, world: str, path: Path) -> None:
     """Fig. 4: the world that is taught in, with the robot in it."""
     figure = Figure(figsize=(5.6, 6.0), layout="constrained")
     axes = figure.subplots()
@@ -20,7 +20,7 @@ def draw_testing_ground(stage: StudyStage, world: str, path: Path) -> None:
     save(figure, path)
 
 
-def draw_worlds(stage: StudyStage, worlds: Sequence[str], path: Path) -> None:
+def draw_worlds(stage: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
     """Fig. 6: all worlds, two beside each other."""
     rows = math.ceil(len(worlds) / 2)
     figure = Figure(figsize=(10.0, 5.0 * rows), layout="constrained")

@@ -1,0 +1,219 @@
+"""A simulated robot in a world: its protocols and values, for experiments, for a teacher, and for recordings.
+
+`Simulation` drives the world in lockstep or lets it live, `SimulationFactory` opens simulations by the name of a world,
+and `SimulatedWorld` is the part that a teacher may see and change. A real robot has none of them.
+"""
+
+import random
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from hal.robot import Robot
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Position(NamedTuple):
+    """Centre of the robot's body in the world's frame, in metres."""
+
+    x_m: float
+    y_m: float
+
+
+class Pose(NamedTuple):
+    """Centre of the robot's body in the world's frame; heading counter-clockwise from the x axis, not wrapped."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedPlace:
+    """True pose of the simulated robot, and counts of its drive."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+    laps: float
+    collisions: int
+    world_version: int
+    """Grows when a wall is moved: ask for the world again."""
+
+
+class Wall(NamedTuple):
+    """A wall or a box from above."""
+
+    name: str
+    corners: tuple[tuple[float, float], ...]
+    """x and y in metres."""
+
+
+class Post(NamedTuple):
+    """A round obstacle from above."""
+
+    name: str
+    x_m: float
+    y_m: float
+    radius_m: float
+
+
+class Street(NamedTuple):
+    """A straight street by its middle line."""
+
+    from_m: tuple[float, float]
+    to_m: tuple[float, float]
+    width_m: float
+
+
+class WorldPlan(NamedTuple):
+    """A world from above, with walls and obstacles at their present places."""
+
+    version: int
+    """Grows when a wall or an obstacle is moved."""
+    name: str
+    size_m: tuple[float, float]
+    outline: tuple[tuple[float, float], ...]
+    walls: tuple[Wall, ...]
+    posts: tuple[Post, ...]
+    streets: tuple[Street, ...] = ()
+    junctions: tuple[tuple[float, float], ...] = ()
+    """Points where two streets meet, or one ends at another."""
+
+
+class Simulation(Protocol):
+    """A robot in a world, with the truth about both. Neither the runtime nor a teacher gets it."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot, with its bus and its guard."""
+        ...
+
+    @property
+    def position(self) -> Position:
+        """True position."""
+        ...
+
+    @property
+    def pose(self) -> Pose:
+        """True pose."""
+        ...
+
+    @property
+    def plan(self) -> WorldPlan:
+        """The world from above."""
+        ...
+
+    @property
+    def nearest_m(self) -> float:
+        """Distance from the robot's centre to the nearest wall or obstacle."""
+        ...
+
+    @property
+    def collisions(self) -> int:
+        """Contacts with walls or obstacles so far."""
+        ...
+
+    @property
+    def touching(self) -> bool:
+        """Whether the robot touches something now."""
+        ...
+
+    @property
+    def laps(self) -> float:
+        """Distance along walls on the robot's left, in lengths of the outer wall; driving backwards counts negative."""
+        ...
+
+    @property
+    def lap_m(self) -> float:
+        """Length of the outer wall, in m."""
+        ...
+
+    def step(self) -> None:
+        """Advance the world by one cycle of 10 ms."""
+        ...
+
+    def live(self) -> AbstractContextManager[object]:
+        """Advance the world in real time while the context lasts, the second guard awake; may be entered again."""
+        ...
+
+    def rescue(self) -> None:
+        """Put the robot, standing, at the nearest start pose."""
+        ...
+
+    def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
+        """Put the robot, standing, at a random start pose, or at any free pose `in_sight`.
+
+        In sight: a sensor sees a post, or anything in a world without posts. `close`: also so close to it that the
+        robot cannot turn on the spot.
+        """
+        ...
+
+    def put(self, pose: Pose) -> None:
+        """Put the robot, standing, at this pose."""
+        ...
+
+    def close(self) -> None:
+        """Stop the robot and shut its bus down."""
+        ...
+
+
+class SimulationFactory(Protocol):
+    """Opens simulations and draws their worlds."""
+
+    def open(self, world: str, seed: int, purpose: str) -> Simulation:
+        """Open a simulation of the robot in a world, by name.
+
+        The seed makes the robot, with the spread of its sensors, so a robot is examined with the sensors it was taught
+        with; seed and purpose ("lesson", "exam") together make the start pose and the noise.
+        """
+        ...
+
+    def require_worlds(self, *worlds: str) -> None:
+        """Check that each world can be used. Raises hal.settings.SettingsError."""
+        ...
+
+    def settings_of(self, world: str) -> str:
+        """Return all settings of a world as a text, which tells its versions apart."""
+        ...
+
+    def plan_of(self, world: str) -> WorldPlan:
+        """Return a world from above. Raises hal.settings.SettingsError."""
+        ...
+
+    def draw(self, axes: "Axes", world: str) -> None:
+        """Draw a world from above."""
+        ...
+
+    def draw_robot(self, axes: "Axes", world: str) -> None:
+        """Draw the robot at a pose where a drive in this world may begin."""
+        ...
+
+
+class SimulatedWorld(Protocol):
+    """The world of a running simulation, as a teacher sees and changes it.
+
+    No call waits; changes happen between two steps of the simulation.
+    """
+
+    def place(self) -> SimulatedPlace:
+        """Return the robot's true place."""
+        ...
+
+    def world(self) -> WorldPlan:
+        """Return the world from above."""
+        ...
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        """Shift a wall or obstacle. Raises ValueError in a sentence for the teacher."""
+        ...
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        """Put the robot elsewhere. Raises ValueError in a sentence for the teacher."""
+        ...
+
+    def put_robot_back(self) -> None:
+        """Put the robot where the run began. Raises ValueError in a sentence for the teacher."""
+        ...
