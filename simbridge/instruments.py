@@ -6,6 +6,7 @@ looks like one of a robot; sizes that docs/the-robot.md does not give are our ch
 
 import math
 
+from hal.odometry import PlanePose
 from hal.robot_settings import RobotSettings
 from simbridge.body import Body
 from simbridge.wheels import Wheels
@@ -37,7 +38,7 @@ class Instruments:
         """As after MC_RESET: everything counts from here."""
         self.cycles = 0
         self._left_ticks = self._right_ticks = 0
-        self._x_m = self._y_m = self._heading_rad = 0.0
+        self._pose = PlanePose()
         self._drift_deg_s = _GYRO_DRIFT_DEG_S
         self._wheels_before = (0, self._wheels.left_m_s, self._wheels.right_m_s)
         self._speed_before = (0, self._forward_m_s())
@@ -50,14 +51,11 @@ class Instruments:
         self._right_ticks += right_ticks
         turned_rad = (right_ticks - left_ticks) * self._metres_per_tick / self._track_m
         forward_m = (left_ticks + right_ticks) * self._metres_per_tick / 2
-        middle_rad = self._heading_rad + turned_rad / 2
-        self._x_m += forward_m * math.cos(middle_rad)
-        self._y_m += forward_m * math.sin(middle_rad)
-        self._heading_rad += turned_rad
+        self._pose = self._pose.moved(forward_m, turned_rad)
 
     def set_angle(self, angle_rad: float) -> None:
         """UPDATE_ANGLE: the host knows better which way the robot looks."""
-        self._heading_rad = angle_rad
+        self._pose = self._pose._replace(heading_rad=angle_rad)
 
     def zero_gyro(self) -> None:
         """RESET_GYRO: its angle counts from here."""
@@ -71,9 +69,9 @@ class Instruments:
     def deadreck(self) -> tuple[int, ...]:
         """DEADRECK: x and y in mm, orientation in 1/100 deg."""
         return (
-            _signed(round(self._x_m * 1000), 24),
-            _signed(round(self._y_m * 1000), 24),
-            round(_wrapped_deg(math.degrees(self._heading_rad)) * 100),
+            _signed(round(self._pose.x_m * 1000), 24),
+            _signed(round(self._pose.y_m * 1000), 24),
+            round(_wrapped_deg(math.degrees(self._pose.heading_rad)) * 100),
         )
 
     def getspeed(self) -> tuple[int, ...]:

@@ -7,6 +7,7 @@ from enum import StrEnum
 from itertools import groupby
 
 from hal.guard import SLEW_LIMIT
+from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.explain.lesson_words import LessonWords
 from kurt2rt.explain.sentences import times
@@ -137,11 +138,10 @@ class _Reader:
 
     def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
         self._period_s = robot.can.cycle_s
-        self._metres_per_tick = robot.geometry.metres_per_tick
-        self._track_m = robot.geometry.effective_track_m
+        self._odometry = WheelOdometry(robot.geometry)
+        self._pose = PlanePose()
         self._from_s, self._to_s, self._every = from_s, to_s, every
         self._began_s: float | None = None
-        self._x_m = self._y_m = self._heading_rad = 0.0
         self._stretches: list[Stretch] = []
         self._notes: list[Note] = []
         self._samples: list[Sample] = []
@@ -197,13 +197,8 @@ class _Reader:
         return True
 
     def _reckon(self, entry: TickEntry) -> None:
-        left_m = entry.senses.encoder_left_ticks * self._metres_per_tick
-        right_m = entry.senses.encoder_right_ticks * self._metres_per_tick
-        turn_rad, step_m = (right_m - left_m) / self._track_m, (left_m + right_m) / 2
-        middle_rad = self._heading_rad + turn_rad / 2
-        self._x_m += step_m * math.cos(middle_rad)
-        self._y_m += step_m * math.sin(middle_rad)
-        self._heading_rad += turn_rad
+        motion = self._odometry.motion(entry.senses.encoder_left_ticks, entry.senses.encoder_right_ticks)
+        self._pose = self._pose.moved(motion.forward_m, motion.turn_rad)
 
     def _count(self, stretch: Stretch, entry: TickEntry) -> None:
         decision = entry.decision
@@ -232,8 +227,8 @@ class _Reader:
             left_m_s=entry.grant.wheel_speeds.left_m_s,
             right_m_s=entry.grant.wheel_speeds.right_m_s,
             held_back=bool(_out_of_the_ordinary(entry)),
-            x_m=self._x_m,
-            y_m=self._y_m,
+            x_m=self._pose.x_m,
+            y_m=self._pose.y_m,
         )
 
 

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from hal.odometry import WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
@@ -64,8 +65,7 @@ class JunctionDetector:
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
         self._left, self._left_baseline_m = _side(infrared, settings.left)
         self._right, self._right_baseline_m = _side(infrared, settings.right)
-        self._metres_per_tick = robot.geometry.metres_per_tick
-        self._track_m = robot.geometry.effective_track_m
+        self._odometry = WheelOdometry(robot.geometry)
         self._yaw_rad = 0.0
         self.restart()
 
@@ -98,11 +98,10 @@ class JunctionDetector:
 
     def perceive(self, senses: SensorReadings) -> JunctionEvent | None:
         """Take in one tick; returns the junction that was passed, in the tick in which the robot is sure of it."""
-        left_m = senses.encoder_left_ticks * self._metres_per_tick
-        right_m = senses.encoder_right_ticks * self._metres_per_tick
-        way_m = (left_m + right_m) / 2
+        left_m, right_m, way_m, self.turn_rad = self._odometry.motion(
+            senses.encoder_left_ticks, senses.encoder_right_ticks
+        )
         step_m = abs(way_m)
-        self.turn_rad = (right_m - left_m) / self._track_m
         self.rims_m = (abs(left_m) + abs(right_m)) / 2
         self._yaw_rad += self.turn_rad
         self._way_m += step_m

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from operator import itemgetter
 
 from behaviors.judges.judge import AppraisalFeatures
+from hal.odometry import WheelMotion, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
@@ -39,8 +40,7 @@ class CircumstancesPerception:
         self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
         self._wall_m = want.wall_m
         self._no_progress_m2 = want.no_progress_m**2
-        self._metres_per_tick = robot.geometry.metres_per_tick
-        self._track_m = robot.geometry.effective_track_m
+        self._odometry = WheelOdometry(robot.geometry)
         self._period_s = period_s
         self._share_of_new = 1.0 - steady(math.exp(-period_s / want.smoothing_s))
         self._bump_held_ticks = round(want.bump_held_s / period_s)
@@ -73,9 +73,7 @@ class CircumstancesPerception:
         if not senses.infrared_age_s <= self._stale_infrared_s:
             self.restart()
         counts, distance_m = senses.infrared_counts, self._distance_m
-        self._move(
-            senses.encoder_left_ticks * self._metres_per_tick, senses.encoder_right_ticks * self._metres_per_tick
-        )
+        self._move(self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks))
         self._since_bump = 0 if senses.bumpers else self._since_bump + 1
         self._since_surprise += 1
         if distance_m[max(self._wall(counts))] < self._wall_m:
@@ -106,9 +104,9 @@ class CircumstancesPerception:
             return 0.0
         return steady(math.atan2(front_m - back_m, baseline_m))
 
-    def _move(self, left_m: float, right_m: float) -> None:
+    def _move(self, motion: WheelMotion) -> None:
         """Follow the wheels through one tick."""
-        way_m, turn_rad = (left_m + right_m) / 2, (right_m - left_m) / self._track_m
+        way_m, turn_rad = motion.forward_m, motion.turn_rad
         self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
         self._heading_rad += turn_rad

@@ -26,10 +26,10 @@ from foxglove.messages import (
     Vector3,
 )
 
+from hal.odometry import PlanePose
 from hal.robot_settings import RobotSettings
 from hal.simulation import WorldPlan
 from kurt2rt.layers.decision import Decision
-from kurt2rt.recording.odometry import PlanePose
 from kurt2rt.recording.rays import SCAN_STEP_DEG, SensorRays
 from kurt2rt.rla.rla import rla_title
 

@@ -1,6 +1,7 @@
 """The topics of a recorded run: the project's own, and pictures that Foxglove shows by itself."""
 
 import json
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,6 +17,7 @@ from foxglove.channels import (
 from foxglove.messages import Log, LogLevel
 
 from hal.guard import SLEW_LIMIT
+from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.health.plain import plain_of
@@ -25,7 +27,6 @@ from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.entries import tick_entry_of
 from kurt2rt.recording.entry_code import encode_tick
-from kurt2rt.recording.odometry import Odometry, PlanePose
 from kurt2rt.recording.pictures import (
     ROBOT,
     START,
@@ -57,7 +58,8 @@ class Topics:
         """`features`: names of the situation's values."""
         self._features = features
         self._pictures = RobotPictures(settings)
-        self._odometry = Odometry(settings.geometry)
+        self._odometry = WheelOdometry(settings.geometry)
+        self._reckoned = PlanePose()
         period_s = settings.can.cycle_s
         self._scan_ticks = max(1, round(1 / SCANS_HZ / period_s))
         self._scene_ticks = max(1, round(1 / SCENES_HZ / period_s))
@@ -83,7 +85,9 @@ class Topics:
     def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
         """One tick. Raises RecordingError for one that cannot be written."""
         senses = record.senses
-        self._odometry.drive(senses.encoder_left_ticks, senses.encoder_right_ticks)
+        motion = self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks)
+        pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
+        self._reckoned = pose._replace(heading_rad=math.remainder(pose.heading_rad, math.tau))
         if self._tick.has_sinks():  # the most work of all, for which a live view seldom asks
             knowledge = None
             if record.knowledge is not None:
@@ -163,7 +167,7 @@ class Topics:
     def _where(self, record: TickRecord, time_ns: int) -> None:
         if self._scan.has_sinks():
             self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
-        pose = self._odometry.pose
+        pose = self._reckoned
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
         moves = [(START, ROBOT, pose)]
         if self._begins is not None:

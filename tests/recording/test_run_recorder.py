@@ -11,6 +11,7 @@ from foxglove.messages import Log, LogLevel
 from mcap.reader import make_reader
 
 from hal.guard import FRONT_BUMPER, SLEW_LIMIT
+from hal.odometry import PlanePose
 from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
 from kurt2rt.health.plain import report_of
 from kurt2rt.knowledge.writer import Acknowledgement
@@ -18,7 +19,6 @@ from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.recording.disk import RealDisk, WritableFile
 from kurt2rt.recording.entries import TickEntry, tick_entry_of
 from kurt2rt.recording.entry_code import decode_tick
-from kurt2rt.recording.odometry import PlanePose
 from kurt2rt.recording.pictures import ROBOT as ROBOT_FRAME
 from kurt2rt.recording.pictures import START, WORLD, timestamp, transforms
 from kurt2rt.recording.run_files import Budget

@@ -1,0 +1,45 @@
+"""Dead reckoning from the wheel encoders."""
+
+import math
+from typing import NamedTuple
+
+from hal.robot_settings import GeometrySettings
+
+
+class WheelMotion(NamedTuple):
+    """Distance of each side, of the centre between them, and turn to the left."""
+
+    left_m: float
+    right_m: float
+    forward_m: float
+    turn_rad: float
+
+
+class PlanePose(NamedTuple):
+    """Position and heading from above, counter-clockwise from x."""
+
+    x_m: float = 0.0
+    y_m: float = 0.0
+    heading_rad: float = 0.0
+
+    def moved(self, forward_m: float, turn_rad: float) -> "PlanePose":
+        """Return the pose after an arc, taken along its middle heading. The heading counts whole turns."""
+        middle_rad = self.heading_rad + turn_rad / 2
+        return PlanePose(
+            x_m=self.x_m + forward_m * math.cos(middle_rad),
+            y_m=self.y_m + forward_m * math.sin(middle_rad),
+            heading_rad=self.heading_rad + turn_rad,
+        )
+
+
+class WheelOdometry:
+    """Encoder ticks as motion. Replay compares bit for bit, so these operations keep their order."""
+
+    def __init__(self, geometry: GeometrySettings) -> None:
+        self._metres_per_tick = geometry.metres_per_tick
+        self._track_m = geometry.effective_track_m
+
+    def motion(self, left_ticks: int, right_ticks: int) -> WheelMotion:
+        """Return the motion that turned the wheels by these ticks, forward positive."""
+        left_m, right_m = left_ticks * self._metres_per_tick, right_ticks * self._metres_per_tick
+        return WheelMotion(left_m, right_m, (left_m + right_m) / 2, (right_m - left_m) / self._track_m)
