@@ -1,5 +1,6 @@
 """README and documentation hold: commands run, examples load, links lead somewhere."""
 
+import ast
 import re
 import shlex
 import shutil
@@ -350,6 +351,18 @@ def test_pointers_of_code_to_documents_find_their_heading() -> None:
             if not document.exists() or (anchor and anchor not in headings(document)):
                 missing.append(f"{path.relative_to(ROOT)}: docs/{name}#{anchor}")
     assert not missing
+
+
+_GLOSSARY_TEXT = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+GLOSSARY_ROWS = re.findall(r"^\| .*\| (.+) \| (.+) \|$", _GLOSSARY_TEXT, re.MULTILINE)
+GLOSSARY = [(name.strip("`"), module.strip("`")) for name, module in GLOSSARY_ROWS if name not in ("name", "---")]
+
+
+@pytest.mark.parametrize(("name", "module"), GLOSSARY)
+def test_name_of_glossary_is_defined_in_its_module(name: str, module: str) -> None:
+    body = ast.parse((ROOT / module).read_text(encoding="utf-8")).body
+    defined = {node.name for node in body if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)}
+    assert name in defined | {ast.unparse(node.targets[0]) for node in body if isinstance(node, ast.Assign)}
 
 
 def test_readme_links_every_document() -> None:
