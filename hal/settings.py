@@ -9,7 +9,7 @@ from contextvars import ContextVar
 from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, Final, TypeVar, get_args
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -17,6 +17,9 @@ from pydantic_core import ErrorDetails
 
 from config import CONFIG_DIR
 from hal.errors import UserError
+
+SHIPPED_DIR: Final = CONFIG_DIR
+"""Folder of the files that ship with the project."""
 
 
 class SettingsError(UserError, ValueError):

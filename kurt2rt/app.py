@@ -24,6 +24,8 @@ class OpenedRobot(NamedTuple):
     """Of a simulated robot whose time may pass faster than real time."""
     simulation: Simulation | None = None
     """The simulated robot seen from above, for measures."""
+    require_world: Callable[[str], None] | None = None
+    """Raises SettingsError unless the simulator can load the world of that name; None for a real robot."""
 
 
 class Opening(Protocol):
@@ -47,12 +49,13 @@ def open_robot(
     """
     if bus == SIMULATED:
         # Here, because a robot carries no simulator: the packages it needs are an extra.
-        from kurt2rt.simulated import simulated_robot
+        from kurt2rt.simulated import Kurt2SimulationFactory, simulated_robot
 
         with simulated_robot(settings, world, seed, wire, tap) as (simulation, ground):
             # A wire has a time of its own, in real time.
             held_world = ground.held_world if wire == NO_WIRE else None
-            yield OpenedRobot(simulation.robot, ground, lambda: ground.lives, held_world, simulation)
+            require_world = Kurt2SimulationFactory(settings, wire).require_worlds
+            yield OpenedRobot(simulation.robot, ground, lambda: ground.lives, held_world, simulation, require_world)
         return
     end = open_bus(bus)
     end.tap = tap

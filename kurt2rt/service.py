@@ -20,6 +20,7 @@ from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.ending import Ending
 from kurt2rt.exchange.given import package_knowledge
 from kurt2rt.health.instruments import Instruments
+from kurt2rt.health.plain import plain_of
 from kurt2rt.health.status_socket import StatusSocket, socket_of
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.journal import Journal
@@ -167,7 +168,7 @@ async def serve(
                 watch.include(
                     drops={"the recording": lambda: recorder.dropped}, says={"recording": lambda: recorder.trouble}
                 )
-                watch.listen(recorder.healthy)
+                watch.listen(lambda report: recorder.healthy(plain_of(report)))
             parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.parts}
             heartbeat = Heartbeat(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
             async with (

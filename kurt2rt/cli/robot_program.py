@@ -1,10 +1,8 @@
-"""The robot's program, put together: robot, screen, log and companions around the service."""
+"""The robot program: robot, CAN log and companion programs around the service."""
 
 import asyncio
 import gc
 import math
-import os
-import re
 import signal
 import sys
 import time
@@ -13,10 +11,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import anyio
-from rich.console import Console
 
 from hal.health import Health
 from hal.robot_settings import RobotSettings
@@ -25,11 +22,9 @@ from kurt2rt.bus_names import SHARED
 from kurt2rt.channel.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.credentials import OF_THIS_MACHINE, local_pairing, pairing_names
 from kurt2rt.channel.port import require_port
-from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.companions import Companions
-from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.cli.printer import Printer
-from kurt2rt.cli.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
+from kurt2rt.cli.status_line import status_line
 from kurt2rt.ending import Ending, leave
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
@@ -38,7 +33,6 @@ from kurt2rt.knowledge.opening import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.live_exam import LiveExam
 from kurt2rt.memory import give_back_large_pieces
-from kurt2rt.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
 from kurt2rt.recording.can_log import CanLog, open_can_log
 from kurt2rt.recording.recording import Recording
 from kurt2rt.recording.run_files import budget_of
@@ -58,8 +52,6 @@ if TYPE_CHECKING:
     from kurt2rt.cli.simulated_runs import SimulatedRuns
     from kurt2rt.live_measure import LiveMeasure
 
-_LEVELS = {"red": "<3>", "yellow": "<5>"}
-"""Of systemd's journal, by how the line looks on a screen."""
 _KNOWLEDGE = "knowledge"
 _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""
@@ -83,8 +75,6 @@ class Orders:
     page: bool
     phones: bool
     """The page is for phones as well: open to the network while a device is paired."""
-    opens_browser: bool
-    """On a desktop, and at a terminal."""
     auto: bool
     page_port: int | None
     can_log: Path | None
@@ -97,6 +87,35 @@ class Orders:
     wire: str
 
 
+class ProgramScreen(Protocol):
+    """Output of the program. The printer's thread calls all methods while it runs; only `links` is of the loop."""
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links to the teacher's page, with their tokens."""
+        ...
+
+    def tell(self, text: str, style: str | None = None) -> None:
+        """Print a line. `style`: red for an error, yellow for a warning, another colour of rich, or None."""
+        ...
+
+    def taught(self, text: str) -> None:
+        """Tell that a lesson is durable, in words."""
+        ...
+
+    def show(self, status: Status, health: Health, trouble: str) -> None:
+        """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
+        ...
+
+    def page_line(self, line: str) -> None:
+        """Take a line that the page's program printed."""
+        ...
+
+    def close(self) -> None:
+        """Remove what stays in place."""
+        ...
+
+
 class RobotProgram:
     """One run in real time, from the first look at the bus to the last word on the screen."""
 
@@ -106,9 +125,9 @@ class RobotProgram:
         read: Callable[[], ServiceSettings],
         robot: RobotSettings,
         task: TaskSettings,
+        screen: ProgramScreen,
         *,
         opening: Opening = open_robot,
-        console: Console | None = None,
         give_up: Callable[[str], None] | None = leave,
         again_s: float = AGAIN_S,
     ) -> None:
@@ -122,7 +141,7 @@ class RobotProgram:
         self._robot = robot
         self._task = task
         self._opening = opening
-        self._console = console or Console()
+        self._screen = screen
         self._give_up = give_up
         self._again_s = again_s
         self._around = ExitStack()
@@ -132,11 +151,6 @@ class RobotProgram:
         self._log: CanLog | None = None
         self._opened: OpenedRobot | None = None
         self._knowledge: OpenedKnowledge | None = None
-        self._told = ""
-        self._pages = NO_PAGES
-        live = self._console.is_terminal and not self._console.is_dumb_terminal and not orders.as_service
-        self._live = LiveScreen(self._console, for_phones=orders.phones) if live else None
-        self._to_journal = "JOURNAL_STREAM" in os.environ
 
     def _read(self) -> ServiceSettings:
         """Return the settings as they are now. Raises SettingsError."""
@@ -148,7 +162,7 @@ class RobotProgram:
         service, orders = self._service, self._orders
         give_back_large_pieces()
         end = "" if orders.as_service else "; Ctrl-C ends"
-        self._tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
+        self._screen.tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
         with self._around as around:
             notifier = around.enter_context(Notifier())
             reloading = Reloading(self._read, service, notifier, self._say) if orders.as_service else None
@@ -157,8 +171,7 @@ class RobotProgram:
             self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._guards, self._say)
             self._companions = around.enter_context(Companions(orders.settings, ending.patience_s, self._say))
             self._printer = around.enter_context(Printer(ending.patience_s))
-            if self._live is not None:
-                around.callback(self._printer.put, self._live.close)
+            around.callback(self._printer.put, self._screen.close)
             last = anyio.run(self._serve)
             service = self._service
             ending.waits_for = "the robot's bus and its logs"
@@ -167,8 +180,8 @@ class RobotProgram:
         gc.freeze()
         count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
         if self._log is not None:
-            self._tell(self._log.trouble or f"{self._log.written} frames are in {self._log.name}")
-        self._tell(f"the robot stands{count}")
+            self._screen.tell(self._log.trouble or f"{self._log.written} frames are in {self._log.name}")
+        self._screen.tell(f"the robot stands{count}")
 
     async def _serve(self) -> Status | None:
         """One run after the other: a teacher of a simulated robot may want another world, task or knowledge file."""
@@ -215,7 +228,7 @@ class RobotProgram:
         self._upkeep.notifier.ping()  # the next one comes from the first tick
         run = None
         if opened.ground is not None:
-            self._runs = self._runs or self._simulated_runs()
+            self._runs = self._runs or self._simulated_runs(opened)
             run = self._runs.present
         openness = Openness(
             lambda: opened.robot.health.trouble,
@@ -348,7 +361,7 @@ class RobotProgram:
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}
-        return Instruments(lambda: opened.robot.health, drops, says, folders, self._links)
+        return Instruments(lambda: opened.robot.health, drops, says, folders, lambda: self._screen.links)
 
     def _exam(self, opened: OpenedRobot) -> LiveExam | None:
         if opened.ground is None:
@@ -366,13 +379,14 @@ class RobotProgram:
 
         return LiveMeasure(self._task, simulation)
 
-    def _simulated_runs(self) -> "SimulatedRuns":
-        # Here, because a robot carries no simulator: the packages it needs are an extra.
+    def _simulated_runs(self, opened: OpenedRobot) -> "SimulatedRuns":
+        # Here, because a real robot needs none of it.
         from kurt2rt.cli.simulated_runs import SimulatedRun, SimulatedRuns
 
         service = self._service
         first = SimulatedRun(service.world, self._task, service.task, Path(service.knowledge))
-        return SimulatedRuns(self._robot, first, taught_by_script=self._orders.auto)
+        assert opened.require_world is not None
+        return SimulatedRuns(self._robot, first, opened.require_world, taught_by_script=self._orders.auto)
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
         orders, service = self._orders, self._service
@@ -387,38 +401,6 @@ class RobotProgram:
             self._say,
         )
 
-    def _hear_page(self, line: str) -> None:
-        """Take a line of the page's program; called from a thread."""
-        pages = of_line(line)
-        if pages is None:
-            self._say(line, "yellow")
-        else:
-            self._printer.put(lambda: self._pin(pages))
-
-    def _pin(self, pages: ServedPages) -> None:
-        before, self._pages = self._pages, pages
-        if self._live is not None:
-            self._live.pin(pages)
-            # No address yet, for instance while the folder of keys cannot be read: the next one opens it.
-            if self._orders.opens_browser and pages.addresses and not before.addresses and has_desktop():
-                self._open_browser(pages.addresses[0])
-            return
-        for each in pages.addresses:
-            if each not in before.addresses:
-                self._tell(f"page for {each.device}:")
-                self._tell(each.link)
-        if pages.trouble and pages.trouble != before.trouble:
-            self._tell(pages.trouble, "yellow")
-
-    def _links(self) -> tuple[str, ...]:
-        return tuple(each.link for each in self._pages.addresses)
-
-    def _open_browser(self, page: PageAddress) -> None:
-        try:
-            open_link(page.link, Path(self._service.devices) / page.device)
-        except OSError as error:
-            self._tell(f"the browser was not opened ({error}); open {page.link}", "yellow")
-
     def _question(self, question: Question | WayQuestion) -> None:
         self._say(str(question), "yellow")
 
@@ -427,8 +409,10 @@ class RobotProgram:
             self._say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", "red")
 
     def _taught(self, text: str) -> None:
-        if self._live is not None:
-            self._say(text, "green")
+        self._printer.put(lambda: self._screen.taught(text))
+
+    def _hear_page(self, line: str) -> None:
+        self._printer.put(lambda: self._screen.page_line(line))
 
     def _show(self, status: Status) -> None:
         # The line is made by the printer as well: the percentiles in it cost more than a tick.
@@ -439,22 +423,9 @@ class RobotProgram:
         health = self._opened.robot.health
         log_trouble = "" if self._log is None else self._log.trouble
         trouble = " | ".join(filter(None, (self._no_simulator(health, status.record.tick), log_trouble)))
-        line = " | ".join(part for part in (status_line(status, health), trouble) if part)
-        if self._live is not None:
-            wrong = [*alarms(status, health), *([trouble] if trouble else [])]
-            behind = " | ".join(each.strip() for each in (*numbers(status), *guarded(status)))
-            self._live.show(timed_doing(status), behind, wrong)
-            held = [doing(status)] if status.record.grant.latched else []
-            self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
-            return
-        if not self._orders.as_service:
-            self._tell(line)
-            return
-        # A log is read by the day: what changes stands there, the rest is the unit's status.
-        self._upkeep.notifier.status(line)
-        stands = [doing(status)] if status.runtime.school.stopped else []
-        told = " | ".join([*stands, *troubles(status, health), *([trouble] if trouble else [])])
-        self._tell_alarm(told, None if stands else "red")
+        if self._orders.as_service:
+            self._upkeep.notifier.status(status_line(status, health, trouble))
+        self._screen.show(status, health, trouble)
 
     def _no_simulator(self, health: Health, tick: int) -> str:
         """Return which command is missing on a shared bus on which nothing was ever heard; empty where it is there."""
@@ -463,22 +434,5 @@ class RobotProgram:
             return ""
         return f"no simulator on {bus}; start one in another terminal: kurt2rt sim --bus {bus}"
 
-    def _tell_alarm(self, told: str, style: str | None) -> None:
-        """Tell what is wrong when it changes, other than in its numbers; `style`: while something is."""
-        if _without_numbers(told) != _without_numbers(self._told):
-            self._tell(told or "nothing is wrong any more", style if told else None)
-        self._told = told
-
     def _say(self, text: str, style: str | None = None) -> None:
-        self._printer.put(lambda: self._tell(text, style))
-
-    def _tell(self, text: str, style: str | None = None) -> None:
-        if self._live is not None:
-            self._live.print(text, style)
-            return
-        level = _LEVELS.get(style or "", "") if self._to_journal else ""
-        self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
-
-
-def _without_numbers(text: str) -> str:
-    return re.sub(r"\d+", "", text)
+        self._printer.put(lambda: self._screen.tell(text, style))

@@ -163,9 +163,12 @@ def run(
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
     with end_at_interrupt():
+        from rich.console import Console
+
         from hal.robot_settings import load_robot
         from kurt2rt.cli.robot_program import Orders, RobotProgram
         from kurt2rt.cli.scripted_file import own_file, require_agreement
+        from kurt2rt.cli.terminal_screen import TerminalScreen
         from kurt2rt.layers.wanted import Wanted
         from kurt2rt.recording.live_view import parse_address
         from kurt2rt.service_settings import load_service
@@ -220,7 +223,6 @@ def run(
         behaviour=behaviour,
         page=page or phone,
         phones=phone,
-        opens_browser=not no_open,
         auto=auto,
         page_port=page_port,
         can_log=can_log,
@@ -230,7 +232,8 @@ def run(
         seed=seed,
         wire=wire,
     )
-    RobotProgram(orders, read, robot_settings, taught).run()
+    screen = TerminalScreen(Console(), Path(loaded.devices), as_service=service, phones=phone, browser=not no_open)
+    RobotProgram(orders, read, robot_settings, taught, screen).run()
 
 
 def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:

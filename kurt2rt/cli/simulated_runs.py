@@ -2,7 +2,7 @@
 
 import re
 import secrets
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -31,7 +31,6 @@ from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.runtime import empty_system
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import BeginSession, Command, SetPhase, Take
-from simbridge.world_loading import load_world
 
 _GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
@@ -72,9 +71,24 @@ class SimulatedRun:
 class SimulatedRuns:
     """The present run, and the next one once a teacher wants one (kurt2rt.channel.simulation.Simulation)."""
 
-    def __init__(self, robot: RobotSettings, first: SimulatedRun, *, taught_by_script: bool) -> None:
-        """`taught_by_script`: the scripted teacher teaches the first run's task in its world, so there is no next."""
+    def __init__(
+        self,
+        robot: RobotSettings,
+        first: SimulatedRun,
+        require_world: Callable[[str], None],
+        *,
+        taught_by_script: bool,
+    ) -> None:
+        """Begin with the first run.
+
+        Args:
+            robot: settings of the robot in all runs.
+            first: world, task and knowledge of the first run.
+            require_world: raises SettingsError unless the simulator can load the world of that name.
+            taught_by_script: the scripted teacher teaches the first run's task in its world, so no other run follows.
+        """
         self._robot = robot
+        self._require_world = require_world
         self._taught_by_script = taught_by_script
         self._files = {first.task_name: first.knowledge}
         self._view: SimulationView | None = None
@@ -156,7 +170,7 @@ class SimulatedRuns:
         name = task or present.task_name
         settings = present.task if name == present.task_name else load_task(name)
         where = world or (present.world if name == present.task_name else settings.teaching.world)
-        load_world(where, self._robot)
+        self._require_world(where)
         knowledge = self._files.get(name, present.knowledge.with_name(f"{settings.name}.knowledge"))
         if knowledge != present.knowledge and knowledge.exists():
             # Looked at as the next run opens it, so that another program that writes it is found out now.

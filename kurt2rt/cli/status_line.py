@@ -6,10 +6,10 @@ from kurt2rt.rounds import Status
 from kurt2rt.standing_text import in_short
 
 
-def status_line(status: Status, health: Health) -> str:
-    """One line: what drives the wheels and why, lessons, punctuality, and what is wrong."""
+def status_line(status: Status, health: Health, trouble: str = "") -> str:
+    """Return one line: what drives the wheels and why, lessons, lateness, and what is wrong, `trouble` last."""
     parts = [f"{_clock_s(status):8.1f} s", f"{doing(status):<48}", *numbers(status)]
-    return " | ".join([*parts, *troubles(status, health)])
+    return " | ".join([*parts, *troubles(status, health), *([trouble] if trouble else [])])
 
 
 def numbers(status: Status) -> list[str]:

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from kurt2rt.doctor.finding import Finding, Status
-from kurt2rt.service_settings import UNIT_PRIORITY
+from kurt2rt.timing.priority import UNIT_PRIORITY
 
 SELF_STATUS = Path("/proc/self/status")
 _CAP_IPC_LOCK = 14

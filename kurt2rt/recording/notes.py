@@ -1,9 +1,9 @@
 """What is noted of a run beside the loop, and how it is logged."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from hal.simulation import SimulatedPlace, WorldPlan
-from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.topics import Topics
 from kurt2rt.tick import TickRecord
@@ -28,7 +28,14 @@ class Asked(NamedTuple):
     """`str` of it is the question."""
 
 
-Note = Ticked | Asked | HealthReport | Acknowledgement
+class HealthNote(NamedTuple):
+    """Health report of the program."""
+
+    report: Mapping[str, Any]
+    """As plain values."""
+
+
+Note = Ticked | Asked | HealthNote | Acknowledgement
 
 
 class NoteLog:
@@ -52,7 +59,7 @@ class NoteLog:
                     topics.ground(self._world, record.tick, time_ns)
             case Asked(question):
                 topics.asked(str(question), self._time_ns)
-            case HealthReport():
-                topics.healthy(note, self._time_ns)
+            case HealthNote(report):
+                topics.healthy(report, self._time_ns)
             case Acknowledgement():
                 topics.acknowledged(note, self._time_ns)

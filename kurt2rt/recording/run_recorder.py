@@ -5,19 +5,18 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from foxglove import Context
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld
-from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.disk import Disk
 from kurt2rt.recording.live_view import LiveView
-from kurt2rt.recording.notes import Asked, Note, NoteLog, Ticked
+from kurt2rt.recording.notes import Asked, HealthNote, Note, NoteLog, Ticked
 from kurt2rt.recording.run_files import Budget, RunFiles
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead, encode_head
 from kurt2rt.recording.topics import Topics
@@ -115,9 +114,9 @@ class RunRecorder:
         """The robot begins to ask; `str` of it is the question."""
         self._note(Asked(question))
 
-    def healthy(self, report: HealthReport) -> None:
-        """How the program is."""
-        self._note(report)
+    def healthy(self, report: Mapping[str, Any]) -> None:
+        """Take a health report in plain values; it must not change any more."""
+        self._note(HealthNote(report))
 
     def take(self, budget: Budget) -> None:
         """Keep to this budget from now on."""

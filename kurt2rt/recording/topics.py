@@ -20,8 +20,6 @@ from hal.guard import SLEW_LIMIT
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedPlace, WorldPlan
-from kurt2rt.health.plain import plain_of
-from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
@@ -123,9 +121,9 @@ class Topics:
         """The robot begins to ask."""
         self.say(question, LogLevel.Warning, time_ns)
 
-    def healthy(self, report: HealthReport, time_ns: int) -> None:
-        """How the program is."""
-        self._health.log(_json(plain_of(report)), log_time=time_ns)
+    def healthy(self, report: Mapping[str, Any], time_ns: int) -> None:
+        """Log a health report in plain values."""
+        self._health.log(_json(report), log_time=time_ns)
 
     def ground(self, world: WorldPlan, tick: int, time_ns: int) -> None:
         """The simulated world."""

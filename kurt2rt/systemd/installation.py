@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from config import CONFIG_DIR
+from hal.settings import SHIPPED_DIR
 
 
 def program() -> tuple[str, ...]:
@@ -17,4 +17,4 @@ def program() -> tuple[str, ...]:
 
 def places() -> tuple[Path, ...]:
     """Files and folders that it does not run without."""
-    return (Path(program()[0]), Path(sys.prefix), Path(sys.base_prefix), CONFIG_DIR)
+    return (Path(program()[0]), Path(sys.prefix), Path(sys.base_prefix), SHIPPED_DIR)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
-from config import CONFIG_DIR
 from hal.errors import UserError
+from hal.settings import SHIPPED_DIR
 from kurt2rt.systemd.access import sees_homes
 
 MARK = "# Made by kurt2rt service install:"
@@ -16,7 +16,7 @@ USER = "KURT2 robot"
 """What the user of each of our units is called in full."""
 STATE = Path("/var/lib")
 """Each unit keeps what is its own there, in a folder of its name, and is started in it."""
-_TEMPLATES = CONFIG_DIR / "service"
+_TEMPLATES = SHIPPED_DIR / "service"
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,30}")
 _PLAIN = re.compile(r"[\w@+,./:=-]+")
 

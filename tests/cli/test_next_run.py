@@ -18,6 +18,7 @@ from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.rla.rla import Phase
+from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.active_stop import NEXT_RUN
@@ -36,7 +37,7 @@ def names_in(folder: Path) -> list[str]:
 
 def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
     first = SimulatedRun("a", TASK, "wall_following", folder / "walls.knowledge")
-    return SimulatedRuns(ROBOT, first, taught_by_script=taught_by_script)
+    return SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=taught_by_script)
 
 
 async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first_keeps_its(tmp_path: Path) -> None:
@@ -194,7 +195,7 @@ async def test_a_task_whose_knowledge_cannot_act_here_is_refused(tmp_path: Path)
 
 async def test_the_present_knowledge_under_another_tasks_name_is_not_opened_for_that_task(tmp_path: Path) -> None:
     first = SimulatedRun("a", TASK, "wall_following", tmp_path / "eight.knowledge")
-    runs = SimulatedRuns(ROBOT, first, taught_by_script=False)
+    runs = SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=False)
     with open_knowledge(first.knowledge, ROBOT, TASK):
         with pytest.raises(ValueError, match="taught for the task 'wall_following'"):
             await runs.prepare(None, "eight", False, TEACHER)

@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 from hal.guard import FRONT_BUMPER, SLEW_LIMIT
 from hal.odometry import PlanePose
 from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
-from kurt2rt.health.plain import report_of
+from kurt2rt.health.plain import plain_of, report_of
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.recording.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.recording.disk import RealDisk, WritableFile
@@ -419,7 +419,7 @@ def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
     desk.recorder.tend()
     desk.run(1)
-    desk.recorder.healthy(WELL)
+    desk.recorder.healthy(plain_of(WELL))
     desk.recorder.close()
     (told,) = messages_of(tmp_path / NAME, HEALTH)
     assert report_of(json.loads(told.data)) == WELL

@@ -22,6 +22,7 @@ from hal.tap import Tap
 from kurt2rt.app import OpenedRobot
 from kurt2rt.channel.credentials import LOCAL, local_pairing
 from kurt2rt.cli.robot_program import Orders, RobotProgram
+from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.health.status_socket import StatusError, reports_at, socket_of
 from kurt2rt.service_settings import ServiceSettings, load_service
 from kurt2rt.tasks.settings import load_task
@@ -45,7 +46,6 @@ ORDERS = Orders(
     behaviour=None,
     page=False,
     phones=False,
-    opens_browser=False,
     auto=False,
     page_port=None,
     can_log=None,
@@ -247,8 +247,8 @@ def program_in(world: World) -> RobotProgram:
         world.read,
         SETTINGS,
         TASK,
+        TerminalScreen(Console(file=world.log), Path(), as_service=True),
         opening=world.open_robot,
-        console=Console(file=world.log),
         give_up=None,
         again_s=0.01,
     )

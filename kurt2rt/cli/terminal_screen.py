@@ -1,0 +1,122 @@
+"""Output of `kurt2rt run`: a terminal with lines that stay in place, a plain stream, or systemd's journal."""
+
+import os
+import re
+from pathlib import Path
+
+from rich.console import Console
+
+from hal.health import Health
+from kurt2rt.cli.browser import has_desktop, open_link
+from kurt2rt.cli.live_screen import LiveScreen
+from kurt2rt.cli.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
+from kurt2rt.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
+from kurt2rt.rounds import Status
+
+_LEVELS = {"red": "<3>", "yellow": "<5>"}
+"""Levels of systemd's journal, by the style of a line."""
+
+
+class TerminalScreen:
+    """Screen of the robot program (kurt2rt.cli.robot_program.ProgramScreen)."""
+
+    def __init__(
+        self, console: Console, devices: Path, *, as_service: bool = False, phones: bool = False, browser: bool = False
+    ) -> None:
+        """Write to a console.
+
+        Args:
+            console: terminal, pipe or journal.
+            devices: folder of the keys of this machine's devices, for the file that opens the browser.
+            as_service: a service manager started the program; the log then gets changes only.
+            phones: while no device is paired, say how to pair one.
+            browser: open the page in the desktop's browser, if the console is a terminal.
+        """
+        self._console = console
+        self._devices = devices
+        self._as_service = as_service
+        self._browser = browser
+        live = console.is_terminal and not console.is_dumb_terminal and not as_service
+        self._live = LiveScreen(console, for_phones=phones) if live else None
+        self._to_journal = "JOURNAL_STREAM" in os.environ
+        self._pages = NO_PAGES
+        self._alarm = ""
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        """Links to the teacher's page, with their tokens."""
+        return tuple(each.link for each in self._pages.addresses)
+
+    def tell(self, text: str, style: str | None = None) -> None:
+        """Print a line. `style`: red for an error, yellow for a warning, another colour of rich, or None."""
+        if self._live is not None:
+            self._live.print(text, style)
+            return
+        level = _LEVELS.get(style or "", "") if self._to_journal else ""
+        self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
+
+    def taught(self, text: str) -> None:
+        """Tell that a lesson is durable, in words; on a live terminal only."""
+        if self._live is not None:
+            self.tell(text, "green")
+
+    def show(self, status: Status, health: Health, trouble: str) -> None:
+        """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
+        more = [trouble] if trouble else []
+        if self._live is not None:
+            wrong = [*alarms(status, health), *more]
+            behind = " | ".join(each.strip() for each in (*numbers(status), *guarded(status)))
+            self._live.show(timed_doing(status), behind, wrong)
+            held = [doing(status)] if status.record.grant.latched else []
+            self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
+        elif self._as_service:
+            # A log is read by the day: what changes stands there, the rest is the unit's status.
+            stands = [doing(status)] if status.runtime.school.stopped else []
+            told = " | ".join([*stands, *troubles(status, health), *more])
+            self._tell_alarm(told, None if stands else "red")
+        else:
+            self.tell(status_line(status, health, trouble))
+
+    def page_line(self, line: str) -> None:
+        """Take a line that the page's program printed: the pages it serves, or a message."""
+        pages = of_line(line)
+        if pages is None:
+            self.tell(line, "yellow")
+        else:
+            self._pin(pages)
+
+    def close(self) -> None:
+        """Remove what stays in place."""
+        if self._live is not None:
+            self._live.close()
+
+    def _pin(self, pages: ServedPages) -> None:
+        before, self._pages = self._pages, pages
+        if self._live is not None:
+            self._live.pin(pages)
+            # No address yet, for instance while the folder of keys cannot be read: the next one opens it.
+            if self._browser and pages.addresses and not before.addresses and has_desktop():
+                self._open_browser(pages.addresses[0])
+            return
+        for each in pages.addresses:
+            if each not in before.addresses:
+                self.tell(f"page for {each.device}:")
+                self.tell(each.link)
+        if pages.trouble and pages.trouble != before.trouble:
+            self.tell(pages.trouble, "yellow")
+
+    def _open_browser(self, page: PageAddress) -> None:
+        try:
+            open_link(page.link, self._devices / page.device)
+        except OSError as error:
+            self.tell(f"the browser was not opened ({error}); open {page.link}", "yellow")
+
+    def _tell_alarm(self, told: str, style: str | None) -> None:
+        """Tell what is wrong if it changed in more than its numbers. `style`: unless nothing is wrong."""
+        if _without_numbers(told) != _without_numbers(self._alarm):
+            self.tell(told or "nothing is wrong any more", style if told else None)
+        self._alarm = told
+
+
+def _without_numbers(text: str) -> str:
+    return re.sub(r"\d+", "", text)
