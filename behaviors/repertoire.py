@@ -46,17 +46,19 @@ def load_repertoire(
             repertoire[action.name] = _build(action, robot)
         except ValueError as error:
             allowed = ", ".join(robot.infrared.names)
-            raise SettingsError(f"{place}: {error}; the robot's sensors are {allowed}") from error
+            raise SettingsError(str(error), where=place, do=f"the robot's sensors are {allowed}") from error
     return repertoire
 
 
 def _build_taught(action: TaughtAction | TaskAction, path: Path, place: str, build: BuildTaught | None) -> Behaviour:
     if build is None:
-        raise SettingsError(f"{place}: is of kind {action.kind}, and nothing taught can act here; leave it out")
+        raise SettingsError(
+            f"is of kind {action.kind}, and nothing taught can act here", where=place, do="leave it out"
+        )
     try:
         return build(action, path)
     except ValueError as error:
-        raise SettingsError(f"{place}: {error}") from error
+        raise SettingsError(str(error), where=place) from error
 
 
 def _build(action: MotorAction | KeepDistanceAction | TurnByAngleAction, robot: RobotSettings) -> Behaviour:

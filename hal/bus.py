@@ -93,7 +93,9 @@ class CanBus:
                 self._carried_controls = self._sent_controls  # their confirmations may be among the lost
                 self._forgotten = False
         except (can.CanError, OSError, ValueError) as error:
-            raise BusError(f"bus {self.name}: receiving failed ({error}); check adapter, cable and power") from error
+            raise BusError(
+                f"receiving failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power"
+            ) from error
         if self.tap is not None and messages:
             now_s = end.now_s()
             for message in messages:
@@ -107,7 +109,7 @@ class CanBus:
     def control_port(self) -> "FramePort":
         """The port for CONTROL, for the guard alone. Raises BusError when it was taken before."""
         if self._control_taken:
-            raise BusError(f"bus {self.name}: the CONTROL port is taken; one guard drives one robot")
+            raise BusError("the CONTROL port is taken", where=f"bus {self.name}", do="one guard drives one robot")
         self._control_taken = True
         return FramePort(self, is_control=True)
 
@@ -134,14 +136,14 @@ class CanBus:
 
     def _usable(self) -> CanInterface:
         if self._bus_end is None:
-            raise BusError(f"bus {self.name}: is shut down; open it again")
+            raise BusError("is shut down", where=f"bus {self.name}", do="open it again")
         return self._bus_end
 
     def _filter(self, end: CanInterface, heard: frozenset[int]) -> None:
         try:
             end.set_id_filter(heard)
         except (can.CanError, OSError, ValueError) as error:
-            raise BusError(f"bus {self.name}: takes no receive filter ({error})") from error
+            raise BusError(f"takes no receive filter ({error})", where=f"bus {self.name}") from error
 
     def _forget_unconfirmed(self) -> None:
         self._forgotten = self._forgotten or self._carried_controls < self._sent_controls
@@ -171,7 +173,9 @@ class CanBus:
                 self._sent_controls -= 1
             if first_since:
                 self._first_since = None  # a frame that did not go out is never confirmed
-            raise BusError(f"bus {self.name}: sending failed ({error}); check adapter, cable and power") from error
+            raise BusError(
+                f"sending failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power"
+            ) from error
         if self.tap is not None:
             self.tap.on_tx(frame)
 
@@ -226,11 +230,11 @@ def _end_of(spec: str) -> CanInterface:
     if not colon:
         return _socketcan(spec)
     if kind not in ("virtual", "shared") or not name:
-        raise BusError(f"bus {spec!r}: no such kind; give {_KINDS}")
+        raise BusError("no such kind", where=f"bus {spec!r}", do=f"give {_KINDS}")
     try:
         return InProcessBus(name) if kind == "virtual" else SharedBus(name)
     except (can.CanError, OSError) as error:
-        raise BusError(f"bus {spec!r}: cannot be opened ({error})") from error
+        raise BusError(f"cannot be opened ({error})", where=f"bus {spec!r}") from error
 
 
 def _socketcan(interface: str) -> SocketCanBus:
@@ -240,18 +244,24 @@ def _socketcan(interface: str) -> SocketCanBus:
         flags = int((folder / "flags").read_text(encoding="ascii"), base=16)
     except (OSError, ValueError) as error:
         raise BusError(
-            f"bus {interface!r}: no such network interface; plug in the adapter, or set it up: "
-            f"ip link set {interface or 'can0'} up type can bitrate 1000000 (other kinds: {_KINDS})"
+            "no such network interface",
+            where=f"bus {interface!r}",
+            do=(
+                f"plug in the adapter, or set it up: ip link set {interface or 'can0'} up type can bitrate "
+                f"1000000 (other kinds: {_KINDS})"
+            ),
         ) from error
     if kind != _CAN_INTERFACE:
-        raise BusError(f"bus {interface!r}: is a network interface, but not of CAN; give {_KINDS}")
+        raise BusError("is a network interface, but not of CAN", where=f"bus {interface!r}", do=f"give {_KINDS}")
     if not flags & _INTERFACE_UP:
-        raise BusError(f"bus {interface!r}: the interface is down; ip link set {interface} up")
+        raise BusError("the interface is down", where=f"bus {interface!r}", do=f"ip link set {interface} up")
     try:
         return SocketCanBus(interface)
     except (can.CanError, OSError, AttributeError) as error:
         raise BusError(
-            f"bus {interface!r}: cannot be opened ({error}); load the kernel's CAN modules: modprobe can_raw"
+            f"cannot be opened ({error})",
+            where=f"bus {interface!r}",
+            do="load the kernel's CAN modules: modprobe can_raw",
         ) from error
 
 

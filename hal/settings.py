@@ -165,7 +165,7 @@ def find_config(kind: str, name_or_path: str) -> Path:
         path = kept / kind / kept_name(name_or_path)
         if path.is_file():
             return path
-        raise SettingsError(f"{name_or_path}: is not among the settings in {kind} that were kept with the run")
+        raise SettingsError(f"is not among the settings in {kind} that were kept with the run", where=name_or_path)
     given = Path(name_or_path)
     if given.suffix == ".yaml" and given.is_file():
         return given
@@ -175,7 +175,9 @@ def find_config(kind: str, name_or_path: str) -> Path:
     names = shipped_names(kind)
     meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
     raise SettingsError(
-        f"{name_or_path}: no such file in {kind}; give a path to a .yaml file or one of: {', '.join(names)}{meant}"
+        f"no such file in {kind}",
+        where=name_or_path,
+        do=f"give a path to a .yaml file or one of: {', '.join(names)}{meant}",
     )
 
 
@@ -197,18 +199,22 @@ def _json_in(path: Path) -> str:
     try:
         status = path.stat()
         if stat.S_ISFIFO(status.st_mode):  # reading it would wait until another program writes to it
-            raise SettingsError(f"{path}: is a pipe, not a file; give the path of a YAML file")
+            raise SettingsError("is a pipe, not a file", where=path, do="give the path of a YAML file")
         if status.st_size > LARGEST_BYTES:
             raise SettingsError(
-                f"{path}: has {status.st_size} bytes, allowed are {LARGEST_BYTES}; give the path of a settings file"
+                f"has {status.st_size} bytes, allowed are {LARGEST_BYTES}",
+                where=path,
+                do="give the path of a settings file",
             )
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: cannot be read ({error}); give the path of a readable UTF-8 YAML file") from error
+        raise SettingsError(
+            f"cannot be read ({error})", where=path, do="give the path of a readable UTF-8 YAML file"
+        ) from error
     try:
         return _as_json(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())}") from error
+        raise SettingsError(f"not valid YAML: {' '.join(str(error).split())}", where=path) from error
 
 
 def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
@@ -225,7 +231,7 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
         told = json.dumps(content)
     if not told.startswith("{"):
         holds, allowed = type(json.loads(told)).__name__, ", ".join(schema.model_fields)
-        raise SettingsError(f"{path}: holds {holds}, allowed is a mapping with the keys: {allowed}")
+        raise SettingsError(f"holds {holds}, allowed is a mapping with the keys: {allowed}", where=path)
     try:
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
         return schema.model_validate_json(told)
@@ -235,7 +241,7 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         explained = " ".join(_explain(problems[0], schema).split())  # a key may hold a line break
         given = _given_by(problems[0], changes or {})
-        raise SettingsError(f"{path}: {explained}{more}{given}") from error
+        raise SettingsError(f"{explained}{more}{given}", where=path) from error
 
 
 def _value_of(key: str, value: str, path: Path) -> Any:
@@ -243,7 +249,7 @@ def _value_of(key: str, value: str, path: Path) -> Any:
         return json.loads(_as_json(value))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         told = " ".join(str(error).split())
-        raise SettingsError(f"{path}: {key}: the value {value!r} of --set is not valid YAML: {told}") from error
+        raise SettingsError(f"{key}: the value {value!r} of --set is not valid YAML: {told}", where=path) from error
 
 
 def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
@@ -262,7 +268,7 @@ def _change(content: Any, key: str, value: Any, path: Path) -> None:
     for level in levels:
         content = content.setdefault(level, {}) if isinstance(content, dict) else None
     if not isinstance(content, dict):
-        raise SettingsError(f"{path}: {key}: no such key; nothing stands within {'.'.join(levels)}")
+        raise SettingsError(f"{key}: no such key", where=path, do=f"nothing stands within {'.'.join(levels)}")
     content[last] = value
 
 

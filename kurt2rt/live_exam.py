@@ -36,7 +36,7 @@ class LiveExam:
         with self._lock:
             if self._closed or self.standing.running:
                 knowledge.unlink(missing_ok=True)
-                raise KnowledgeError("an exam is under way; wait for its end")
+                raise KnowledgeError("an exam is under way", do="wait for its end")
             try:
                 self._process = subprocess.Popen(
                     self._command(knowledge, picture),
@@ -46,7 +46,7 @@ class LiveExam:
                 )
             except OSError as error:
                 knowledge.unlink(missing_ok=True)
-                raise KnowledgeError(f"the exam cannot be started ({error}); install kurt2rt whole") from error
+                raise KnowledgeError(f"the exam cannot be started ({error})", do="install kurt2rt whole") from error
             self.standing = ExamStanding(True, 0.0, "the exam begins")
             self._reading = threading.Thread(
                 target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True

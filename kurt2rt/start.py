@@ -125,4 +125,4 @@ def require_folder(folder: Path) -> None:
     if not folder.is_absolute():
         make_private_folder(folder)
     elif not folder.is_dir():
-        raise StartError(f"{folder} is not there; it comes with its disk, or make it")
+        raise StartError(f"{folder} is not there", do="it comes with its disk, or make it")

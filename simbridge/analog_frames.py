@@ -26,8 +26,8 @@ class AnalogFrames:
         for sensor in infrared.sensors:
             if sensor.channel not in where:
                 raise SettingsError(
-                    f"infrared.sensors {sensor.name}: the simulated robot has no distance sensor on {sensor.channel}; "
-                    f"use one of: {', '.join(where)}"
+                    f"infrared.sensors {sensor.name}: the simulated robot has no distance sensor on {sensor.channel}",
+                    do=f"use one of: {', '.join(where)}",
                 )
         self._places = [where[sensor.channel] for sensor in infrared.sensors]
         self.frames: list[Frame] = [

@@ -44,8 +44,9 @@ class FreePoses:
                 return pose
         what = "a round obstacle" if world.round_obstacles else "something"
         raise SettingsError(
-            f"world {world.name}: no place found where the robot stands free and sees {what}; make room there, or let "
-            "reposition_to and exam.start be starts"
+            f"no place found where the robot stands free and sees {what}",
+            where=f"world {world.name}",
+            do="make room there, or let reposition_to and exam.start be starts",
         )
 
     def _sees(self, pose: Pose) -> bool:

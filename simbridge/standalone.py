@@ -57,4 +57,4 @@ def _require_no_robot(settings: RobotSettings, bus: CanBus) -> None:
     time.sleep(_LISTENS_S)
     if any(frame.arbitration_id == encoder_id and not frame.is_error_frame for frame in bus.drain()):
         bus.shutdown()
-        raise BusError(f"bus {bus.name}: a robot is on it already; end that one, or take another bus")
+        raise BusError("a robot is on it already", where=f"bus {bus.name}", do="end that one, or take another bus")

@@ -58,13 +58,17 @@ def _find(name_or_path: str) -> Path:
     given = Path(name_or_path)
     if given.suffix.lower() in _IMAGES:
         raise SettingsError(
-            f"{name_or_path}: is an image, not a world; give the YAML file of its map, such as "
-            f"{given.with_suffix('.yaml')} (ROS map_server: image, resolution, origin, thresholds)"
+            "is an image, not a world",
+            where=name_or_path,
+            do=(
+                f"give the YAML file of its map, such as {given.with_suffix('.yaml')} (ROS map_server: "
+                "image, resolution, origin, thresholds)"
+            ),
         )
     try:
         return find_config("worlds", name_or_path)
     except SettingsError as error:
-        raise SettingsError(f"{error}; or {GENERATED}") from error
+        raise SettingsError(str(error), do=f"or {GENERATED}") from error
 
 
 def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:
@@ -76,8 +80,10 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
     for i, clear_m in enumerate(clearances_m):
         if clear_m < START_CLEARANCE_M:
             raise SettingsError(
-                f"{source}: start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, "
-                f"allowed is at least {START_CLEARANCE_M} m; move the pose away from it"
+                f"start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, allowed is at least "
+                f"{START_CLEARANCE_M} m",
+                where=source,
+                do="move the pose away from it",
             )
     # Where the robot's centre can be at all: it gets through a gap that is as wide as itself.
     within_reach = world.free_space.buffer(-geometry.outline_width_m / 2)
@@ -87,12 +93,14 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
     for i, start in enumerate(world.start_poses):
         if not home.intersects(shapely.Point(start.x_m, start.y_m)):
             raise SettingsError(
-                f"{source}: start_poses.{i}: no way that is {geometry.outline_width_m} m wide leads there from "
-                "start_poses.0; open one, or leave the pose out"
+                f"start_poses.{i}: no way that is {geometry.outline_width_m} m wide leads there from start_poses.0",
+                where=source,
+                do="open one, or leave the pose out",
             )
     for i, street in enumerate(world.streets):
         if not home.covers(shapely.LineString([street.from_m, street.to_m])):
             raise SettingsError(
-                f"{source}: streets.{i}: the robot does not fit along its middle line, or cannot get there; "
-                "move the line or what stands in its way"
+                f"streets.{i}: the robot does not fit along its middle line, or cannot get there",
+                where=source,
+                do="move the line or what stands in its way",
             )

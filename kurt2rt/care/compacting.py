@@ -78,8 +78,9 @@ def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compac
     seen = _look(system, tried.runs, now, report)
     if not seen.driven_ticks:
         raise KnowledgeError(
-            f"{recordings}: in none of its {len(tried.runs)} runs of such knowledge anything drove (0 s); they prove "
-            "nothing, and nothing was deleted: record a run in which the robot drives"
+            f"in none of its {len(tried.runs)} runs of such knowledge anything drove (0 s)",
+            where=recordings,
+            do="they prove nothing, and nothing was deleted: record a run in which the robot drives",
         )
     rlas = system.rlas_at(BASIC)
     unneeded = tuple(rla for rla in rlas if rla.behaviour in seen.behaviours and rla.rla_id not in seen.needed)
@@ -121,6 +122,7 @@ def _prove(runs: Sequence[Run], before: Known, after: Known, report: Report) -> 
         for record, (old, new) in answers(run, (before, after), report):
             if old != new:
                 raise KnowledgeError(
-                    f"{run.name}: at {record.now_s:.2f} s the robot would do something else: {told(new)}, and not "
-                    f"{told(old)}; nothing was deleted"
+                    f"at {record.now_s:.2f} s the robot would do something else: {told(new)}, and not {told(old)}",
+                    where=run.name,
+                    do="nothing was deleted",
                 )

@@ -56,7 +56,9 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
     """
     paths = _recorded_in(folder) or [folder]
     if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
-        raise KnowledgeError(f"{folder}: holds no recorded run; kurt2rt run makes them, --runs says where they are")
+        raise KnowledgeError(
+            "holds no recorded run", where=folder, do="kurt2rt run makes them, --runs says where they are"
+        )
     runs, left_out = list[Run](), list[str]()
     for path in paths:
         try:
@@ -69,7 +71,7 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
         else:
             left_out.append(why_not)
     if not runs:
-        raise KnowledgeError(f"{folder}: none of its runs can be tried: {left_out[0]}")
+        raise KnowledgeError(f"none of its runs can be tried: {left_out[0]}", where=folder)
     return Runs(tuple(runs), tuple(left_out))
 
 
@@ -153,5 +155,5 @@ def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
     except KnowledgeError as error:
         return str(error)
     except SettingsError as error:
-        raise RecordingError(f"{run.name}: its settings cannot be used by this kurt2rt: {error}") from error
+        raise RecordingError(f"its settings cannot be used by this kurt2rt: {error}", where=run.name) from error
     return None

@@ -38,14 +38,14 @@ class ContextFolder:
             self._folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         except OSError as error:
             raise CredentialsError(
-                f"{path}: there is no pairing to open ({error.strerror}); make one: kurt2rt pair {name}"
+                f"there is no pairing to open ({error.strerror})", where=path, do=f"make one: kurt2rt pair {name}"
             ) from error
         try:
             self._lock = os.open(_LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600, dir_fd=self._folder)
         except OSError as error:
             os.close(self._folder)
             raise CredentialsError(
-                f"{path}: cannot be locked ({error.strerror}); give write permission for this folder"
+                f"cannot be locked ({error.strerror})", where=path, do="give write permission for this folder"
             ) from error
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -55,7 +55,7 @@ class ContextFolder:
         except OSError as error:
             self.release()
             raise CredentialsError(
-                f"{path}: another program uses this pairing; end that one, or make another: kurt2rt pair NAME"
+                "another program uses this pairing", where=path, do="end that one, or make another: kurt2rt pair NAME"
             ) from error
 
     def still_there(self) -> bool:

@@ -94,11 +94,13 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
     """
     _require_free_name(name)
     if name in OF_THIS_MACHINE:
-        raise CredentialsError(f"{name}: is the name of this machine's own teacher; choose another one")
+        raise CredentialsError("is the name of this machine's own teacher", where=name, do="choose another one")
     with _changing(teachers, devices):
         for side in (teachers, devices):
             if os.path.lexists(side / name):
-                raise CredentialsError(f"{side / name}: is paired already; for new keys: kurt2rt pair {name} --renew")
+                raise CredentialsError(
+                    "is paired already", where=side / name, do=f"for new keys: kurt2rt pair {name} --renew"
+                )
         return _make(teachers, devices, name, host, port)
 
 
@@ -156,16 +158,21 @@ def read_device(folder: Path) -> Device:
         name, host, port, token = (read[key] for key in ("name", "host", "port", "token"))
     except OSError as error:
         raise CredentialsError(
-            f"{folder}: there is no pairing of a device ({error.strerror}); "
-            f"make one on the robot's machine: kurt2rt pair {folder.name}"
+            f"there is no pairing of a device ({error.strerror})",
+            where=folder,
+            do=f"make one on the robot's machine: kurt2rt pair {folder.name}",
         ) from error
     except (ValueError, KeyError) as error:
         raise CredentialsError(
-            f"{folder / _DEVICE}: is damaged ({error!r}); pair the device anew: kurt2rt pair {folder.name} --renew"
+            f"is damaged ({error!r})",
+            where=folder / _DEVICE,
+            do=f"pair the device anew: kurt2rt pair {folder.name} --renew",
         ) from error
     if not (isinstance(name, str) and isinstance(host, str) and isinstance(port, int) and isinstance(token, str)):
         raise CredentialsError(
-            f"{folder / _DEVICE}: is damaged (wrong types); pair the device anew: kurt2rt pair {folder.name} --renew"
+            "is damaged (wrong types)",
+            where=folder / _DEVICE,
+            do=f"pair the device anew: kurt2rt pair {folder.name} --renew",
         )
     return Device(folder, name, host, port, token)
 
@@ -177,18 +184,20 @@ def pairing_names(teachers: Path) -> tuple[str, ...]:
     except FileNotFoundError:
         return ()
     except OSError as error:
-        raise CredentialsError(f"{teachers}: cannot be read ({error}); give a folder that can") from error
+        raise CredentialsError(f"cannot be read ({error})", where=teachers, do="give a folder that can") from error
 
 
 def _require_name(name: str) -> None:
     if not _NAME.fullmatch(name):
-        raise CredentialsError(f"{name!r}: is no name for a device; give 1 to 24 of a-z, 0-9 and -, such as anna-phone")
+        raise CredentialsError(
+            "is no name for a device", where=repr(name), do="give 1 to 24 of a-z, 0-9 and -, such as anna-phone"
+        )
 
 
 def _require_free_name(name: str) -> None:
     _require_name(name)
     if name in RESERVED:
-        raise CredentialsError(f"{name}: is the name of the robot's own critic; choose another one")
+        raise CredentialsError("is the name of the robot's own critic", where=name, do="choose another one")
 
 
 @contextmanager
@@ -200,7 +209,7 @@ def _changing(teachers: Path, devices: Path) -> Iterator[None]:
                 make_private_folder(folder)
             if teachers.samefile(devices):
                 raise CredentialsError(
-                    f"{teachers}: holds one side of each pairing; give the other a folder of its own"
+                    "holds one side of each pairing", where=teachers, do="give the other a folder of its own"
                 )
             for folder in (teachers, devices):
                 lock = locks.enter_context((folder / _LOCK).open("ab"))
@@ -209,7 +218,9 @@ def _changing(teachers: Path, devices: Path) -> Iterator[None]:
                     shutil.rmtree(left)
             yield
     except OSError as error:
-        raise CredentialsError(f"{teachers}, {devices}: {error}; give folders that can be written") from error
+        raise CredentialsError(
+            str(error), where=f"{teachers}, {devices}", do="give folders that can be written"
+        ) from error
 
 
 def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pairing:
@@ -260,7 +271,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
     sides = [side for side in (teachers, devices) if os.path.lexists(side / name)]
     if not sides:
         known = ", ".join(pairing_names(teachers)) or "nothing"
-        raise CredentialsError(f"{teachers / name}: there is no such pairing; paired is: {known}")
+        raise CredentialsError("there is no such pairing", where=teachers / name, do=f"paired is: {known}")
     for side in sides:
         # Away in one step, whatever happens while its files are deleted.
         revoked = side / f"{_REVOKED}{name}"

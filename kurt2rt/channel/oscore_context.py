@@ -76,7 +76,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         except OSError as error:
             self.folder.release()
             raise CredentialsError(
-                f"{folder}: cannot be read and written ({error}); give permission for it, and room on its disk"
+                f"cannot be read and written ({error})", where=folder, do="give permission for it, and room on its disk"
             ) from error
         except CredentialsError:
             self.folder.release()
@@ -131,8 +131,9 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
                 self.folder.write_sequence(self.sender_sequence_number)
         except OSError as error:
             raise CredentialsError(
-                f"{self.folder.path}: its state cannot be stored ({error}); "
-                "the pairing goes on with other numbers, but look at its disk"
+                f"its state cannot be stored ({error})",
+                where=self.folder.path,
+                do="the pairing goes on with other numbers, but look at its disk",
             ) from error
         finally:
             self.folder.release()
@@ -153,17 +154,19 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         what_to_do = f"pair the device anew: kurt2rt pair {self.name} --renew"
         # The library would begin at 0 again, and a number used twice gives the key away.
         if not (self.folder.path / SEQUENCE).exists():
-            raise CredentialsError(f"{self.folder.path}: {SEQUENCE} is missing; {what_to_do}")
+            raise CredentialsError(f"{SEQUENCE} is missing", where=self.folder.path, do=what_to_do)
         try:
             self._load()
             paired_s = self._paired_s()
             sound = all(number is None or number >= 0 for number in (self.sender_sequence_number, *self.seen))
         except (KeyError, ValueError, TypeError, AttributeError) as error:
-            raise CredentialsError(f"{self.folder.path}: the pairing is damaged ({error!r}); {what_to_do}") from error
+            raise CredentialsError(
+                f"the pairing is damaged ({error!r})", where=self.folder.path, do=what_to_do
+            ) from error
         if not sound:
-            raise CredentialsError(f"{self.folder.path}: {SEQUENCE} holds a negative number; {what_to_do}")
+            raise CredentialsError(f"{SEQUENCE} holds a negative number", where=self.folder.path, do=what_to_do)
         if not self.folder.still_there():
-            raise CredentialsError(f"{self.folder.path}: was replaced while it was opened; open it again")
+            raise CredentialsError("was replaced while it was opened", where=self.folder.path, do="open it again")
         window = self.recipient_replay_window
         self.recipient_replay_window = oscore.ReplayWindow(window._size, self._replay_window_changed)
         by_time = int(min(max(0.0, self._now() - paired_s) * NUMBERS_PER_S, LAST_FLOOR))

@@ -17,13 +17,14 @@ def bound_socket(host: str, port: int) -> socket.socket:
     try:
         address = ipaddress.ip_address(host)
     except ValueError as error:
-        raise ChannelError(f"{host!r} is no address; give one of this machine, such as 127.0.0.1 or ::") from error
+        raise ChannelError(f"{host!r} is no address", do="give one of this machine, such as 127.0.0.1 or ::") from error
     text = f"::ffff:{address}" if address.version == 4 else str(address)
     try:
         opened = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
     except OSError as error:
         raise ChannelError(
-            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4; switch IPv6 on in its kernel"
+            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4",
+            do="switch IPv6 on in its kernel",
         ) from error
     try:
         opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)

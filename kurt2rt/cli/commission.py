@@ -194,12 +194,15 @@ def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
         return fresh
     if kept.base != fresh.base:
         raise SettingsError(
-            f"{path}: was begun with --robot-settings {kept.base}; go on with that, give another --name, or --anew"
+            f"was begun with --robot-settings {kept.base}",
+            where=path,
+            do="go on with that, give another --name, or --anew",
         )
     if kept.bus != fresh.bus and kept.findings != Findings() and kept.findings.hardware_id is None:
         raise SettingsError(
-            f"{path}: was begun on bus {kept.bus}, and which robot that was is not known; "
-            "go on there, give another --name, or --anew"
+            f"was begun on bus {kept.bus}, and which robot that was is not known",
+            where=path,
+            do="go on there, give another --name, or --anew",
         )
     return kept.model_copy(update={"bus": fresh.bus})
 

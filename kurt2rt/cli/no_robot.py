@@ -5,4 +5,6 @@ from kurt2rt.teaching.answer import NoAnswerError
 
 def no_robot(host: str, port: int, name: str) -> NoAnswerError:
     """Return the error: `host` and `port` are where the robot should be, `name` is the device that asked."""
-    return NoAnswerError(f"no robot answers at {host}:{port} as {name}; start one in another terminal: kurt2rt run")
+    return NoAnswerError(
+        f"no robot answers at {host}:{port} as {name}", do="start one in another terminal: kurt2rt run"
+    )

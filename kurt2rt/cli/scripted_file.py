@@ -34,5 +34,5 @@ def people_agree(where: str, people: Sequence[str], instead: str) -> bool:
     taught = f"{where}: {' and '.join(people)} taught in it"
     # Python has no standard input where it was closed.
     if sys.stdin is None or not sys.stdin.isatty():
-        raise KnowledgeError(f"{taught}, and a scripted teacher would change it; {instead}")
+        raise KnowledgeError(f"{taught}, and a scripted teacher would change it", do=instead)
     return typer.confirm(f"{taught}. Let the scripted teacher change it?", err=True)

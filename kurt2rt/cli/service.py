@@ -151,6 +151,6 @@ def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
     found = find_config(key + "s", given)
     if found == Path(given) and not found.is_absolute():
         raise UnitError(
-            f"{key}: {given}: the service would look for it in {state}; give its whole path in the settings"
+            f"{given}: the service would look for it in {state}", where=key, do="give its whole path in the settings"
         )
     return found.absolute()

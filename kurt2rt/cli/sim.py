@@ -86,7 +86,7 @@ def sim(
     ground_plan = load_world(world, settings)
     if start is not None and start > len(ground_plan.start_poses):
         raise SettingsError(
-            f"world {world}: has {len(ground_plan.start_poses)} start poses, there is none of number {start}"
+            f"has {len(ground_plan.start_poses)} start poses, there is none of number {start}", where=f"world {world}"
         )
     console = Console()
 

@@ -149,7 +149,7 @@ def _over_the_channel(device: Device, host: str | None, port: int | None) -> Ite
             except NoAnswerError as error:
                 where = f"{host or device.host}:{port or device.port}"
                 raise StatusError(
-                    f"no robot answers at {where} as {device.name}; is kurt2rt run running? ({error})"
+                    f"no robot answers at {where} as {device.name}", do=f"is kurt2rt run running? ({error})"
                 ) from error
             if report is not None and report != last:
                 yield report

@@ -207,7 +207,9 @@ def _show_live(
     if picture is not None:
         if not set(robot.infrared.names) <= set(facts.basic.names):
             raise SettingsError(
-                f"{robot.name}: has other sensors than the robot that answers; name its settings in runtime settings"
+                "has other sensors than the robot that answers",
+                where=robot.name,
+                do="name its settings in runtime settings",
             )
         _draw(facts, found, robot, where, picture, as_json=as_json)
 

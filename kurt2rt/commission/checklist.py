@@ -117,8 +117,9 @@ class Checklist:
         now = await self._bench.hardware_id()
         if now is not None and now != before:
             raise SettingsError(
-                f"{self._path}: is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}; "
-                "give this robot another --name, or begin anew with --anew"
+                f"is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}",
+                where=self._path,
+                do="give this robot another --name, or begin anew with --anew",
             )
 
     async def _skip(self, step: Step, why: str, *, on_purpose: bool = False) -> None:

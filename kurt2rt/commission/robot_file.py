@@ -44,7 +44,7 @@ def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSet
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"]))
-        raise SettingsError(f"what was found makes no robot: {key}: {first['msg']}; repeat that step") from error
+        raise SettingsError(f"what was found makes no robot: {key}: {first['msg']}", do="repeat that step") from error
 
 
 def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Step]) -> str:
@@ -79,8 +79,8 @@ def _require_own_channels(base: RobotSettings, findings: Findings) -> None:
         owner = claimed.get(sensor.channel)
         if sensor.name not in findings.channels and owner is not None:
             raise SettingsError(
-                f"{sensor.name} has no channel: {sensor.channel}, which the table gives it, is {owner}'s; "
-                f"find {sensor.name}'s with --only sensors"
+                f"{sensor.name} has no channel: {sensor.channel}, which the table gives it, is {owner}'s",
+                do=f"find {sensor.name}'s with --only sensors",
             )
 
 
@@ -90,7 +90,7 @@ def _bumpers(table: Sequence[BumperSettings], findings: Findings) -> Sequence[Bu
     if sorted(bits.values()) != list(range(len(table))):
         said = ", ".join(f"{name} {bit}" for name, bit in bits.items())
         raise SettingsError(
-            f"bumper bits must be 0 to {len(table) - 1}, each once, but are: {said}; find them with --only bumpers"
+            f"bumper bits must be 0 to {len(table) - 1}, each once, but are: {said}", do="find them with --only bumpers"
         )
     return sorted(table, key=lambda bumper: bits[bumper.name])
 

@@ -63,26 +63,28 @@ def unpack(path: Path) -> Archive:
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
-            raise KnowledgeError(f"{path}: is a folder or device; give a file of kurt2rt knowledge export")
+            raise KnowledgeError("is a folder or device", where=path, do="give a file of kurt2rt knowledge export")
         if status.st_size > LARGEST_BYTES:
-            raise KnowledgeError(f"{path}: is larger than {LARGEST_BYTES // 10**6} MB, which no knowledge is")
+            raise KnowledgeError(f"is larger than {LARGEST_BYTES // 10**6} MB, which no knowledge is", where=path)
         with zipfile.ZipFile(path) as archive:
             content = _content(archive, path)
     except OSError as error:
-        raise KnowledgeError(f"{path}: cannot be read ({error}); give a file of kurt2rt knowledge export") from error
+        raise KnowledgeError(
+            f"cannot be read ({error})", where=path, do="give a file of kurt2rt knowledge export"
+        ) from error
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
         raise KnowledgeError(
-            f"{path}: is torn or changed, or no file of kurt2rt knowledge export ({error}); get it anew"
+            f"is torn or changed, or no file of kurt2rt knowledge export ({error})", where=path, do="get it anew"
         ) from error
     if MANIFEST not in content:
-        raise KnowledgeError(f"{path}: has no {MANIFEST}; give a file of kurt2rt knowledge export")
+        raise KnowledgeError(f"has no {MANIFEST}", where=path, do="give a file of kurt2rt knowledge export")
     manifest = _manifest(content[MANIFEST], path)
     files = {name: data for name, data in content.items() if name not in (MANIFEST, SIGNATURE)}
     for name in sorted(manifest[_FILES].keys() | files.keys()):
         if name not in files:
-            raise KnowledgeError(f"{path}: {name} is missing in it; get it anew")
+            raise KnowledgeError(f"{name} is missing in it", where=path, do="get it anew")
         if manifest[_FILES].get(name) != hashlib.sha256(files[name]).hexdigest():
-            raise KnowledgeError(f"{path}: {name} was changed after it was exported (SHA-256); get it anew")
+            raise KnowledgeError(f"{name} was changed after it was exported (SHA-256)", where=path, do="get it anew")
     return Archive(manifest, files, _signer(content, path))
 
 
@@ -90,12 +92,14 @@ def _content(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     entries = archive.infolist()
     sizes = {entry.orig_filename: entry.file_size for entry in entries}  # before anything in it was cut off
     if len(sizes) < len(entries) or len({name.casefold() for name in sizes}) < len(entries):
-        raise KnowledgeError(f"{path}: holds a file twice; get it anew")
+        raise KnowledgeError("holds a file twice", where=path, do="get it anew")
     trouble = trouble_of(sizes)
     if trouble:
-        raise KnowledgeError(f"{path}: {trouble}; nothing of it was read: get it anew from whom you trust")
+        raise KnowledgeError(trouble, where=path, do="nothing of it was read: get it anew from whom you trust")
     if not all(entry.compress_type in _SMALL_ENOUGH_TO_UNPACK for entry in entries):
-        raise KnowledgeError(f"{path}: is packed in a way that kurt2rt knowledge export does not use; get it anew")
+        raise KnowledgeError(
+            "is packed in a way that kurt2rt knowledge export does not use", where=path, do="get it anew"
+        )
     return {entry.orig_filename: archive.read(entry) for entry in entries}
 
 
@@ -103,15 +107,19 @@ def _manifest(data: bytes, path: Path) -> dict[str, Any]:
     try:
         manifest = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise KnowledgeError(f"{path}: its {MANIFEST} is damaged ({error}); get it anew") from error
+        raise KnowledgeError(f"its {MANIFEST} is damaged ({error})", where=path, do="get it anew") from error
     if not isinstance(manifest, dict) or not isinstance(manifest.get(_FORMAT), int):
-        raise KnowledgeError(f"{path}: its {MANIFEST} is none of kurt2rt; give a file of kurt2rt knowledge export")
+        raise KnowledgeError(
+            f"its {MANIFEST} is none of kurt2rt", where=path, do="give a file of kurt2rt knowledge export"
+        )
     if manifest[_FORMAT] > FORMAT:
         raise KnowledgeError(
-            f"{path}: has format {manifest[_FORMAT]} of a newer kurt2rt, this one knows up to {FORMAT}; update kurt2rt"
+            f"has format {manifest[_FORMAT]} of a newer kurt2rt, this one knows up to {FORMAT}",
+            where=path,
+            do="update kurt2rt",
         )
     if not isinstance(manifest.get(_FILES), dict):
-        raise KnowledgeError(f"{path}: its {MANIFEST} names no files; get it anew")
+        raise KnowledgeError(f"its {MANIFEST} names no files", where=path, do="get it anew")
     return manifest
 
 
@@ -122,9 +130,11 @@ def _signer(content: Mapping[str, bytes], path: Path) -> bytes | None:
         signed = json.loads(content[SIGNATURE])
         public, signature = (base64.b64decode(signed[each], validate=True) for each in ("public_key", "signature"))
     except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise KnowledgeError(f"{path}: its {SIGNATURE} is damaged ({error!r}); get it anew") from error
+        raise KnowledgeError(f"its {SIGNATURE} is damaged ({error!r})", where=path, do="get it anew") from error
     if not is_signed(content[MANIFEST], public, signature):
-        raise KnowledgeError(f"{path}: its signature does not fit: it was changed after it was signed; get it anew")
+        raise KnowledgeError(
+            "its signature does not fit: it was changed after it was signed", where=path, do="get it anew"
+        )
     return public
 
 

@@ -118,7 +118,7 @@ def _package(
     files = attachments_of(robot, task, entries, statistics)
     trouble = trouble_of({name: len(data) for name, data in files.items()})
     if trouble:  # nobody could take it
-        raise KnowledgeError(f"{path}: cannot be exported: it {trouble}; name its settings otherwise")
+        raise KnowledgeError(f"cannot be exported: it {trouble}", where=path, do="name its settings otherwise")
     return pack(about, files, key)
 
 
@@ -128,10 +128,10 @@ def read_given(path: Path) -> Given:
     try:
         return _given(path, archive)
     except KeyError as error:
-        raise KnowledgeError(f"{path}: has no {error}; export it anew") from error
+        raise KnowledgeError(f"has no {error}", where=path, do="export it anew") from error
     except ValueError as error:
         raise KnowledgeError(
-            f"{path}: cannot be understood ({' '.join(str(error).split())}); export it anew"
+            f"cannot be understood ({' '.join(str(error).split())})", where=path, do="export it anew"
         ) from error
 
 
@@ -145,13 +145,14 @@ def import_knowledge(
     given = read_given(path)
     if trusted is not None and given.signed_by != trusted:
         by = "by nobody" if given.signed_by is None else f"by {fingerprint(given.signed_by)}"
-        raise KnowledgeError(f"{path}: is signed {by}, not by {fingerprint(trusted)}; nothing was imported")
+        raise KnowledgeError(f"is signed {by}, not by {fingerprint(trusted)}", where=path, do="nothing was imported")
     here = binding_of(robot, task)
     if given.binding.feature_hash != here.feature_hash:
         differing = differing_features(given.settings, robot, task) or "in what its settings do not tell"
         raise KnowledgeError(
-            f"{path}: was taught with other features: {differing}; "
-            "import it with the task and robot settings that it was taught with (--task, --robot-settings)"
+            f"was taught with other features: {differing}",
+            where=path,
+            do=("import it with the task and robot settings that it was taught with (--task, --robot-settings)"),
         )
     levels = {getattr(each.event, "level", "") for each in given.lessons}
     levels |= {each.event.rla.level for each in given.lessons if hasattr(each.event, "rla")}

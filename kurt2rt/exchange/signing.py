@@ -27,7 +27,7 @@ def make_key(path: Path) -> Path:
     Raises KnowledgeError, also where one of both is there already, and leaves nothing: a lost key cannot be made again.
     """
     if not path.name:
-        raise KnowledgeError(f"{path}: is a folder; give the key file to make")
+        raise KnowledgeError("is a folder", where=path, do="give the key file to make")
     key, public = Ed25519PrivateKey.generate(), path.with_name(path.name + ".pub")
     secret = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
     open_half = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
@@ -45,7 +45,9 @@ def make_key(path: Path) -> Path:
     except OSError as error:
         for place in written:
             place.unlink(missing_ok=True)
-        raise KnowledgeError(f"{path}: no key can be made there ({error}); give the path of a new file") from error
+        raise KnowledgeError(
+            f"no key can be made there ({error})", where=path, do="give the path of a new file"
+        ) from error
     return public
 
 
@@ -54,9 +56,11 @@ def read_private_key(path: Path) -> Ed25519PrivateKey:
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError, TypeError, UnsupportedAlgorithm) as error:
-        raise KnowledgeError(f"{path}: is no key that can sign ({error}); kurt2rt knowledge key makes one") from error
+        raise KnowledgeError(
+            f"is no key that can sign ({error})", where=path, do="kurt2rt knowledge key makes one"
+        ) from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise KnowledgeError(f"{path}: is a key of another kind than Ed25519; kurt2rt knowledge key makes one")
+        raise KnowledgeError("is a key of another kind than Ed25519", where=path, do="kurt2rt knowledge key makes one")
     return key
 
 
@@ -65,9 +69,13 @@ def read_public_key(path: Path) -> bytes:
     try:
         key = load_pem_public_key(path.read_bytes())
     except (OSError, ValueError, UnsupportedAlgorithm) as error:
-        raise KnowledgeError(f"{path}: is no public key ({error}); give the .pub file of whom you trust") from error
+        raise KnowledgeError(
+            f"is no public key ({error})", where=path, do="give the .pub file of whom you trust"
+        ) from error
     if not isinstance(key, Ed25519PublicKey):
-        raise KnowledgeError(f"{path}: is a public key of another kind than Ed25519; give the .pub file of a signer")
+        raise KnowledgeError(
+            "is a public key of another kind than Ed25519", where=path, do="give the .pub file of a signer"
+        )
     return key.public_bytes_raw()
 
 

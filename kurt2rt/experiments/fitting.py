@@ -17,7 +17,7 @@ def require_course(stage: SimulationFactory, task: TaskSettings, worlds: Iterabl
         try:
             task.course.require(stage.plan_of(world), task.behaviours)
         except SettingsError as error:
-            raise SettingsError(f"task {task.name}: {error}") from error
+            raise SettingsError(str(error), where=f"task {task.name}") from error
 
 
 def route_of(course: Course, task: TaskSettings) -> RouteCourse:
@@ -25,6 +25,7 @@ def route_of(course: Course, task: TaskSettings) -> RouteCourse:
     if isinstance(course, RouteCourse):
         return course
     raise SettingsError(
-        f"task {task.name}: course {task.course.kind} has no route, so nobody can say what the mid level is to want; "
-        "give the course route, or leave mid out"
+        f"course {task.course.kind} has no route, so nobody can say what the mid level is to want",
+        where=f"task {task.name}",
+        do="give the course route, or leave mid out",
     )

@@ -285,7 +285,9 @@ def _teacher_of(
         )
     elif plan.signs == "judge":
         if task.judge is None:
-            raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")
+            raise SettingsError(
+                "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
+            )
         signs = Judged(task.judge.build(), round(times.patience_s / period_s))
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
     habits = Habits(

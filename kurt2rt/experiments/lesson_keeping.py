@@ -33,7 +33,7 @@ class LessonKeeping:
         """Hear what became of lessons so far. Raises LessonLostError."""
         for acknowledgement in self.writer.acknowledged():
             if acknowledgement.error is not None:
-                raise LessonLostError(f"{self._file}: {acknowledgement.error}")
+                raise LessonLostError(f"{acknowledgement.error}", where=self._file)
             self._on_saved(acknowledgement)
 
     def telling(

@@ -138,7 +138,7 @@ def _run_apart(
                 pool.shutdown()  # how each process ended is known once the pool has waited for all
                 killed = _killed(left, dict(workers), begun) or left[:processes]
                 names = " or ".join(jobs[place].name for place in killed)
-                raise JobKilledError(f"{names}: its process was killed, as happens when memory runs out") from error
+                raise JobKilledError("its process was killed, as happens when memory runs out", where=names) from error
             except BaseException:
                 # Else what failed would be said when the jobs that run now are through, minutes later.
                 pool.shutdown(wait=False, cancel_futures=True)

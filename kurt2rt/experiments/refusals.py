@@ -25,8 +25,10 @@ def require_carried_out(
             late += 1
             continue
         raise LessonLostError(
-            f"task {task.name}, tick {record.tick}: the robot refused {result.command_id}: {result.text}; "
-            f"make policy {task.policy.kind}, course {task.course.kind} and repertoire {task.repertoire} fit "
-            "together"
+            f"task {task.name}, tick {record.tick}: the robot refused {result.command_id}: {result.text}",
+            do=(
+                f"make policy {task.policy.kind}, course {task.course.kind} and repertoire {task.repertoire} "
+                "fit together"
+            ),
         )
     return late

@@ -59,4 +59,4 @@ def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], 
     try:
         return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))
     except JobKilledError as error:
-        raise JobKilledError(f"{error}; run again, with fewer --jobs it needs less") from error
+        raise JobKilledError(str(error), do="run again, with fewer --jobs it needs less") from error

@@ -65,7 +65,9 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
         if entry.tick % 100 == 0:
             report(last_s)
     if newest is None:
-        raise RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")
+        raise RecordingError(
+            "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
+        )
     runtime = replay.runtime
     # As the journal has it; a recording that does not say so says to the second when the tick was.
     stamps.update({**reckoned, **run.stamps_of(reckoned.keys())})

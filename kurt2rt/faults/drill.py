@@ -147,7 +147,9 @@ class _Drill:
     def _require_driving(self) -> None:
         begin_s = self._place.disturbance.begin_s
         if self._witness.stands(begin_s - self._settings.can.cycle_s, begin_s):
-            raise DidNotDriveError(f"{self._case}: the robot stands before anything fails; look at action and task")
+            raise DidNotDriveError(
+                "the robot stands before anything fails", where=self._case, do="look at action and task"
+            )
 
     def _note_the_end(self) -> None:
         self._latched = self._place.robot.health.latched

@@ -112,23 +112,23 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
                 reader.connect(short)
         except (FileNotFoundError, ConnectionRefusedError) as error:
             raise StatusError(
-                f"no robot program runs with the knowledge {path.with_suffix('')}, or it waits for its disk; "
-                "start one with kurt2rt run, or name its knowledge file"
+                f"no robot program runs with the knowledge {path.with_suffix('')}, or it waits for its disk",
+                do="start one with kurt2rt run, or name its knowledge file",
             ) from error
         except OSError as error:
-            raise StatusError(f"{path}: cannot be read ({error}); be the user of the robot program") from error
+            raise StatusError(f"cannot be read ({error})", where=path, do="be the user of the robot program") from error
         while True:
             try:
                 line = lines.readline(_LONGEST_LINE)
             except TimeoutError as error:
                 raise StatusError(
-                    f"the robot program at {path} has said nothing for {patience_s:g} s; it hangs or was stopped: end "
-                    "it and start it anew"
+                    f"the robot program at {path} has said nothing for {patience_s:g} s",
+                    do="it hangs or was stopped: end it and start it anew",
                 ) from error
             except OSError as error:
-                raise StatusError(f"{path}: the robot program ended ({error})") from error
+                raise StatusError(f"the robot program ended ({error})", where=path) from error
             if not line:
-                raise StatusError(f"{path}: the robot program has ended")
+                raise StatusError("the robot program has ended", where=path)
             try:
                 told = json.loads(line)
                 if isinstance(told, dict) and _WAITS_FOR in told:
@@ -136,7 +136,7 @@ def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
                 yield replace(report_of(told), pages=_links_in(told))
             except (ValueError, WireError) as error:
                 raise StatusError(
-                    f"{path}: is not understood ({error}); use the kurt2rt that the robot runs"
+                    f"is not understood ({error})", where=path, do="use the kurt2rt that the robot runs"
                 ) from error
 
 

@@ -37,21 +37,24 @@ def require_same(
     if there != here:
         difference = _difference(there, here, "scales, history or the robot's sensor order differ")
         raise KnowledgeError(
-            f"{path}: taught with other features: {difference}; "
-            "use the situation definition and robot it was taught with, or give another knowledge file"
+            f"taught with other features: {difference}",
+            where=path,
+            do="use the situation definition and robot it was taught with, or give another knowledge file",
         )
     if taught.system != wanted.system:
         raise KnowledgeError(
-            f"{path}: taught for the task {taught.system!r}, not for {wanted.system!r}; "
-            "start that task, or give another knowledge file"
+            f"taught for the task {taught.system!r}, not for {wanted.system!r}",
+            where=path,
+            do="start that task, or give another knowledge file",
         )
     for level, features in wanted.levels.items():
         of_file = taught.levels.get(level, features)
         if of_file != features and has_lessons(level):
             difference = _difference(of_file, features, "what they are made from differs")
             raise KnowledgeError(
-                f"{path}: its level {level} was taught with other features: {difference}; "
-                f"use the {level} settings it was taught with, or give another knowledge file"
+                f"its level {level} was taught with other features: {difference}",
+                where=path,
+                do=f"use the {level} settings it was taught with, or give another knowledge file",
             )
 
 

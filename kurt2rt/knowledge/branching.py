@@ -76,7 +76,7 @@ def whence_of(journal: Journal) -> Whence | None:
         return Whence(str(file), int(rows), str(lesson), str(branched_at))
     except (ValueError, TypeError, RecursionError) as error:
         raise KnowledgeError(
-            f"{journal.path}: its note on where it was branched from is damaged ({error}); keep the file"
+            f"its note on where it was branched from is damaged ({error})", where=journal.path, do="keep the file"
         ) from error
 
 
@@ -89,14 +89,15 @@ def _rows_up_to(entries: Sequence[StoredEntry], at: str, path: Path) -> tuple[in
         time = _time(at)
     except ValueError:
         raise KnowledgeError(
-            f"{path}: holds no lesson {at!r}, and that is no time either; give an id as kurt2rt knowledge lessons "
-            "shows it, or a time such as 2026-11-22T03:10"
+            f"holds no lesson {at!r}, and that is no time either",
+            where=path,
+            do="give an id as kurt2rt knowledge lessons shows it, or a time such as 2026-11-22T03:10",
         ) from None
     try:
         by_then = [_time(entry.stamped_at) <= time for entry in entries]
     except ValueError as error:
         raise KnowledgeError(
-            f"{path}: the stamp of a lesson is no time ({error}); give the id of a lesson instead"
+            f"the stamp of a lesson is no time ({error})", where=path, do="give the id of a lesson instead"
         ) from error
     rows = by_then.index(False) if False in by_then else len(by_then)
     return rows, sum(by_then[rows:])

@@ -183,8 +183,9 @@ class Bringing:
             self._system.apply(event)
         except InvalidEventError as error:
             raise KnowledgeError(
-                f"{self._theirs.journal.path}: cannot be brought into {self._mine.journal.path.name}: {error}; "
-                "undo there what is in the way, or go on in one of them"
+                f"cannot be brought into {self._mine.journal.path.name}: {error}",
+                where=self._theirs.journal.path,
+                do="undo there what is in the way, or go on in one of them",
             ) from error
         self._taken.add(event.origin.command_id)
         self.entries.append(JournalEntry(event, stamp))

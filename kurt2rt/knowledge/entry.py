@@ -55,5 +55,5 @@ def read_row(row: tuple[int, str, str, str, int], where: str) -> StoredEntry:
         if checksum(command_id, stamped_at, text) == written_checksum and event.origin.command_id == command_id:
             return StoredEntry(sequence, event, stamped_at)
     raise KnowledgeError(
-        f"{where}: was changed after it was written (checksum); keep the file, and go on with a backup copy"
+        "was changed after it was written (checksum)", where=where, do="keep the file, and go on with a backup copy"
     )

@@ -73,7 +73,7 @@ def encode_event(event: TeachingEvent) -> str:
         return json.dumps(content, allow_nan=False, separators=(",", ":"))
     except (TypeError, ValueError, OverflowError) as error:
         name = event.origin.command_id
-        raise KnowledgeError(f"command {name!r}: cannot be written: {error}; teach it again") from error
+        raise KnowledgeError(f"command {name!r}: cannot be written: {error}", do="teach it again") from error
 
 
 def decode_event(text: str, where: str) -> TeachingEvent:
@@ -82,7 +82,7 @@ def decode_event(text: str, where: str) -> TeachingEvent:
         return _event(json.loads(text))
     except (ValueError, OverflowError, RecursionError) as error:
         problem = f"{where}: not a teaching event: {error}"
-        raise KnowledgeError(f"{problem}; keep the file, and go on with a backup copy") from error
+        raise KnowledgeError(str(problem), do="keep the file, and go on with a backup copy") from error
 
 
 def _content(event: TeachingEvent) -> dict[str, Any]:

@@ -29,8 +29,9 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
             system.apply(entry.event)
         except InvalidEventError as error:
             raise KnowledgeError(
-                f"{journal.path}: row {entry.sequence}: does not fit the lessons before it: {error}; "
-                "keep the file, and go on with a backup copy"
+                f"row {entry.sequence}: does not fit the lessons before it: {error}",
+                where=journal.path,
+                do="keep the file, and go on with a backup copy",
             ) from error
     return system
 

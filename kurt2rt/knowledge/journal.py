@@ -112,7 +112,7 @@ class Journal:
             (command_id, entry.stamped_at, text, checksum(command_id, entry.stamped_at, text)),
         )
         if cursor.lastrowid is None:
-            raise KnowledgeError(f"{self.path}: SQLite gave no row for command {command_id!r}; teach it again")
+            raise KnowledgeError(f"SQLite gave no row for command {command_id!r}", where=self.path, do="teach it again")
         return Receipt(command_id, cursor.lastrowid, entry.stamped_at, new=True, agrees=True)
 
     def _differences(self, statistics: Statistics) -> list[Change]:
@@ -238,7 +238,7 @@ class Journal:
                     self._lock.close()
                 except OSError as error:
                     raise KnowledgeError(
-                        f"{self.path}: its lock cannot be given back ({error}); it ends with this program"
+                        f"its lock cannot be given back ({error})", where=self.path, do="it ends with this program"
                     ) from error
 
     def __enter__(self) -> Self:
@@ -271,8 +271,9 @@ class Journal:
         # SQLite goes on writing into a file that was deleted under it, and all would be gone at the end.
         if journal_file.identities(self.path) != self._files:
             raise KnowledgeError(
-                f"{self.path}: it or its log was moved, deleted or replaced while in use; "
-                "put the same files back, or stop the robot and give a knowledge file"
+                "it or its log was moved, deleted or replaced while in use",
+                where=self.path,
+                do="put the same files back, or stop the robot and give a knowledge file",
             )
 
     @contextmanager

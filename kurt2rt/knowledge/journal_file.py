@@ -47,18 +47,18 @@ def lock_for_writing(path: Path) -> BinaryIO:
         lock = _lock_of(path).open("ab")
     except OSError as error:
         raise KnowledgeError(
-            f"{path}: cannot be locked ({error}); give a path in a folder that exists and may be written"
+            f"cannot be locked ({error})", where=path, do="give a path in a folder that exists and may be written"
         ) from error
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         lock.close()
         raise KnowledgeError(
-            f"{path}: another kurt2rt is writing it ({error}); stop that one, or give another knowledge file"
+            f"another kurt2rt is writing it ({error})", where=path, do="stop that one, or give another knowledge file"
         ) from error
     except OSError as error:
         lock.close()
-        raise KnowledgeError(f"{path}: cannot be locked ({error}); give a path on a local disk") from error
+        raise KnowledgeError(f"cannot be locked ({error})", where=path, do="give a path on a local disk") from error
     return lock
 
 
@@ -67,7 +67,9 @@ def require_no_writer(path: Path) -> None:
     if is_there(_lock_of(path)):
         lock_for_writing(path).close()
     elif not os.access(path.parent, os.W_OK):
-        raise KnowledgeError(f"{path}: cannot be locked; give a path in a folder that exists and may be written")
+        raise KnowledgeError(
+            "cannot be locked", where=path, do="give a path in a folder that exists and may be written"
+        )
 
 
 def create(path: Path, binding: KnowledgeBinding) -> None:
@@ -81,11 +83,12 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
     except FileNotFoundError:
         size = 0
     except OSError as error:
-        raise KnowledgeError(f"{orphan}: cannot be looked at ({error}); look at the disk's health") from error
+        raise KnowledgeError(f"cannot be looked at ({error})", where=orphan, do="look at the disk's health") from error
     if size > 0:  # SQLite would mix its lessons into the new file
         raise KnowledgeError(
-            f"{path}: is gone, but its log {orphan.name} is still there and may hold lessons; "
-            "put the file back beside it, or move the log away"
+            f"is gone, but its log {orphan.name} is still there and may hold lessons",
+            where=path,
+            do="put the file back beside it, or move the log away",
         )
     with closing(new_database()) as connection:
         meaning = {
@@ -107,7 +110,7 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
         sync_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(
-            f"{path}: cannot be created ({error}); give a path in a folder that may be written and has room"
+            f"cannot be created ({error})", where=path, do="give a path in a folder that may be written and has room"
         ) from error
 
 
@@ -128,22 +131,24 @@ def require_ours(path: Path) -> None:
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
-            raise KnowledgeError(f"{path}: is a folder or device, not a file; {what_to_do}")
+            raise KnowledgeError("is a folder or device, not a file", where=path, do=what_to_do)
         # SQLite's log lies next to one name. A writer under another name does not see the lessons in it, and both
         # writers overwrite each other's pages.
         if status.st_nlink > 1:
             raise KnowledgeError(
-                f"{path}: has {status.st_nlink} names (hard links), allowed is 1: lessons that a robot writes under "
-                "one name are lost under the other; make a copy (cp), then remove the other names"
+                f"has {status.st_nlink} names (hard links), allowed is 1: lessons that a robot writes under "
+                "one name are lost under the other",
+                where=path,
+                do="make a copy (cp), then remove the other names",
             )
         with path.open("rb") as file:
             header = file.read(_HEADER_BYTES)
     except OSError as error:
-        raise KnowledgeError(f"{path}: cannot be read ({error}); {what_to_do}") from error
+        raise KnowledgeError(f"cannot be read ({error})", where=path, do=what_to_do) from error
     if not header.startswith(_MAGIC):
-        raise KnowledgeError(f"{path}: is not a knowledge file (no SQLite file); {what_to_do}")
+        raise KnowledgeError("is not a knowledge file (no SQLite file)", where=path, do=what_to_do)
     if int.from_bytes(header[_APPLICATION_ID_AT : _APPLICATION_ID_AT + 4], "big") != APPLICATION_ID:
-        raise KnowledgeError(f"{path}: is an SQLite file of another program; {what_to_do}")
+        raise KnowledgeError("is an SQLite file of another program", where=path, do=what_to_do)
 
 
 def without_log(image: bytes) -> bytes:
@@ -223,7 +228,9 @@ def identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
         except FileNotFoundError:
             found.append(None)
         except OSError as error:  # not knowing is not the same as knowing that it is gone
-            raise KnowledgeError(f"{each}: cannot be looked at ({error}); look at the disk's health") from error
+            raise KnowledgeError(
+                f"cannot be looked at ({error})", where=each, do="look at the disk's health"
+            ) from error
         else:
             found.append((status.st_dev, status.st_ino))
     return tuple(found)
@@ -248,9 +255,13 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
     except sqlite3.Error as error:
         raise explained(error, path) from error
     except OSError as error:
-        raise KnowledgeError(f"{path}: its log cannot be synced ({error}); look at the disk's health") from error
+        raise KnowledgeError(
+            f"its log cannot be synced ({error})", where=path, do="look at the disk's health"
+        ) from error
     if mode != "wal":
-        raise KnowledgeError(f"{path}: its disk cannot hold an SQLite log (mode {mode}); give a path on a local disk")
+        raise KnowledgeError(
+            f"its disk cannot hold an SQLite log (mode {mode})", where=path, do="give a path on a local disk"
+        )
 
 
 def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, LevelFeatures]) -> None:
@@ -300,7 +311,7 @@ def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding
         raise explained(error, path) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise KnowledgeError(
-            f"{path}: table binding is damaged ({error!r}); keep the file, and go on with a backup copy"
+            f"table binding is damaged ({error!r})", where=path, do="keep the file, and go on with a backup copy"
         ) from error
 
 

@@ -41,14 +41,18 @@ def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
     except sqlite3.Error as error:
         raise explained(error, path) from error
     if application_id != APPLICATION_ID:
-        raise KnowledgeError(f"{path}: is an SQLite file of another program; give the path of a kurt2rt knowledge file")
+        raise KnowledgeError(
+            "is an SQLite file of another program", where=path, do="give the path of a kurt2rt knowledge file"
+        )
 
 
 def require_known_version(version: int, path: Path) -> None:
     """Raise KnowledgeError for a format that only a newer kurt2rt reads."""
     if version > FORMAT_VERSION:
         raise KnowledgeError(
-            f"{path}: has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}; update kurt2rt"
+            f"has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}",
+            where=path,
+            do="update kurt2rt",
         )
 
 
@@ -73,8 +77,9 @@ def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
             foreign = kind != "table" or not text.upper().startswith("CREATE TABLE ")
         if foreign:
             raise KnowledgeError(
-                f"{path}: holds a {kind} {name!r} that kurt2rt did not make; "
-                "it may be damaged or meant to harm: go on with a backup copy"
+                f"holds a {kind} {name!r} that kurt2rt did not make",
+                where=path,
+                do="it may be damaged or meant to harm: go on with a backup copy",
             )
 
 

@@ -282,7 +282,7 @@ def merge(
     both = replace(binding, levels={**theirs.journal.binding.levels, **binding.levels})
     with Journal.open(path, both) as journal:
         if tuple(journal.entries()) != mine.entries or journal.statistics() != saved:
-            raise KnowledgeError(f"{path}: was taught in while it was looked at; merge again")
+            raise KnowledgeError("was taught in while it was looked at", where=path, do="merge again")
         write(journal, planned.entries, planned.statistics)
     return planned
 

@@ -32,12 +32,14 @@ def bear(
     """
     log = journal_file.log_of(path)
     if log.exists() and log.stat().st_size > 0:  # SQLite would mix its lessons into the new file
-        raise KnowledgeError(f"{path}: a log {log.name} of another file is beside it; give another path")
+        raise KnowledgeError(f"a log {log.name} of another file is beside it", where=path, do="give another path")
     image = _image_of(source, binding, tuple(entries), statistics, notes)
     try:
         make_private_folder(path.parent)
     except OSError as error:
-        raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
+        raise KnowledgeError(
+            f"cannot be made ({error})", where=path.parent, do="give a file in another folder"
+        ) from error
     with journal_file.lock_for_writing(path):  # a robot may begin a file there at this very moment
         save_new(image, path)
 
@@ -60,9 +62,11 @@ def _image_of(
                     return journal.image()
             except KnowledgeError as error:
                 problem = str(error).removeprefix(f"{cradle}: ")
-                raise KnowledgeError(f"{source}: no knowledge file can be made of it: {problem}") from error
+                raise KnowledgeError(f"no knowledge file can be made of it: {problem}", where=source) from error
     except OSError as error:
-        raise KnowledgeError(f"{source}: cannot be unpacked ({error}); make room where temporary files go") from error
+        raise KnowledgeError(
+            f"cannot be unpacked ({error})", where=source, do="make room where temporary files go"
+        ) from error
 
 
 def _fill(
@@ -77,8 +81,9 @@ def _fill(
         for number, receipt in enumerate(receipts, start=1):
             if not receipt.new:
                 raise KnowledgeError(
-                    f"{cradle}: row {number}: has the command id {receipt.command_id!r} of row {receipt.sequence}; "
-                    "keep the file, and get another copy"
+                    f"row {number}: has the command id {receipt.command_id!r} of row {receipt.sequence}",
+                    where=cradle,
+                    do="keep the file, and get another copy",
                 )
         for name, text in notes.items():
             journal.note(name, text)

@@ -52,7 +52,9 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
     try:
         make_folder(path.parent)
     except OSError as error:
-        raise KnowledgeError(f"{path.parent}: cannot be made ({error}); give a file in another folder") from error
+        raise KnowledgeError(
+            f"cannot be made ({error})", where=path.parent, do="give a file in another folder"
+        ) from error
     return Journal.open(path, binding)
 
 
@@ -74,7 +76,9 @@ def _require_sound(journal: Journal) -> None:
     damage = journal.damage()
     if damage:  # a page that stands in another's place hides lessons, and nothing else would tell
         first = damage[0].removeprefix(f"{journal.path}: ")
-        raise KnowledgeError(f"{journal.path}: the file is damaged ({first}); keep it, and go on with a backup copy")
+        raise KnowledgeError(
+            f"the file is damaged ({first})", where=journal.path, do="keep it, and go on with a backup copy"
+        )
 
 
 def read_lessons(

@@ -56,7 +56,7 @@ class Safe:
         """Begin an exam of a copy of the knowledge file. Raises KnowledgeError."""
         examine = self._examine
         if examine is None:
-            raise KnowledgeError("this robot is not simulated here; examine its knowledge with kurt2rt exam")
+            raise KnowledgeError("this robot is not simulated here", do="examine its knowledge with kurt2rt exam")
         examined = await self._copied("exams", lambda folder: save_copy(self._knowledge, folder, "", utc_now()))
         copy = self._made.pop(examined.name)
         picture = copy.with_suffix(".png")
@@ -76,7 +76,7 @@ class Safe:
         """
         path = self._made.get(name)
         if path is None:
-            raise KnowledgeError(f"{name}: is no copy of this run of the program; save or export again")
+            raise KnowledgeError("is no copy of this run of the program", where=name, do="save or export again")
         return await anyio.to_thread.run_sync(_read, path, offset, most_bytes)
 
     async def _copied(self, folder_name: str, copy: Callable[[Path], SavedCopy]) -> SavedCopy:
@@ -92,11 +92,11 @@ class Safe:
 
     def _flush(self) -> None:
         if not self._writer.flush(_FLUSH_S):
-            raise KnowledgeError(f"{self._knowledge}: the newest lessons are not saved yet; try again later")
+            raise KnowledgeError("the newest lessons are not saved yet", where=self._knowledge, do="try again later")
 
 
 def _read(path: Path, offset: int, most_bytes: int) -> FilePart:
     try:
         return read_part(path, offset, most_bytes)
     except OSError as error:
-        raise KnowledgeError(f"{path}: cannot be read ({error.strerror}); save or export again") from error
+        raise KnowledgeError(f"cannot be read ({error.strerror})", where=path, do="save or export again") from error

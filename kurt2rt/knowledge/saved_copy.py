@@ -41,7 +41,7 @@ def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str
         sync_folder(folder)
     except OSError as error:
         raise KnowledgeError(
-            f"{folder}: nothing can be saved there ({error}); give a folder that may be written and has room"
+            f"nothing can be saved there ({error})", where=folder, do="give a folder that may be written and has room"
         ) from error
     return SavedCopy(name, hashlib.sha256(content).hexdigest(), len(content))
 
@@ -59,10 +59,10 @@ def save_new(content: bytes, path: Path) -> None:
         sync_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(
-            f"{path}: cannot be saved ({error}); give a path in a folder that may be written and has room"
+            f"cannot be saved ({error})", where=path, do="give a path in a folder that may be written and has room"
         ) from error
     if not born:
-        raise KnowledgeError(f"{path}: is there already; give the path of a new file")
+        raise KnowledgeError("is there already", where=path, do="give the path of a new file")
 
 
 def plain_part(text: str) -> str:

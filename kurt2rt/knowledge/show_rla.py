@@ -28,7 +28,7 @@ def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> Rende
     system = fold_entries(journal, journal.entries(), radius=math.inf)
     rla = system.get(rla_id)
     if rla is None:
-        raise KnowledgeError(f"{journal.path}: holds no RLA {rla_id}; kurt2rt knowledge show lists them")
+        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
     statistics = journal.statistics()
     binding = journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
@@ -59,7 +59,7 @@ def expectation_as_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
     system = fold_entries(journal, journal.entries(), radius=math.inf)
     rla = system.get(rla_id)
     if rla is None:
-        raise KnowledgeError(f"{journal.path}: holds no RLA {rla_id}; kurt2rt knowledge show lists them")
+        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
     binding = journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
     known = journal.statistics().expectations.get(rla_id)

@@ -25,15 +25,17 @@ def task_of_file(path: Path, given: str | None = None) -> str:
         asked = load_task(given).system_name
         if asked != taught:
             raise KnowledgeError(
-                f"{path}: was taught for the task {taught!r}, not for {asked!r}; leave out --task, or give another "
-                "knowledge file"
+                f"was taught for the task {taught!r}, not for {asked!r}",
+                where=path,
+                do="leave out --task, or give another knowledge file",
             )
         return given
     try:
         load_task(taught)
     except SettingsError as error:
         raise KnowledgeError(
-            f"{path}: was taught for the task {taught!r}, whose settings are not found ({error}); give them: "
-            "--task PATH.yaml"
+            f"was taught for the task {taught!r}, whose settings are not found ({error})",
+            where=path,
+            do="give them: --task PATH.yaml",
         ) from error
     return taught

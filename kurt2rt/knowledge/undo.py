@@ -75,7 +75,7 @@ def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, t
         system.apply(changes[-1])
     if not changes:
         why = f": {reasons[0]}" if reasons else ""
-        raise KnowledgeError(f"{path}: holds no undone lesson by {of} that can stand again{why}")
+        raise KnowledgeError(f"holds no undone lesson by {of} that can stand again{why}", where=path)
     return reading.planned(changes, reasons)
 
 
@@ -121,10 +121,10 @@ def _lesson_meant(
     """The command id that was given, else the `last` one. Raises KnowledgeError where it cannot be done with that."""
     command_id = lesson if lesson is not None else last
     if command_id is None:
-        raise KnowledgeError(f"{path}: holds no lesson that {nothing}")
+        raise KnowledgeError(f"holds no lesson that {nothing}", where=path)
     problem = why_not(command_id)
     if problem is not None:
-        raise KnowledgeError(f"{path}: {problem}; kurt2rt knowledge lessons shows their ids")
+        raise KnowledgeError(str(problem), where=path, do="kurt2rt knowledge lessons shows their ids")
     return command_id
 
 
@@ -135,7 +135,7 @@ def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]
     if not own:
         teachers = ", ".join(sorted({record.event.origin.teacher for record in standing}))
         others = f"those that stand are by {teachers}" if teachers else "there is nothing to undo"
-        raise KnowledgeError(f"{path}: holds no lesson by {taught_by} that stands; {others}")
+        raise KnowledgeError(f"holds no lesson by {taught_by} that stands", where=path, do=others)
     return own[::-1]
 
 
@@ -160,7 +160,7 @@ def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], re
         undoes = isinstance(change, LessonUndone)
         problem = system.why_not_undo(change.lesson) if undoes else system.why_not_redo(change.lesson)
         if problem is not None:
-            raise KnowledgeError(f"{refusal}: {problem}")
+            raise KnowledgeError(f"{problem}", where=refusal)
         system.apply(change)
 
 

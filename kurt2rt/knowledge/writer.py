@@ -157,7 +157,7 @@ class JournalWriter:
         self._thread.join(max(0.0, until_s - time.monotonic()))
         if self.trouble is not None or self._thread.is_alive():
             why = self.trouble or f"{self._journal.path}: the disk does not answer; look at its health"
-            raise KnowledgeError(f"{why}; closed with {self.unwritten} lessons not written")
+            raise KnowledgeError(why, do=f"closed with {self.unwritten} lessons not written")
 
     def __enter__(self) -> Self:
         return self
@@ -169,7 +169,7 @@ class JournalWriter:
 
     def _require_open(self) -> None:
         if not self._accepting:
-            raise KnowledgeError(f"{self._journal.path}: its writer is closed; open the journal again to teach")
+            raise KnowledgeError("its writer is closed", where=self._journal.path, do="open the journal again to teach")
 
     def _run(self) -> None:
         try:

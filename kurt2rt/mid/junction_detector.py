@@ -58,7 +58,7 @@ class JunctionDetector:
         missing = sorted({*settings.left, *settings.right} - set(infrared.names))
         if missing:
             raise SettingsError(
-                f"junctions: the robot has no sensor {', '.join(missing)}; allowed: {', '.join(infrared.names)}"
+                f"junctions: the robot has no sensor {', '.join(missing)}", do=f"allowed: {', '.join(infrared.names)}"
             )
         self._settings = settings
         # Looked up by counts: this runs in every tick.
@@ -185,6 +185,6 @@ def _side(infrared: InfraredSettings, names: tuple[str, ...]) -> tuple[tuple[int
     baseline_m = x_m[names[0]] - x_m[names[-1]]
     if baseline_m <= 0:
         raise SettingsError(
-            f"junctions: {names[0]} does not sit ahead of {names[-1]}; give a side's sensors from front to back"
+            f"junctions: {names[0]} does not sit ahead of {names[-1]}", do="give a side's sensors from front to back"
         )
     return tuple(infrared.names.index(name) for name in names), baseline_m

@@ -102,7 +102,11 @@ def _refuse(journal: Journal, system: RlaSystem, level: str, behaviour: str | No
     levels = [each for each in (BASIC, *journal.binding.levels) if system.rlas_at(each)]
     if level not in levels:
         raise KnowledgeError(
-            f"{journal.path}: holds no RLA of the level {level!r}; it has RLAs of: {', '.join(levels) or 'none'}"
+            f"holds no RLA of the level {level!r}",
+            where=journal.path,
+            do=f"it has RLAs of: {', '.join(levels) or 'none'}",
         )
     taught = sorted({rla.behaviour or "one without a name" for rla in system.rlas_at(level)})
-    raise KnowledgeError(f"{journal.path}: holds no RLA of the behaviour {behaviour!r}; it has: {', '.join(taught)}")
+    raise KnowledgeError(
+        f"holds no RLA of the behaviour {behaviour!r}", where=journal.path, do=f"it has: {', '.join(taught)}"
+    )

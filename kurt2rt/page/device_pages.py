@@ -54,7 +54,7 @@ class _DevicePage:
                 if self._closed is not None:
                     await self._closed.wait()  # one program, and one link in it, can use a pairing
                 if self._ended.is_set():
-                    raise CredentialsError(f"{self.device.name}: is paired no longer; pair it again")
+                    raise CredentialsError("is paired no longer", where=self.device.name, do="pair it again")
                 self._app = await tasks.start(self._run)
             return self._app
 

@@ -40,7 +40,7 @@ def listen(port: int, *, everywhere: bool, further: int = 0) -> socket.socket:
             why = os.strerror(error.errno or 0)  # without what create_server adds to it
             if error.errno != errno.EADDRINUSE:
                 break
-    raise PageError(f"port {port}: cannot listen ({why}); give another one with --page-port")
+    raise PageError(f"port {port}: cannot listen ({why})", do="give another one with --page-port")
 
 
 async def run_page(

@@ -23,8 +23,8 @@ class CircumstancesPerception:
         missing = sorted(sensors.used - set(infrared.names))
         if missing:
             raise SettingsError(
-                f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}; "
-                f"allowed: {', '.join(infrared.names)}"
+                f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}",
+                do=f"allowed: {', '.join(infrared.names)}",
             )
         # Looked up by the highest count of a side, for a nearer thing never has a lower one: this runs in every tick.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
@@ -140,7 +140,7 @@ def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) 
     baseline_m = x_m[side[0]] - x_m[side[-1]]
     if baseline_m <= 0:
         raise SettingsError(
-            f"critic {critic}: perception.sensors: {side[0]} does not sit ahead of {side[-1]}; "
-            "give the sensors of a side from front to back"
+            f"critic {critic}: perception.sensors: {side[0]} does not sit ahead of {side[-1]}",
+            do="give the sensors of a side from front to back",
         )
     return baseline_m

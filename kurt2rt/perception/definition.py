@@ -117,6 +117,6 @@ def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefi
     missing = sorted(definition.sensors_used - set(sensors))
     if missing:
         raise SettingsError(
-            f"{path}: features: the robot has no sensor {', '.join(missing)}; allowed: {', '.join(sensors)}"
+            f"features: the robot has no sensor {', '.join(missing)}", where=path, do=f"allowed: {', '.join(sensors)}"
         )
     return definition

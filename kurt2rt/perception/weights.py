@@ -25,13 +25,13 @@ def weights_of(
         for name in features:
             if name not in recent:
                 raise SettingsError(
-                    f"{key}: situation {definition.name} has no feature {name!r}; it has: {', '.join(names)}"
+                    f"situation {definition.name} has no feature {name!r}", where=key, do=f"it has: {', '.join(names)}"
                 )
             if name in seen:
-                raise SettingsError(f"{key}: {name!r} is given two weights; leave one out")
+                raise SettingsError(f"{name!r} is given two weights", where=key, do="leave one out")
             seen.add(name)
             recent[name] = weight
     if not any(recent.values()):
-        raise SettingsError(f"task {task}: learning.weights: every feature weighs 0; leave one with more")
+        raise SettingsError("learning.weights: every feature weighs 0", where=f"task {task}", do="leave one with more")
     values = np.array([recent[name] for name in names])
     return np.concatenate((values, past_weight * values))

@@ -29,13 +29,13 @@ def decode_command(content: object) -> Input:
     name = fields.pop("is", None)
     adapter = _ADAPTERS.get(name) if isinstance(name, str) else None
     if adapter is None:
-        raise RecordingError(f"there is no command {name!r}; a newer kurt2rt may know it")
+        raise RecordingError(f"there is no command {name!r}", do="a newer kurt2rt may know it")
     try:
         command: Input = adapter.validate_python(fields, strict=False)
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
         place = ".".join(map(str, problem["loc"]))
-        raise RecordingError(f"{name}: {place}: {problem['msg']}") from error
+        raise RecordingError(f"{place}: {problem['msg']}", where=name) from error
     return command
 
 

@@ -36,14 +36,18 @@ class LogFile:
     def __init__(self, path: Path) -> None:
         """Make the file; one that exists is kept, and the new one numbered. Raises RecordingError, OSError."""
         if path.suffix not in ENDINGS:
-            raise RecordingError(f"{path}: no known kind of CAN log; give a name that ends in {', '.join(ENDINGS)}")
+            raise RecordingError(
+                "no known kind of CAN log", where=path, do=f"give a name that ends in {', '.join(ENDINGS)}"
+            )
         self.path = _made_anew(path)
         """The file that is written."""
         try:
             self._writer = can.Logger(self.path)
         except NotImplementedError as error:
             self.path.unlink()
-            raise RecordingError(f"{path}: needs the package asammdf; install it, or give a name in .blf") from error
+            raise RecordingError(
+                "needs the package asammdf", where=path, do="install it, or give a name in .blf"
+            ) from error
         self._is_candump = path.suffix == ".log"
 
     def write(self, frames: Sequence[can.Message]) -> None:
@@ -68,7 +72,7 @@ def _made_anew(path: Path) -> Path:
         except FileExistsError:
             continue
         return numbered
-    raise RecordingError(f"{path}: so many logs of this name are there already; move them away")
+    raise RecordingError("so many logs of this name are there already", where=path, do="move them away")
 
 
 def _as_candump_says_it(frame: can.Message) -> can.Message:

@@ -67,12 +67,16 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     if given is None:
         newest = next((each for each in reversed(runs_in(recordings)) if _holds_ticks(each)), None)
         if newest is None:
-            raise RecordingError(f"{recordings}: no recorded run is there; kurt2rt run makes one, or give its folder")
+            raise RecordingError(
+                "no recorded run is there", where=recordings, do="kurt2rt run makes one, or give its folder"
+            )
         return newest
     for path in (given, recordings / given):
         if path.is_file() or (path.is_dir() and segments_in(path)):
             return path
-    raise RecordingError(f"{given}: no recorded run; give a folder of {recordings}, or a file {segment_name(1)} in one")
+    raise RecordingError(
+        "no recorded run", where=given, do=f"give a folder of {recordings}, or a file {segment_name(1)} in one"
+    )
 
 
 def _holds_ticks(run: Path) -> bool:

@@ -66,7 +66,7 @@ def decode_head(metadata: dict[str, str]) -> RunHead:
         version = json.loads(metadata["version"])
         if version > RUN_VERSION:
             raise RecordingError(
-                f"the run was recorded by a newer kurt2rt ({metadata.get('kurt2rt')}); replay it with that one"
+                f"the run was recorded by a newer kurt2rt ({metadata.get('kurt2rt')})", do="replay it with that one"
             )
         content: dict[str, Any] = {}
         for each in fields(RunHead):

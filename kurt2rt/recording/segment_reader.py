@@ -92,7 +92,7 @@ class SegmentReader:
             size = self.path.stat().st_size
             file = self.path.open("rb")
         except OSError as error:
-            raise RecordingError(f"{self.path}: cannot be read ({error}); give a recorded run") from error
+            raise RecordingError(f"cannot be read ({error})", where=self.path, do="give a recorded run") from error
         with file:
             records = _whole_records(StreamReader(file, emit_chunks=True, record_size_limit=size), self.path)
             whole_until = 0
@@ -127,7 +127,7 @@ def _whole_records(reader: StreamReader, path: Path) -> Iterator[list[McapRecord
 def _require_small(chunk: Chunk, path: Path) -> None:
     if chunk.compression not in _COMPRESSIONS:
         raise RecordingError(
-            f"{path}: a chunk is packed with {chunk.compression[:20]!r}, allowed is zstd; record it again"
+            f"a chunk is packed with {chunk.compression[:20]!r}, allowed is zstd", where=path, do="record it again"
         )
     size = chunk.uncompressed_size
     if chunk.compression:  # zstd takes as much memory as its own header says, whatever the chunk's header says
@@ -136,6 +136,7 @@ def _require_small(chunk: Chunk, path: Path) -> None:
     allowed = max(_ALWAYS_UNPACKED_BYTES, min(LARGEST_CHUNK_BYTES, _MOST_TIMES * len(chunk.data)))
     if size > allowed:
         raise RecordingError(
-            f"{path}: a chunk of {len(chunk.data)} bytes unpacks to {size}, allowed are {allowed}; "
-            "nothing of it was read: get the recording again, from a source that you trust"
+            f"a chunk of {len(chunk.data)} bytes unpacks to {size}, allowed are {allowed}",
+            where=path,
+            do="nothing of it was read: get the recording again, from a source that you trust",
         )

@@ -27,7 +27,7 @@ def copy_whole(source: Path, target: Path) -> str:
     try:
         file = target.open("xb")
     except FileExistsError as error:
-        raise RecordingError(f"{target}: is there already; give another folder") from error
+        raise RecordingError("is there already", where=target, do="give another folder") from error
     try:
         with file:
             _copy(reader, file)
@@ -62,7 +62,7 @@ def _copy(reader: SegmentReader, file: BinaryIO) -> None:
             case Metadata():
                 writer.add_metadata(record.name, record.metadata)
     if not started:
-        raise NothingWholeError(f"{reader.path}: is no file of a run, or nothing of it was written")
+        raise NothingWholeError("is no file of a run, or nothing of it was written", where=reader.path)
     if reader.torn:
         writer.add_metadata(TORN_METADATA, {"why": reader.torn})
     writer.finish()  # type: ignore[no-untyped-call]

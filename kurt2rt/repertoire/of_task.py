@@ -37,7 +37,9 @@ class _Building:
         here = repertoire.resolve()
         if here in self._inside:
             way = " -> ".join(path.name for path in (*self._inside, here))
-            raise SettingsError(f"a repertoire cannot be a part of itself: {way}; give that task another repertoire")
+            raise SettingsError(
+                f"a repertoire cannot be a part of itself: {way}", do="give that task another repertoire"
+            )
         task = load_task(action.task)
         wanted, mid = Wanted(task.behaviours), None
         if isinstance(action, TaughtAction):
@@ -46,13 +48,14 @@ class _Building:
             mid = load_mid(task.mid)
             if isinstance(mid.situation, PlaceSettings):
                 raise SettingsError(
-                    f"the mid level of the task {task.name} goes by places, and an action does not know at which one "
-                    "it begins; give a task whose mid level goes by a history"
+                    f"the mid level of the task {task.name} goes by places, and an action does not know at "
+                    "which one it begins",
+                    do="give a task whose mid level goes by a history",
                 )
         elif len(task.behaviours) > 1:
             raise SettingsError(
-                f"the task {task.name} has no mid level that says which of {', '.join(task.behaviours)} is wanted; "
-                "give one of them as an action of kind taught"
+                f"the task {task.name} has no mid level that says which of {', '.join(task.behaviours)} is wanted",
+                do="give one of them as an action of kind taught",
             )
         inner = _Building(self._robot, (*self._inside, here)).load(task.repertoire)
         lessons = _lessons(action, repertoire, self._robot, task)
@@ -65,7 +68,9 @@ def _lessons(
     path = find_beside(repertoire.resolve(), action.knowledge)
     if not path.exists():
         raise SettingsError(
-            f"{path}: there is no such file; teach the task {task.name} first, or give the path of what was taught"
+            "there is no such file",
+            where=path,
+            do=f"teach the task {task.name} first, or give the path of what was taught",
         )
     try:
         return read_lessons(path, robot, task, beside_its_writer=True)

@@ -24,13 +24,13 @@ def read_run(path: Path, *, in_part: bool = False) -> Run:
     try:
         segments = segments_in(path) if path.is_dir() else _beside(path)
     except OSError as error:
-        raise RecordingError(f"{path}: cannot be read ({error}); give the folder of a recorded run") from error
+        raise RecordingError(f"cannot be read ({error})", where=path, do="give the folder of a recorded run") from error
     if not segments:
-        raise RecordingError(f"{path}: holds no recorded run; give a folder with files such as 0001.mcap")
+        raise RecordingError("holds no recorded run", where=path, do="give a folder with files such as 0001.mcap")
     files = _Files([SegmentReader(each) for each in segments])
     head = files.head(in_part=in_part)
     if RUN_METADATA not in head.metadata:
-        raise RecordingError(f"{segments[0]}: says of no run of kurt2rt, or is torn at its very beginning")
+        raise RecordingError("says of no run of kurt2rt, or is torn at its very beginning", where=segments[0])
     return Run(
         str(path),
         decode_head(head.metadata[RUN_METADATA]),
@@ -72,7 +72,9 @@ class _Files:
                     if "acknowledged" in content and "stamped_at" in content:
                         yield str(content["acknowledged"]), str(content["stamped_at"])
                 except (ValueError, TypeError, RecursionError) as error:
-                    raise RecordingError(f"{reader.path}: not a lesson of a run: {error}; get it again") from error
+                    raise RecordingError(
+                        f"not a lesson of a run: {error}", where=reader.path, do="get it again"
+                    ) from error
 
     def ends_s(self) -> float:
         """Time of the last tick that can be read; 0 where there is none."""

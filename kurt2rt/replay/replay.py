@@ -75,9 +75,9 @@ class Replay:
                     asks_when_held=head.asks_when_held,
                 )
         except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
-            raise RecordingError(f"{run.name}: cannot be replayed by this kurt2rt: {error}") from error
+            raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
         except ValueError as error:
-            raise RecordingError(f"{run.name}: cannot be replayed: {error}") from error
+            raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
         stop = stop_of_text(head.stopped)
         if stop is not None:
             runtime.school.stop(stop)
@@ -104,4 +104,6 @@ def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
 
 def no_tick(run: Run) -> RecordingError:
     """What there is to say of a run without ticks, once they were looked for."""
-    return RecordingError(f"{run.name}: holds no tick; {run.trouble or 'the program ended before the first one'}")
+    return RecordingError(
+        "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
+    )

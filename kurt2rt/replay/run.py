@@ -145,7 +145,9 @@ class Run:
                 stack.enter_context(laid_out(kept))
             except OSError as error:
                 raise RecordingError(
-                    f"{self.name}: its settings cannot be laid out ({error}); make room where temporary files go"
+                    f"its settings cannot be laid out ({error})",
+                    where=self.name,
+                    do="make room where temporary files go",
                 ) from error
             yield
 
@@ -157,9 +159,11 @@ class Run:
             return
         minutes = (first.number - 1) * self.robot.can.cycle_s / 60
         raise RecordingError(
-            f"{self.name}: is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make "
-            "room for later ones, and with them what was known at the start, so it can neither be replayed nor one of "
-            "its decisions be explained. kurt2rt why without --at tells what is there; raise recordings_mb for the next"
+            f"is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make room "
+            "for later ones, and with them what was known at the start, so it can neither be replayed nor "
+            "one of its decisions be explained. kurt2rt why without --at tells what is there",
+            where=self.name,
+            do="raise recordings_mb for the next",
         )
 
     def entries(self) -> Iterator[TickEntry]:
@@ -209,26 +213,32 @@ class Run:
             self.require_beginning()
         trouble = trouble_of({name: len(data) for name, data in self._attachments.items()})
         if trouble:
-            raise RecordingError(f"{self.name}: {trouble}; give a run as kurt2rt run recorded it")
+            raise RecordingError(trouble, where=self.name, do="give a run as kurt2rt run recorded it")
         found = fingerprints_of(self._attachments)
         for name, fingerprint in self.head.fingerprints.items():
             if name in found and found[name] != fingerprint:
-                raise RecordingError(f"{self.name}: {name} is damaged; give another copy of the run")
+                raise RecordingError(f"{name} is damaged", where=self.name, do="give another copy of the run")
         try:
             _ = self.robot, self.task
         except ValidationError as error:
             problem = error.errors(include_url=False)[0]
             raise RecordingError(
-                f"{self.name}: was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
-                f"({'.'.join(map(str, problem['loc']))}: {problem['msg']}); replay it with that one"
+                f"was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
+                f"({'.'.join(map(str, problem['loc']))}: {problem['msg']})",
+                where=self.name,
+                do="replay it with that one",
             ) from error
 
     def _require(self, *names: str) -> None:
         missing = [name for name in names if name not in self._attachments]
         if missing:
             raise RecordingError(
-                f"{self.name}: {', '.join(missing)} is missing, with which the run began; its first segment may have "
-                "gone to make room for later ones: give a whole run, or raise recordings_mb for the next"
+                f"{', '.join(missing)} is missing, with which the run began",
+                where=self.name,
+                do=(
+                    "its first segment may have gone to make room for later ones: give a whole run, or "
+                    "raise recordings_mb for the next"
+                ),
             )
 
 

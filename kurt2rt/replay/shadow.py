@@ -77,7 +77,7 @@ class Shadow:
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
             self._worths.recall(tuple(events), statistics)
         except (SettingsError, InvalidEventError) as error:
-            raise RecordingError(f"{run.name}: this knowledge cannot decide there: {error}") from error
+            raise RecordingError(f"this knowledge cannot decide there: {error}", where=run.name) from error
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> Answer:
         """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""

@@ -43,7 +43,7 @@ def examine(unit: Unit) -> Examined:
     """Have the unit looked at; nothing is installed or started. Raises UnitError where the tool is missing."""
     tool = shutil.which(TOOL)
     if tool is None:
-        raise UnitError(f"{TOOL} is not on this machine; on Debian: apt-get install systemd")
+        raise UnitError(f"{TOOL} is not on this machine", do="on Debian: apt-get install systemd")
     with tempfile.TemporaryDirectory(prefix="kurt2rt-unit-") as folder:
         path = Path(folder) / f"{unit.name}.service"
         path.write_text(unit.service, encoding="utf-8")
@@ -52,7 +52,9 @@ def examine(unit: Unit) -> Examined:
     complaints = tuple(line for line in verified.stderr.splitlines() if path.name in line or verified.returncode)
     overall = _OVERALL.search(security)
     if overall is None:
-        raise UnitError(f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}; look at it yourself")
+        raise UnitError(
+            f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}", do="look at it yourself"
+        )
     found = tuple(f"{setting} {meaning} ({share})" for setting, meaning, share in _OPEN.findall(security))
     return Examined(complaints, float(overall[1]), found)
 
@@ -61,4 +63,4 @@ def _say(tool: str, *words: str) -> "subprocess.CompletedProcess[str]":
     try:
         return subprocess.run([tool, *words], capture_output=True, text=True, check=False, timeout=_LONGEST_S)
     except subprocess.TimeoutExpired as error:
-        raise UnitError(f"{TOOL} {words[0]} does not end; look at the machine's load") from error
+        raise UnitError(f"{TOOL} {words[0]} does not end", do="look at the machine's load") from error

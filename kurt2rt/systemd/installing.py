@@ -34,9 +34,9 @@ def do(command: Sequence[str]) -> None:
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except FileNotFoundError as error:
-        raise UnitError(f"{command[0]} is not on this machine; the unit needs systemd") from error
+        raise UnitError(f"{command[0]} is not on this machine", do="the unit needs systemd") from error
     if done.returncode:
-        raise UnitError(f"{' '.join(command)}: {' '.join(done.stderr.split()) or f'exit code {done.returncode}'}")
+        raise UnitError(f"{' '.join(done.stderr.split()) or f'exit code {done.returncode}'}", where=" ".join(command))
 
 
 def require_free(name: str, places: Places | None = None) -> None:
@@ -46,13 +46,13 @@ def require_free(name: str, places: Places | None = None) -> None:
     to_do = "give another --name"
     for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
         if _is_there(path) and not (path.parent in (places.units, places.users) and _is_ours(path)):
-            raise UnitError(f"{path}: is another program's; {to_do}")
+            raise UnitError("is another program's", where=path, do=to_do)
     try:
         user = pwd.getpwnam(name)
     except KeyError:
         return
     if user.pw_gecos != USER:
-        raise UnitError(f"{name}: is a user of this machine already; {to_do}")
+        raise UnitError("is a user of this machine already", where=name, do=to_do)
 
 
 def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
@@ -64,7 +64,7 @@ def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Pat
         try:
             write_durably(path, text)
         except OSError as error:
-            raise UnitError(f"{path}: cannot be written ({error}); say it with sudo") from error
+            raise UnitError(f"cannot be written ({error})", where=path, do="say it with sudo") from error
     run(("systemd-sysusers", str(files[1])))
     run(("systemctl", "daemon-reload"))
     return files
@@ -76,16 +76,16 @@ def uninstall(name: str, run: Do = do, places: Places | None = None) -> tuple[Pa
     places = places or Places()
     files = tuple(each for each in places.files(name) if _is_there(each))
     if not files:
-        raise UnitError(f"{places.files(name)[0]}: there is no such unit; kurt2rt service install makes one")
+        raise UnitError("there is no such unit", where=places.files(name)[0], do="kurt2rt service install makes one")
     for path in files:
         if not _is_ours(path):
-            raise UnitError(f"{path}: is another program's and stays; give the --name that you installed with")
+            raise UnitError("is another program's and stays", where=path, do="give the --name that you installed with")
     run(("systemctl", "disable", "--now", f"{name}.service"))
     for path in files:
         try:
             path.unlink()
         except OSError as error:
-            raise UnitError(f"{path}: cannot be removed ({error}); say it with sudo") from error
+            raise UnitError(f"cannot be removed ({error})", where=path, do="say it with sudo") from error
     run(("systemctl", "daemon-reload"))
     return files
 
@@ -98,4 +98,4 @@ def _is_ours(path: Path) -> bool:
     try:
         return not path.is_symlink() and path.read_text(encoding="utf-8", errors="replace").startswith(MARK)
     except OSError as error:
-        raise UnitError(f"{path}: cannot be read ({error}); say it with sudo") from error
+        raise UnitError(f"cannot be read ({error})", where=path, do="say it with sudo") from error

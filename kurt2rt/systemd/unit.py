@@ -60,7 +60,9 @@ def require_name(name: str) -> None:
     """Raises UnitError for what is no name of a unit and of its user."""
     if not _NAME.fullmatch(name):
         raise UnitError(
-            f"{name!r}: is no name for a unit and its user; give up to 31 of a-z, 0-9 and -, a letter first"
+            "is no name for a unit and its user",
+            where=repr(name),
+            do="give up to 31 of a-z, 0-9 and -, a letter first",
         )
 
 
@@ -75,7 +77,7 @@ def quoted(word: str) -> str:
 
 def _specifier_free(text: str) -> str:
     if not text.isprintable():
-        raise UnitError(f"{text!r}: cannot stand in a unit; give a path without control characters")
+        raise UnitError("cannot stand in a unit", where=repr(text), do="give a path without control characters")
     return text.replace("%", "%%")
 
 

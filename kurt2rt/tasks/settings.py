@@ -231,8 +231,9 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
     for key in changes or ():
         if plain and key.split(".")[0] == "learning":
             raise SettingsError(
-                f"{path}: {key} changes nothing in the plain reading of the paper; "
-                f"give {key.replace('learning', 'plain', 1)}"
+                f"{key} changes nothing in the plain reading of the paper",
+                where=path,
+                do=f"give {key.replace('learning', 'plain', 1)}",
             )
     task = load_settings(path, TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task

@@ -213,7 +213,7 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     except OSError as error:
         keys.close()
         raise ChannelError(
-            f"no UDP socket can be opened ({error.strerror}); switch on IPv6 sockets, which also carry IPv4"
+            f"no UDP socket can be opened ({error.strerror})", do="switch on IPv6 sockets, which also carry IPv4"
         ) from error
     requests = OscoreRequests(coap, keys, host, port, paired_ms)
     await requests.find_robot()
@@ -226,4 +226,4 @@ def _open_keys(folder: Path) -> tuple[OscoreContext, int]:
         return keys, (folder / SECRET).stat().st_mtime_ns // 1_000_000
     except OSError as error:
         keys.close()
-        raise CredentialsError(f"{folder / SECRET}: cannot be looked at ({error})") from error
+        raise CredentialsError(f"cannot be looked at ({error})", where=folder / SECRET) from error

@@ -308,7 +308,9 @@ class Teacher:
             await anext(self._client.states())
             return
         why = f" ({self._client.trouble})" if self._client.trouble else ""
-        raise NoAnswerError(f"{self._folder}: no robot answers for {self._connect_s:g} s{why}; start one: kurt2rt run")
+        raise NoAnswerError(
+            f"no robot answers for {self._connect_s:g} s{why}", where=self._folder, do="start one: kurt2rt run"
+        )
 
     async def _newest(self) -> State:
         state = self._client.state

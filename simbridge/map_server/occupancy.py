@@ -24,7 +24,9 @@ def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
     """
     image = source.parent / settings.image
     if image.exists() and not image.is_file():  # opening a FIFO waits until another program writes to it
-        raise SettingsError(f"{source}: image: {image} is a folder or device, not a file; give a PGM or PNG file")
+        raise SettingsError(
+            f"image: {image} is a folder or device, not a file", where=source, do="give a PGM or PNG file"
+        )
     try:
         with warnings.catch_warnings():
             # Pillow warns of images that are huge; nothing of them is read before their size is looked at.
@@ -34,16 +36,21 @@ def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
             width, height = opened.size
             if width * height > MOST_CELLS:
                 raise SettingsError(
-                    f"{source}: image: {image} has {width} x {height} cells, allowed are {MOST_CELLS} at most; "
-                    "crop it to where the robot drives"
+                    f"image: {image} has {width} x {height} cells, allowed are {MOST_CELLS} at most",
+                    where=source,
+                    do="crop it to where the robot drives",
                 )
             shade, is_opaque = _shades(opened)
     except FileNotFoundError as error:
-        raise SettingsError(f"{source}: image: there is no {image}; the path counts from the YAML file") from error
+        raise SettingsError(
+            f"image: there is no {image}", where=source, do="the path counts from the YAML file"
+        ) from error
     except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError) as error:
         if isinstance(error, SettingsError):
             raise
-        raise SettingsError(f"{source}: image: {image} cannot be read ({error}); give a PGM or PNG file") from error
+        raise SettingsError(
+            f"image: {image} cannot be read ({error})", where=source, do="give a PGM or PNG file"
+        ) from error
     occupancy = _occupancy(shade, is_opaque, settings)
     return np.asarray((occupancy >= 0) & (occupancy < _HALF_OCCUPIED))[::-1]
 

@@ -51,8 +51,9 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
             best = places.area, floor, places
     if best is None:
         raise SettingsError(
-            f"{source}: image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns; "
-            "see whether resolution, negate, the thresholds and mode are those of the image"
+            f"image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns",
+            where=source,
+            do="see whether resolution, negate, the thresholds and mode are those of the image",
         )
     return _world(source, best[1], starts_beside_walls(best[1], best[2]), _rays_for(best[1]))
 
@@ -62,13 +63,15 @@ def world_on_map(source: Path) -> WorldSettings:
     chosen = load_settings(source, MapWorldSettings)
     map_source = source.parent / chosen.map
     if not map_source.is_file():
-        raise SettingsError(f"{source}: map: there is no {map_source}; the path counts from this file")
+        raise SettingsError(f"map: there is no {map_source}", where=source, do="the path counts from this file")
     settings = load_settings(map_source, MapSettings)
     starts = [_on_grid(start.pose, settings) for start in chosen.start_poses]
     first = shapely.Point(starts[0].x_m, starts[0].y_m)
     floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
     if floor is None:
-        raise SettingsError(f"{map_source}: image: nothing on it is free; see whether negate and the thresholds fit it")
+        raise SettingsError(
+            "image: nothing on it is free", where=map_source, do="see whether negate and the thresholds fit it"
+        )
     _require_few_walls(map_source, _walls_of(floor))
     return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
 
@@ -79,8 +82,9 @@ def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
         cells = trace(drivable_cells(source, settings))
     except TooRaggedError as error:
         raise SettingsError(
-            f"{source}: image: {error}; clean the map of specks or crop it to where the robot drives, and see whether "
-            "the thresholds fit it"
+            f"image: {error}",
+            where=source,
+            do=("clean the map of specks or crop it to where the robot drives, and see whether the thresholds fit it"),
         ) from error
     floors = [scale(each, settings.resolution, settings.resolution, origin=(0, 0)) for each in cells]
     return sorted(floors, key=lambda each: float(each.area), reverse=True)
@@ -93,8 +97,9 @@ def _walls_of(floor: shapely.Polygon) -> int:
 def _require_few_walls(source: Path, walls: int) -> None:
     if walls > MOST_WALLS:
         raise SettingsError(
-            f"{source}: image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most; "
-            "crop the map to where the robot drives, or clean it of specks"
+            f"image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most",
+            where=source,
+            do="crop the map to where the robot drives, or clean it of specks",
         )
 
 
@@ -111,8 +116,9 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_ra
     width_m, height_m = east_m - west_m, north_m - south_m
     if max(width_m, height_m) > _MOST_M:
         raise SettingsError(
-            f"{source}: resolution: the free space is {width_m:.0f} m x {height_m:.0f} m, allowed are {_MOST_M:.0f} m; "
-            "crop the map to where the robot drives"
+            f"resolution: the free space is {width_m:.0f} m x {height_m:.0f} m, allowed are {_MOST_M:.0f} m",
+            where=source,
+            do="crop the map to where the robot drives",
         )
     shifted = translate(floor, -west_m, -south_m)
     try:
@@ -136,7 +142,7 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_ra
         )
     except ValidationError as error:
         key = ".".join(str(part) for part in error.errors()[0]["loc"]) or "(whole file)"
-        raise SettingsError(f"{source}: {key}: {error.errors()[0]['msg']}") from error
+        raise SettingsError(f"{key}: {error.errors()[0]['msg']}", where=source) from error
 
 
 def _rays_for(floor: shapely.Polygon) -> Literal[1, 3]:

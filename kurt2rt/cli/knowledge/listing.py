@@ -29,7 +29,9 @@ def list_files(
         kurt2rt knowledge list results
     """
     if not place.exists():
-        raise KnowledgeError(f"{place}: is not there; give the folder that your knowledge files are in, or one of them")
+        raise KnowledgeError(
+            "is not there", where=place, do="give the folder that your knowledge files are in, or one of them"
+        )
     paths = sorted(place.rglob("*.knowledge")) if place.is_dir() else [place]
     rows: dict[Path, tuple[str, str, str, str, str]] = {}
     unreadable: dict[Path, str] = {}

@@ -25,7 +25,7 @@ class EightsSettings(CourseSettings):
         """Two posts."""
         if len(plan.posts) != 2:
             raise SettingsError(
-                f"course eights: world {plan.name} has {len(plan.posts)} round obstacles; choose one with two"
+                f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002

@@ -31,7 +31,9 @@ class ErrandsSettings(CourseSettings):
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course errands: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
-            raise SettingsError(f"course errands: world {plan.name} has no streets that meet; choose one with streets")
+            raise SettingsError(
+                f"course errands: world {plan.name} has no streets that meet", do="choose one with streets"
+            )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
         """The course."""

@@ -26,7 +26,7 @@ class JunctionsSettings(CourseSettings):
             raise SettingsError(f"course junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
             raise SettingsError(
-                f"course junctions: world {plan.name} has no streets that meet; choose one with streets"
+                f"course junctions: world {plan.name} has no streets that meet", do="choose one with streets"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:

@@ -27,7 +27,8 @@ class RoundsSettings(CourseSettings):
         """One post."""
         if len(plan.posts) != 1:
             raise SettingsError(
-                f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles; choose one with a single one"
+                f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles",
+                do="choose one with a single one",
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002

@@ -45,7 +45,9 @@ class RouteSettings(CourseSettings):
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course route: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
-            raise SettingsError(f"course route: world {plan.name} has no streets that meet; choose one with streets")
+            raise SettingsError(
+                f"course route: world {plan.name} has no streets that meet", do="choose one with streets"
+            )
         self.route_in(plan, behaviours)
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002

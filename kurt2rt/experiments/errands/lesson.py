@@ -53,7 +53,9 @@ def errands_of(task: TaskSettings) -> ErrandsSettings:
     """Settings of its errands. Raises hal.settings.SettingsError for a task that has none."""
     if isinstance(task.course, ErrandsSettings) and task.mid is not None:
         return task.course
-    raise SettingsError(f"task {task.name}: to run errands it needs the course errands, and a mid level of places")
+    raise SettingsError(
+        "to run errands it needs the course errands, and a mid level of places", where=f"task {task.name}"
+    )
 
 
 def places_of(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...]:

@@ -16,7 +16,9 @@ def do_jobs(jobs: Sequence[Job[None]], processes: int, on_standing: Callable[[St
     try:
         run_jobs(jobs, processes, on_standing=on_standing)
     except JobKilledError as error:
-        raise StudyError(f"{error}; run again, it goes on where it was (with fewer --jobs it needs less)") from error
+        raise StudyError(
+            f"{error}", do="run again, it goes on where it was (with fewer --jobs it needs less)"
+        ) from error
 
 
 def time_of_missing_s(waves: Sequence[Sequence[KeptJob]], results: Results) -> float:

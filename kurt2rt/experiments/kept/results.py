@@ -66,7 +66,9 @@ class Results:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError as error:
                 raise StudyError(
-                    f"{self.folder}: another run writes here; wait for its end, or give another folder with --out"
+                    "another run writes here",
+                    where=self.folder,
+                    do="wait for its end, or give another folder with --out",
                 ) from error
             for left_over in self.folder.glob(f"{_UNFINISHED}*"):
                 shutil.rmtree(left_over)
@@ -102,8 +104,9 @@ class Results:
             what = ", ".join(name for name in MadeOf.model_fields if name in differences)
             more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""
             raise StudyError(
-                f"{self.folder}: {foreign[0]}{more} were made with other settings or another program (what differs: "
-                f"{what}); {_NEW_FOLDER}"
+                f"{foreign[0]}{more} were made with other settings or another program (what differs: {what})",
+                where=self.folder,
+                do=_NEW_FOLDER,
             )
         return missing
 
@@ -126,4 +129,4 @@ class Results:
         try:
             return schema.model_validate_json(path.read_bytes())
         except (ValidationError, OSError) as error:
-            raise StudyError(f"{path}: is no result of this program; {_NEW_FOLDER}") from error
+            raise StudyError("is no result of this program", where=path, do=_NEW_FOLDER) from error

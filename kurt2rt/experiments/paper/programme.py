@@ -93,7 +93,7 @@ def plan(
     names = [task.name for task in loaded.values()]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise StudyError(f"two tasks have the name {', '.join(twice)}; give one of them another name in its file")
+        raise StudyError(f"two tasks have the name {', '.join(twice)}", do="give one of them another name in its file")
     for each in chosen:
         _require_exams_in(each.asked, loaded[each.task])
     taught = [
@@ -160,5 +160,6 @@ def _require_exams_in(asked: AskedSettings, task: TaskSettings) -> None:
     nowhere = sorted(set(asked.success_at_least) - set(task.exam.worlds))
     if nowhere:
         raise StudyError(
-            f"{task.name}: success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}"
+            f"success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}",
+            where=task.name,
         )

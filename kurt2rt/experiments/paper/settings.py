@@ -93,7 +93,7 @@ def load_paper(name_or_path: str = "basic_level", stage: SimulationFactory | Non
     for key, task in (("growth.task", paper.growth.task), ("eight", paper.eight)):
         if task not in tasks:
             raise SettingsError(
-                f"{path}: {key}: there is no experiment with task {task!r}; give one of: {', '.join(tasks)}"
+                f"{key}: there is no experiment with task {task!r}", where=path, do=f"give one of: {', '.join(tasks)}"
             )
     if stage is None:
         return paper
@@ -102,5 +102,5 @@ def load_paper(name_or_path: str = "basic_level", stage: SimulationFactory | Non
         try:
             stage.require_worlds(world)
         except SettingsError as error:
-            raise SettingsError(f"{path}: {key}: {error}") from error
+            raise SettingsError(f"{key}: {error}", where=path) from error
     return paper

@@ -221,7 +221,7 @@ class StepJob:
         file = robot.results.folder / robot.knowledge_of(step)
         if not file.exists():
             result = robot.results.folder / robot.result_of(step)
-            raise StudyError(f"{file} is gone, and {result} stands; delete that too, and run again")
+            raise StudyError(f"{file} is gone, and {result} stands", do="delete that too, and run again")
         return file
 
     def _prepare(self, knowledge: Path) -> None:
@@ -249,7 +249,7 @@ class StepJob:
             writer.flush(timeout_s=30.0)
             refused = [each.error for each in writer.acknowledged() if each.error is not None]
         if refused:
-            raise LessonLostError(f"{self.name}: {refused[0]}")
+            raise LessonLostError(f"{refused[0]}", where=self.name)
 
     def _critics(self) -> Iterator[TeachingEvent]:
         robot = self.robot

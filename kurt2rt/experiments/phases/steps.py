@@ -75,9 +75,13 @@ class Step:
 def phases_of(task: TaskSettings) -> PhasesSettings:
     """The task's section. Raises hal.settings.SettingsError where there is none."""
     if task.phases is None:
-        raise SettingsError(f"task {task.name}: says nothing about phases 3 to 5; add a section `phases:` to its file")
+        raise SettingsError(
+            "says nothing about phases 3 to 5", where=f"task {task.name}", do="add a section `phases:` to its file"
+        )
     if task.judge is None:
-        raise SettingsError(f"task {task.name}: there is no judge, so nobody can praise or blame; add `judge:`")
+        raise SettingsError(
+            "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
+        )
     return task.phases
 
 

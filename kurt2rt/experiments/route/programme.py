@@ -139,7 +139,9 @@ def basic_task_of(task: TaskSettings) -> TaskSettings:
     Raises hal.settings.SettingsError.
     """
     if task.system is None:
-        raise SettingsError(f"task {task.name}: it does not say what was taught before; add `system: streets`")
+        raise SettingsError(
+            "it does not say what was taught before", where=f"task {task.name}", do="add `system: streets`"
+        )
     return load_task(task.system)
 
 
@@ -149,8 +151,9 @@ def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
     if file.is_file():
         return file
     raise StudyError(
-        f"{file}: there is no such file; teach the streets with kurt2rt lesson --task {basic.name} --seed {seed}, or "
-        "leave --basic out"
+        "there is no such file",
+        where=file,
+        do=f"teach the streets with kurt2rt lesson --task {basic.name} --seed {seed}, or leave --basic out",
     )
 
 

@@ -117,7 +117,7 @@ def route_of_task(task: TaskSettings) -> RouteSettings:
     """Settings of the route that a task teaches. Raises hal.settings.SettingsError for one that teaches none."""
     if isinstance(task.course, RouteSettings):
         return task.course
-    raise SettingsError(f"task {task.name}: its course is {task.course.kind}, and there is no route to teach")
+    raise SettingsError(f"its course is {task.course.kind}, and there is no route to teach", where=f"task {task.name}")
 
 
 def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
