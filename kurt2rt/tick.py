@@ -1,6 +1,7 @@
 """The tick: the one place that knows the order in which things happen, 100 times a second."""
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import AppraisalFeatures
@@ -38,6 +39,18 @@ class LessonKeeper(Protocol):
     def submit(self, event: TeachingEvent) -> None:
         """Keep an event."""
         ...
+
+
+@dataclass(slots=True)
+class InMemoryEventStore:
+    """Events kept in a list, in submission order (LessonKeeper)."""
+
+    events: list[TeachingEvent] = field(default_factory=list)
+    trouble: str | None = None
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Append an event."""
+        self.events.append(event)
 
 
 class TickRecord(NamedTuple):

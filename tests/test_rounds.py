@@ -17,11 +17,10 @@ from kurt2rt.runtime import build_runtime
 from kurt2rt.service_settings import load_service
 from kurt2rt.teaching.commands import Command, Teach
 from kurt2rt.teaching.question import Question, WayQuestion
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
 from tests.rla.helpers import created, origin
-from tests.test_tick import Notebook
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
 SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
@@ -147,7 +146,9 @@ def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift
     with Journal.read_only(shift.path) as journal:
         saved = journal.statistics()
     assert saved.values == {7: -0.25}
-    again = build_runtime(WideRobot(), ROBOT, TASK, (taught,), Notebook(), LockstepClock(lambda: None), saved=saved)
+    again = build_runtime(
+        WideRobot(), ROBOT, TASK, (taught,), InMemoryEventStore(), LockstepClock(lambda: None), saved=saved
+    )
     assert again.reinforcement.worth(7) == -0.25
 
 

@@ -21,7 +21,7 @@ from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Command, Resume
 from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
-from kurt2rt.tick import Tick, TickRecord
+from kurt2rt.tick import InMemoryEventStore, Tick, TickRecord
 from kurt2rt.timing.ledger import Ledger
 from tests.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teaching.helpers import correct, delete, pursue, resume, set_phase, stop, teach
@@ -68,17 +68,6 @@ class CorridorRobot:
         self.closed = True
 
 
-class Notebook:
-    """Keeps lessons in a list."""
-
-    def __init__(self) -> None:
-        self.trouble: str | None = None
-        self.events: list[TeachingEvent] = []
-
-    def submit(self, event: TeachingEvent) -> None:
-        self.events.append(event)
-
-
 class Corridor:
     """All that stands round a Tick, and one tick in a call."""
 
@@ -92,7 +81,7 @@ class Corridor:
         asks_when_held: bool = True,
     ) -> None:
         self.robot = CorridorRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self.held_up_s = 0.0
         """How long a tick hangs between its senses and its frame."""
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}

@@ -35,9 +35,9 @@ from kurt2rt.teaching.commands import (
     Undo,
     Watch,
 )
+from kurt2rt.tick import InMemoryEventStore
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT
-from tests.test_tick import Notebook
 from tests.test_tick_seeking import PLACES
 from tests.test_tick_with_mid_level import BEHAVIOURS, OPEN, ROUTE, STEP_M, WALL, StreetRobot, Town, basic_knowledge
 
@@ -50,7 +50,7 @@ class Bedlam(Town):
     def __init__(self, task: TaskSettings, seed: int, events: Sequence[TeachingEvent] = ()) -> None:
         """`events`: what was taught in a run before."""
         self.robot = StreetRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self.taught_before = [*basic_knowledge(), *events]
         self.runtime = build_runtime(
             self.robot, ROBOT, task, self.taught_before, self.notebook, LockstepClock(lambda: None), attended=True

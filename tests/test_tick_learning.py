@@ -12,11 +12,10 @@ from kurt2rt.runtime import build_runtime
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.active_stop import STARTED
 from kurt2rt.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, WideRobot
 from tests.rla.helpers import created, withdrawn
-from tests.test_tick import Notebook
 
 NEAR, FAR = 400, 50
 TASK = load_task("wall_following")
@@ -34,7 +33,7 @@ class Drive:
         task: TaskSettings = TASK,
     ) -> None:
         self.robot = WideRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(self.robot, ROBOT, task, events, self.notebook, clock, saved=saved, asked=asked)
         self.tick = 0

@@ -24,10 +24,9 @@ from kurt2rt.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT
-from tests.test_tick import Notebook
 from tests.test_tick_with_mid_level import OPEN, STREETS, WALL, StreetRobot, Town, basic_knowledge, told
 
 PLACES = STREETS.model_copy(update={"mid": "places"})
@@ -40,7 +39,7 @@ class Block(Town):
 
     def __init__(self, events: Sequence[TeachingEvent] | None = None) -> None:
         self.robot = StreetRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self.taught_before = basic_knowledge() if events is None else list(events)
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(self.robot, ROBOT, PLACES, self.taught_before, self.notebook, clock)

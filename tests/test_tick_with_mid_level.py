@@ -37,11 +37,10 @@ from kurt2rt.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.channel.desk import ROBOT, WideRobot
 from tests.rla.helpers import created, deleted, replaced
-from tests.test_tick import Notebook
 
 STREETS = load_task("streets")
 ROUTE = STREETS.model_copy(update={"mid": "turns"})
@@ -81,7 +80,7 @@ class Town:
 
     def __init__(self, events: Sequence[TeachingEvent] | None = None, *, attended: bool = False) -> None:
         self.robot = StreetRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self.taught_before = basic_knowledge() if events is None else list(events)
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(
@@ -338,7 +337,9 @@ def test_what_a_level_does_not_have_is_refused_and_changes_nothing(town: Town, c
 
 
 def test_where_the_robot_has_no_mid_level_there_is_none_to_teach() -> None:
-    runtime = build_runtime(StreetRobot(), ROBOT, STREETS, basic_knowledge(), Notebook(), LockstepClock(lambda: None))
+    runtime = build_runtime(
+        StreetRobot(), ROBOT, STREETS, basic_knowledge(), InMemoryEventStore(), LockstepClock(lambda: None)
+    )
     runtime.inbox.put(the_way("turn_left"))
     runtime.ledger.begin(0.0)
     record = runtime.tick.run(1, 0.01)
@@ -482,7 +483,7 @@ def test_an_undo_brings_nothing_back_that_this_task_cannot_follow(
 
 def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
     events = [*town.taught_before, *town.notebook.events]
-    runtime = build_runtime(StreetRobot(), ROBOT, STREETS, events, Notebook(), LockstepClock(lambda: None))
+    runtime = build_runtime(StreetRobot(), ROBOT, STREETS, events, InMemoryEventStore(), LockstepClock(lambda: None))
     runtime.inbox.put(Pursue("p", "Ann", "turn_left"))
     runtime.ledger.begin(0.0)
     record = runtime.tick.run(1, 0.01)

@@ -13,6 +13,7 @@ from kurt2rt.knowledge.opening import open_knowledge
 from kurt2rt.knowledge.writer import JournalWriter, utc_now
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.tick import InMemoryEventStore
 
 OnProgress = Callable[[float], None]
 """Gets the share of the work that is done, 0 to 1."""
@@ -31,22 +32,9 @@ class Subject:
     events: tuple[TeachingEvent, ...] = ()
 
 
-class _Notebook:
-    """A keeper of lessons that lives in memory."""
-
-    trouble: str | None = None
-
-    def __init__(self) -> None:
-        self.events: list[TeachingEvent] = []
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Note it."""
-        self.events.append(event)
-
-
 async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) -> Subject:
     """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
-    notebook = _Notebook()
+    notebook = InMemoryEventStore()
     task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
     simulation = subject.open_simulation("lesson")
     try:

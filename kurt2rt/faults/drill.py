@@ -21,7 +21,7 @@ from kurt2rt.faults.witness import Witness
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.tick import LessonKeeper, TickRecord
+from kurt2rt.tick import InMemoryEventStore, LessonKeeper, TickRecord
 from kurt2rt.timing.clock import Clock
 
 SERVICE_ENDS = "the service ends"
@@ -30,19 +30,6 @@ SERVICE_ENDS = "the service ends"
 
 class DidNotDriveError(UserError):
     """The robot stood before the fault began, so the fault's effect cannot be seen."""
-
-
-class _Memory:
-    """Keeps lessons in memory (kurt2rt.tick.LessonKeeper)."""
-
-    trouble: str | None = None
-
-    def __init__(self) -> None:
-        self.events: list[TeachingEvent] = []
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Keep one."""
-        self.events.append(event)
 
 
 class _Drill:
@@ -166,7 +153,7 @@ class _Drill:
 
     def _start_anew(self) -> None:
         """What a supervisor does, and a teacher afterwards."""
-        events = tuple(self._keeper.events) if isinstance(self._keeper, _Memory) else ()
+        events = tuple(self._keeper.events) if isinstance(self._keeper, InMemoryEventStore) else ()
         self._witness.look_at(self._place.start_anew())
         self._level = None
         self._runtime = self._build(events)
@@ -205,7 +192,7 @@ async def drill(
     chance = random.Random(f"drill {case} {seed}")
     with ExitStack() as stack:
         stack.callback(place.close)
-        keeper: LessonKeeper = _Memory()
+        keeper: LessonKeeper = InMemoryEventStore()
         disk: FailingDisk | None = None
         if case.target == "disk":
             disk = FailingDisk(place.time, place.disturbance, folder / "drill.knowledge", settings, task)

@@ -6,6 +6,7 @@ from hal.robot_settings import load_robot
 from hal.simulation import Simulation
 from kurt2rt.bench.pace import Pace
 from kurt2rt.bench.subject import Subject
+from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.runtime import build_runtime
 from kurt2rt.tick import TickRecord
 
@@ -23,17 +24,10 @@ class PunctualClock:
         self._now_s = max(self._now_s, deadline_s)
 
 
-class Keeper:
-    trouble: str | None = None
-
-    def submit(self, event: object) -> None:
-        raise AssertionError(event)
-
-
 async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: Subject) -> None:
     clock, settings = PunctualClock(), load_robot()
     simulation: Simulation = untaught.open_simulation("pace")
-    runtime = build_runtime(simulation.robot, settings, untaught.task, (), Keeper(), clock)
+    runtime = build_runtime(simulation.robot, settings, untaught.task, (), NothingIsTaught(), clock)
     pace = Pace(runtime.scheduler, clock)
     seen: list[tuple[int, float]] = []
 

@@ -35,10 +35,10 @@ from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import LessonKeeper, TickRecord
+from kurt2rt.tick import InMemoryEventStore, LessonKeeper, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from kurt2rt.timing.simulated_clock import HeldWorld, SimulatedClock
-from tests.test_tick import CorridorRobot, Notebook
+from tests.test_tick import CorridorRobot
 
 ROBOT = load_robot()
 TASK = load_task("wall_following")
@@ -142,7 +142,7 @@ class Desk:
     ) -> None:
         """`keeper` takes the lessons in place of the notebook; `behaviours` is what the task teaches, `mid` by name."""
         self.robot = WideRobot()
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self.shelf = Shelf()
         self.stamps: dict[str, str] = {}
         self.bus_trouble = ""

@@ -10,26 +10,15 @@ from kurt2rt.explain.collecting import facts_of
 from kurt2rt.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
 from kurt2rt.explain.tipping import Tip, tips
 from kurt2rt.recording.entries import TickEntry, tick_entry_of
-from kurt2rt.rla.rla import BASIC, TeachingEvent
+from kurt2rt.rla.rla import BASIC
 from kurt2rt.runtime import build_runtime
 from kurt2rt.simulated import Kurt2SimulationFactory
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.teaching.commands import Command
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 
 ROBOT = load_robot()
-
-
-class Notebook:
-    """Keeps lessons in a list, unless it has trouble."""
-
-    def __init__(self) -> None:
-        self.trouble: str | None = None
-        self.events: list[TeachingEvent] = []
-
-    def submit(self, event: TeachingEvent) -> None:
-        self.events.append(event)
 
 
 class Lesson:
@@ -37,7 +26,7 @@ class Lesson:
 
     def __init__(self, task: str = "wall_following", seed: int = 1, *, attended: bool = False) -> None:
         settings = load_task(task)
-        self.notebook = Notebook()
+        self.notebook = InMemoryEventStore()
         self._simulation = Kurt2SimulationFactory(ROBOT).open(settings.teaching.world, seed, "why")
         self.runtime = build_runtime(
             self._simulation.robot,

@@ -14,11 +14,11 @@ from config import CONFIG_DIR
 from hal.robot import STANDSTILL
 from hal.simulation import Pose, Simulation
 from kurt2rt.layers.decision import Cause, Decision
-from kurt2rt.rla.rla import MID, TeachingEvent
+from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from kurt2rt.teaching.commands import ReplaceAction, Teach
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.experiments.helpers import ROBOT, STAGE, teach
 from tests.repertoire.helpers import keep, with_repertoire
@@ -33,13 +33,6 @@ ACTIONS = (
     "kind: task, name: patrol, task: {folder}/patrol.yaml, knowledge: streets.knowledge",
 )
 WHEREVER = created(1, (0.0,) * 72, "forward", radius=1e9)
-
-
-class Keeper:
-    trouble: str | None = None
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Nothing of this is kept."""
 
 
 class Drive:
@@ -82,7 +75,9 @@ def runtime_of(task: TaskSettings) -> Iterator[tuple[Runtime, Simulation]]:
     simulation = STAGE.open("manhattan", 1, "all kinds")
     try:
         yield (
-            build_runtime(simulation.robot, ROBOT, task, [WHEREVER], Keeper(), LockstepClock(simulation.step)),
+            build_runtime(
+                simulation.robot, ROBOT, task, [WHEREVER], InMemoryEventStore(), LockstepClock(simulation.step)
+            ),
             simulation,
         )
     finally:

@@ -24,7 +24,7 @@ from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.recording.run_recorder import RunRecorder, open_run_recorder
 from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.rla.rla import Phase, TeachingEvent
+from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.simulated import Kurt2Simulation
 from kurt2rt.standing_text import stop_text
@@ -47,7 +47,7 @@ from kurt2rt.teaching.commands import (
 )
 from kurt2rt.teaching.happenings import PressesForgotten
 from kurt2rt.teaching.scripted_teacher import ScriptedTeacher, picture_of, teacher_of
-from kurt2rt.tick import TickRecord
+from kurt2rt.tick import InMemoryEventStore, TickRecord
 from kurt2rt.timing.clock import LockstepClock
 from tests.replay.stored_runs import STORED
 
@@ -57,24 +57,13 @@ _SAVED_EVERY = 100
 """Ticks from one save of the statistics to the next."""
 
 
-class Notebook:
-    """Keeps lessons in a list, and for a while cannot (kurt2rt.tick.LessonKeeper)."""
-
-    def __init__(self) -> None:
-        self.trouble: str | None = None
-        self.events: list[TeachingEvent] = []
-
-    def submit(self, event: TeachingEvent) -> None:
-        self.events.append(event)
-
-
 @dataclass
 class Scene:
     """A robot that runs, and whoever is about it."""
 
     simulation: Kurt2Simulation
     runtime: Runtime
-    notebook: Notebook
+    notebook: InMemoryEventStore
     teacher: ScriptedTeacher
     said: int = 0
     presses: int = 0
@@ -193,7 +182,7 @@ def record_story(
     told = STORIES[name]
     settings, task = load_robot(), task or load_task(told.task)
     simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
-    notebook = Notebook()
+    notebook = InMemoryEventStore()
     clock = LockstepClock(simulation.step)
     attachments = attachments_of(settings, task)
     head = RunHead(

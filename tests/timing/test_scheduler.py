@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
+from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.wanted import Wanted
 from kurt2rt.perception.perception import Perception
-from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
 from kurt2rt.rla.statistics import StatisticsCounter
 from kurt2rt.teaching.authority import Authority
@@ -59,13 +59,6 @@ class StandingRobot:
         raise AssertionError("a scheduler does not close the robot")
 
 
-class NoLessons:
-    trouble: str | None = None
-
-    def submit(self, event: TeachingEvent) -> None:
-        raise AssertionError(event)
-
-
 class Run:
     """A scheduler, and what its ticks were."""
 
@@ -84,7 +77,7 @@ class Run:
             level,
             school,
             TeacherInbox(),
-            NoLessons(),
+            NothingIsTaught(),
             statistics,
             self.ledger,
             now=clock.now_s,
