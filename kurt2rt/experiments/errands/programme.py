@@ -19,11 +19,8 @@ from kurt2rt.experiments.route.job import BasicJob
 from kurt2rt.experiments.route.programme import streets_of
 from kurt2rt.tasks.settings import TaskSettings
 
-OWN = {
-    *(f"kurt2rt/experiments/errands/{name}.py" for name in ("exam", "goals", "guide", "job", "lesson", "outcome")),
-    "kurt2rt/experiments/errands/robot.py",
-}
-"""Modules that say what is done to robots here, and what of it is kept."""
+DECIDING = (ErrandsJob,)
+"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +49,7 @@ def plan(
     *,
     basic_folder: Path | None = None,
     controls: bool = False,
-    source_of: Callable[[], str] = lambda: source_hash(OWN),
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
 ) -> Programme:
     """Look at task and worlds, and make the jobs.
 
@@ -64,7 +61,7 @@ def plan(
     stage.require_worlds(*worlds, basic.teaching.world)
     require_course(stage, task, worlds)
     hows = (*PLANNING, *(CONTROLS if controls else ()))
-    fingerprints = Fingerprints(stage, robot, source_of(), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(stage, robot, source_of(stage), ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
     jobs = []
     for seed in seeds:

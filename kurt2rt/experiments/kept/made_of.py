@@ -4,23 +4,16 @@ import ast
 import hashlib
 import json
 import platform
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from functools import lru_cache
 from importlib.metadata import version
-from importlib.util import find_spec
-from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, content_of, find_config
 from hal.simulation import SimulationFactory
+from kurt2rt.experiments.kept.import_graph import modules_needed
 from kurt2rt.tasks.settings import TaskSettings
 
-_PACKAGES = ("hal", "behaviors", "simbridge", "kurt2rt")
-_DO_NOT_DECIDE = {
-    *("bench", "channel", "cli", "commission", "doctor", "faults", "page", "recording"),
-    *("errands", "kept", "paper", "phases", "route", "shown"),  # of experiments
-}
-"""Parts of kurt2rt that no lesson and no exam in lockstep runs through, or that only read results."""
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
@@ -47,30 +40,17 @@ def versions() -> str:
     return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
 
 
-def source_hash(own: Collection[str]) -> str:
-    """Of the code that teaches, drives and simulates; comments, docstrings and layout left out. `own`: as `sources`."""
+def source_hash(*deciding: type) -> str:
+    """Return the hash of all code that these classes need; comments, docstrings and layout are left out.
+
+    Args:
+        deciding: classes that do a job and open its simulation. Code that they do not import decides no result.
+    """
     digest = hashlib.sha256()
-    for name, path in sources(own):
+    for name, path in modules_needed(base.__module__ for each in deciding for base in each.__mro__).items():
         digest.update(f"{name}\n".encode())
         digest.update(_hash_of(path.read_text(encoding="utf-8")))
     return digest.hexdigest()[:16]
-
-
-def sources(own: Collection[str]) -> Iterator[tuple[str, Path]]:
-    """Every module that decides a result, as `kurt2rt/tick.py`, and its file.
-
-    `own`: modules of these experiments that say how long and where robots drive, and what of it is kept.
-    """
-    for package in _PACKAGES:
-        spec = find_spec(package)
-        assert spec is not None
-        for folder in map(Path, spec.submodule_search_locations or ()):
-            for path in sorted(folder.rglob("*.py")):
-                place = path.relative_to(folder)
-                decides = package != "kurt2rt" or not _DO_NOT_DECIDE.intersection(place.parts)
-                name = f"{package}/{place.as_posix()}"
-                if decides or name in own:
-                    yield name, path
 
 
 def settings_hash(*settings: str) -> str:

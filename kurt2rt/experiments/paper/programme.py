@@ -19,8 +19,8 @@ from kurt2rt.experiments.phases.settings import PHASES
 from kurt2rt.experiments.shown.judging import ROBOTS
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
-OWN = {f"kurt2rt/experiments/paper/{name}.py" for name in ("taught_job", "growth_job", "outcome", "extent")}
-"""Modules that say how long and where robots drive here, and what of it is kept."""
+DECIDING = (TaughtJob, GrowthJob, Extent)
+"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ def plan(
     robot: RobotSettings,
     results: Results,
     *,
-    source_of: Callable[[], str] = lambda: source_hash(OWN),
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
     tasks: Sequence[str] = (),
 ) -> Programme:
     """Look at every task and world, and make the jobs.
@@ -105,7 +105,7 @@ def plan(
         task = loaded[each.task]
         generated = each.unseen.names if each.unseen else ()
         require_course(stage, task, (task.teaching.world, *task.exam.worlds, *generated))
-    source = source_of()
+    source = source_of(stage)
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", *PHASES))
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:

@@ -14,11 +14,8 @@ from kurt2rt.experiments.phases.steps import PHASE_2, Step, phases_of, steps_of
 from kurt2rt.reinforcement.settings import LonelyWorths
 from kurt2rt.tasks.settings import TaskSettings
 
-OWN = {
-    f"kurt2rt/experiments/phases/{name}.py"
-    for name in ("corrupting", "examining", "folding", "job", "outcome", "scoring", "settings", "steps", "told")
-}
-"""Modules that say what is done to robots here, and what of it is kept."""
+DECIDING = (TaughtJob, StepJob)
+"""Classes whose code, and all that it imports, decides the results."""
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
 """What is done every so often in a whole run is done after this share of the time in a quick one."""
@@ -51,7 +48,7 @@ def plan(
     results: Results,
     *,
     quick: bool = False,
-    source_of: Callable[[], str] = lambda: source_hash(OWN),
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
 ) -> Programme:
     """Look at task and worlds, and make the jobs.
 
@@ -64,7 +61,7 @@ def plan(
     worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
     stage.require_worlds(*worlds)
     require_course(stage, task, worlds)
-    source = source_of()
+    source = source_of(stage)
     # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
     critic = load_critic(task.critic).model_dump_json()

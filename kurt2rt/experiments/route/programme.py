@@ -17,8 +17,8 @@ from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.knowledge.opening import read_lessons
 from kurt2rt.tasks.settings import TaskSettings, load_task
 
-OWN = {f"kurt2rt/experiments/route/{name}.py" for name in ("job", "outcome", "teaching", "variants", "watching")}
-"""Modules that say what is done to robots here, and what of it is kept."""
+DECIDING = (BasicJob, RouteJob)
+"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def plan(
     results: Results,
     *,
     basic_folder: Path | None = None,
-    source_of: Callable[[], str] = lambda: source_hash(OWN),
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
 ) -> Programme:
     """Look at tasks, worlds and routes, and make the jobs.
 
@@ -79,7 +79,7 @@ def plan(
     routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
     for each in routes.values():
         require_course(stage, each, worlds)
-    source = source_of()
+    source = source_of(stage)
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
 

@@ -26,7 +26,7 @@ def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
 
 def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> Programme:
     errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
-    return plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda: "tested")
+    return plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
 
 
 @dataclass(frozen=True)

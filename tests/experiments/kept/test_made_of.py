@@ -5,12 +5,25 @@ from pathlib import Path
 import pytest
 
 from config import CONFIG_DIR
-from kurt2rt.experiments.kept.made_of import Fingerprints, code_of, sources
-from kurt2rt.experiments.paper.programme import OWN
+from hal.kurt2 import Kurt2
+from kurt2rt.experiments.exam import examine
+from kurt2rt.experiments.kept.import_graph import modules_needed
+from kurt2rt.experiments.kept.made_of import Fingerprints, code_of, source_hash
+from kurt2rt.experiments.paper.extent import Extent
+from kurt2rt.experiments.paper.programme import DECIDING
+from kurt2rt.knowledge.writer import JournalWriter
+from kurt2rt.runtime import Runtime
 from kurt2rt.tasks.settings import load_task
+from kurt2rt.tick import Tick
+from simbridge.free_poses import FreePoses
 from tests.experiments.helpers import ROBOT, STAGE
 
 TASK = load_task("wall_following")
+NOT_DECIDING = tuple(
+    f"kurt2rt.{each}"
+    for each in ("channel", "cli", "explain", "faults", "health", "page", "recording", "replay", "soak")
+)
+"""Beginnings of the names of modules in which a change keeps all results."""
 
 
 @pytest.fixture(scope="module")
@@ -53,13 +66,19 @@ def test_another_world_and_another_robot_show(fingerprints: Fingerprints) -> Non
     assert made.differences(Fingerprints(STAGE, other, "s").of(TASK, ("a",))) == ["robot"]
 
 
-def test_the_source_is_what_teaches_drives_and_keeps_what_came_and_not_what_only_shows_it() -> None:
-    modules = dict(sources(OWN))
-    assert {name for name in modules if "/paper/" in name} == OWN
-    assert {"kurt2rt/tick.py", "kurt2rt/experiments/exam.py", "simbridge/free_poses.py", "hal/kurt2.py"} <= set(modules)
-    assert "behaviors/policies/streets.py" in modules
-    assert not any(name.startswith(("kurt2rt/cli/", "kurt2rt/page/")) for name in modules)
+def test_source_hash_only_needs_what_jobs_import() -> None:
+    modules = modules_needed(each.__module__ for each in (*DECIDING, type(STAGE)))
+    deciding = {Tick, examine, FreePoses, Kurt2, Runtime, Extent, JournalWriter}
+    assert {each.__module__ for each in deciding} <= set(modules)
+    assert "behaviors.policies.streets" in modules  # by its kind alone
+    assert not [name for name in modules if name.startswith(NOT_DECIDING)]
     assert all(path.is_file() for path in modules.values())
+
+
+def test_source_hash_names_outside_the_program_change_nothing() -> None:
+    assert modules_needed(["numpy", "tests.experiments.helpers"]) == {}
+    assert source_hash(*DECIDING) == source_hash(*DECIDING, Path)
+    assert source_hash(*DECIDING) != source_hash(*DECIDING, type(STAGE))
 
 
 def test_comments_docstrings_and_layout_are_no_source() -> None:

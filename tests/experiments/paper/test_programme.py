@@ -41,7 +41,7 @@ def planned(
         STAGE,
         ROBOT,
         Results(Path("never-made")),
-        source_of=lambda: "s",
+        source_of=lambda _: "s",
         tasks=tasks,
     )
 

@@ -29,7 +29,7 @@ class Tiny:
 def tiny_programme(results: Results, *tasks: str) -> Programme:
     paper = load_paper()
     return plan(
-        paper, EXTENT, (100,), ("shipped", "plain"), STAGE, ROBOT, results, source_of=lambda: "tested", tasks=tasks
+        paper, EXTENT, (100,), ("shipped", "plain"), STAGE, ROBOT, results, source_of=lambda _: "tested", tasks=tasks
     )
 
 

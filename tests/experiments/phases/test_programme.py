@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from kurt2rt.critic.settings import load_critic
-from kurt2rt.experiments.kept.made_of import sources
+from kurt2rt.experiments.kept.import_graph import modules_needed
 from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.phases.job import StepJob
 from kurt2rt.experiments.phases.outcome import JobOutcome
-from kurt2rt.experiments.phases.programme import OWN, Programme, plan
+from kurt2rt.experiments.phases.programme import DECIDING, Programme, plan
 from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
 from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.experiments.helpers import ROBOT, STAGE
@@ -18,7 +18,7 @@ TASK = load_task("wall_following")
 
 def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> Programme:
     results = Results(Path("never-made"))
-    return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda: "s")
+    return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
 
 
 def with_phases(**changed: float) -> TaskSettings:
@@ -65,11 +65,10 @@ def test_another_time_of_phase_4_makes_all_critics_anew_and_no_rewards() -> None
     assert before[REWARDS] == after[REWARDS]
 
 
-def test_what_is_done_to_robots_is_source_and_what_only_shows_it_is_not() -> None:
-    names = dict(sources(OWN))
-    assert {name for name in names if "/phases/" in name} == OWN
-    assert "kurt2rt/experiments/lesson_plan.py" in names
-    assert "kurt2rt/critic/agreement.py" in names
+def test_deciding_modules_hold_the_steps_not_the_report() -> None:
+    names = {name.rpartition(".")[2] for name in modules_needed(each.__module__ for each in DECIDING)}
+    assert {"corrupting", "examining", "folding", "scoring", "steps", "told", "lesson_plan", "agreement"} <= names
+    assert not {"report", "tables", "figures", "sheets"} & names
 
 
 def test_quick_is_every_step_for_seconds() -> None:

@@ -35,7 +35,7 @@ def tiny_task() -> TaskSettings:
 
 
 def tiny_programme(results: Results) -> Programme:
-    return plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda: "tested")
+    return plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda _: "tested")
 
 
 def do_tiny(folder: Path) -> Tiny:

@@ -43,7 +43,7 @@ def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: 
         ROBOT,
         results,
         basic_folder=basic_folder,
-        source_of=lambda: "tested",
+        source_of=lambda _: "tested",
     )
 
 

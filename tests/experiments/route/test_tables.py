@@ -16,7 +16,7 @@ from tests.experiments.route.outcomes import drive, outcome
 def programme(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> Programme:
     route, streets = load_task("route"), load_task("streets")
     results = Results(Path("unused"))
-    return plan(route, streets, seeds, (8,), variants, STAGE, ROBOT, results, source_of=lambda: "tested")
+    return plan(route, streets, seeds, (8,), variants, STAGE, ROBOT, results, source_of=lambda _: "tested")
 
 
 def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> Study:
