@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.bench.subject import SEED, OnProgress, Subject, kept_knowledge
-from kurt2rt.doctor.timer import AsyncioClock
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import build_runtime
 from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
 from kurt2rt.tick import TickRecord
+from kurt2rt.timing.asyncio_clock import AsyncioClock
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.ledger import Ledger, Share, Stage
 from kurt2rt.timing.quiet_gc import quiet_gc

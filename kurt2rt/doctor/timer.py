@@ -1,6 +1,5 @@
 """The timer that paces the ticks: is it there, and how late does it wake us?"""
 
-import asyncio
 import statistics
 import time
 from collections.abc import Callable
@@ -12,6 +11,7 @@ import anyio
 
 from kurt2rt.doctor.finding import Finding, Status
 from kurt2rt.doctor.sysfs import attribute
+from kurt2rt.timing.asyncio_clock import AsyncioClock
 from kurt2rt.timing.clock import Clock
 from kurt2rt.timing.timerfd import TimerfdClock
 
@@ -23,18 +23,6 @@ COARSE_RESOLUTION_S = 1e-6
 SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
 """Reading these takes a system call of a microsecond or more."""
 CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
-
-
-class AsyncioClock:
-    """The event loop's own sleeping, to compare with."""
-
-    def now_s(self) -> float:
-        """Monotonic time in seconds."""
-        return time.monotonic()
-
-    async def wait_until(self, deadline_s: float) -> None:
-        """Return at the deadline, rounded up to the event loop's whole milliseconds."""
-        await asyncio.sleep(deadline_s - time.monotonic())
 
 
 @dataclass(frozen=True, slots=True)

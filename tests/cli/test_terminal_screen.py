@@ -1,0 +1,103 @@
+"""Output of the robot program on a plain stream and in a service's log."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from kurt2rt.cli.terminal_screen import TerminalScreen
+from kurt2rt.page.served_pages import PageAddress, ServedPages, to_line
+from kurt2rt.rounds import Status
+from kurt2rt.teaching.active_stop import STARTED
+from tests.channel.desk import Desk
+from tests.cli.test_status_line import PASSIVE, WELL
+
+LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
+PHONE = PageAddress("phone", "http://192.168.100.100:8642/pair?token=" + 32 * "b")
+
+
+class Shown:
+    """A screen whose console is a text."""
+
+    def __init__(self, *, as_service: bool = False) -> None:
+        self._text = io.StringIO()
+        self.screen = TerminalScreen(Console(file=self._text, width=80), Path(), as_service=as_service)
+
+    def lines(self) -> list[str]:
+        """Return the lines since the last call."""
+        lines = self._text.getvalue().splitlines()
+        self._text.seek(0)
+        self._text.truncate()
+        return lines
+
+
+@pytest.fixture(scope="module")
+def status() -> Status:
+    desk = Desk()
+    return Status(desk.record, desk.runtime, 0, None, "")
+
+
+def test_page_line_tells_each_address_once() -> None:
+    shown = Shown()
+    shown.screen.page_line(to_line(ServedPages((LOCAL,), network=False, trouble="")))
+    assert shown.lines()[1:] == [LOCAL.link]
+    shown.screen.page_line(to_line(ServedPages((LOCAL, PHONE), network=True, trouble="no keys")))
+    assert shown.lines()[1:] == [PHONE.link, "no keys"]
+    shown.screen.page_line(to_line(ServedPages((LOCAL, PHONE), network=True, trouble="no keys")))
+    assert shown.lines() == []
+    assert shown.screen.links == (LOCAL.link, PHONE.link)
+
+
+def test_page_line_that_is_no_address_is_printed() -> None:
+    shown = Shown()
+    shown.screen.page_line("a word of some library")
+    assert shown.lines() == ["a word of some library"]
+    assert shown.screen.links == ()
+
+
+def test_show_on_a_stream_prints_every_status(status: Status) -> None:
+    shown = Shown()
+    for trouble in ("", "no simulator"):
+        shown.screen.show(status, WELL, trouble)
+        (line,) = shown.lines()
+        assert line.endswith(trouble)
+
+
+def test_show_in_a_log_prints_changes_other_than_numbers(status: Status) -> None:
+    shown = Shown(as_service=True)
+    shown.screen.show(status, WELL, "")
+    assert shown.lines() == []
+    for errors in (130, 131):
+        shown.screen.show(status, replace(PASSIVE, controller_trouble=f"{errors} errors"), "")
+    assert len(shown.lines()) == 1
+    shown.screen.show(status, WELL, "no simulator")
+    assert len(shown.lines()) == 1
+    shown.screen.show(status, WELL, "")
+    assert len(shown.lines()) == 1
+
+
+def test_tell_in_the_journal_marks_the_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
+    shown = Shown(as_service=True)
+    shown.screen.tell("disk full", "red")
+    shown.screen.tell("no browser", "yellow")
+    shown.screen.tell("ready")
+    assert shown.lines() == ["<3>disk full", "<5>no browser", "ready"]
+
+
+def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
+    desk = Desk()
+    desk.runtime.school.stop(STARTED)
+    shown = Shown(as_service=True)
+    shown.screen.show(Status(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
+    (line,) = shown.lines()
+    assert not line.startswith("<")
+
+
+def test_taught_on_a_stream_prints_nothing() -> None:
+    shown = Shown()
+    shown.screen.taught("RLA 1: forward")
+    assert shown.lines() == []
