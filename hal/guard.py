@@ -7,25 +7,9 @@ from typing import NamedTuple
 from hal.bus import BusError, CanBus
 from hal.control import control_frame, encode_brake, set_point
 from hal.frame import Frame
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings
-
-NOT_A_NUMBER = "not a number"
-COMMAND_TOO_OLD = "command too old"
-CLOCK_RAN_BACKWARDS = "clock ran backwards"
-INFRARED_STALE = "infra-red stale"
-ENCODER_STALE = "encoder stale"
-BUMPER_STALE = "bumper stale"
-FRONT_BUMPER = "front bumper"
-REAR_BUMPER = "rear bumper"
-SPEED_LIMIT = "speed limit"
-SLEW_LIMIT = "slew limit"
-BUS_LOST = "bus lost"  # it did not take a frame: unplugged, down, or its transmit queue is full of others' frames
-BUS_BLOCKED = "bus blocked"  # it takes frames and does not carry them: nobody is there to acknowledge, or it is full
-BUS_OFF = "bus off"
-FOREIGN_CONTROL = "another CONTROL sender"
-WHEELS_DISOBEY = "wheels disobey"
-INFRARED_FROZEN = "infra-red frozen"
 
 _UNCONFIRMED = 2
 """Own CONTROL frames that the bus has not carried yet: with so many waiting a set point would come to the motors older
@@ -69,7 +53,7 @@ class Guard:
         self._brake = encode_brake()
         # Reentrant, for a signal handler may stop the robot in the middle of the same thread's drive().
         self._lock = RLock()
-        self._latched: str | None = None
+        self._latched: GuardReason | None = None
         self._left_m_s = self._right_m_s = 0.0
         self._last_command = self._build_command(0.0, 0.0)
         self._driven_at_s = -math.inf
@@ -77,7 +61,7 @@ class Guard:
         self._bus_trouble = ""
 
     @property
-    def latched(self) -> str | None:
+    def latched(self) -> GuardReason | None:
         """Why the robot stays stopped until `release`; None when it does not."""
         return self._latched
 
@@ -102,9 +86,9 @@ class Guard:
                 self._bus_trouble = (
                     f"bus {self._bus_name}: frames are not carried; switch the robot on, check cable and bit rate"
                 )
-                self._latch(BUS_BLOCKED)
+                self._latch(GuardReason.BUS_BLOCKED)
             if self._latched is not None:
-                return self._stay_stopped()
+                return self._stay_stopped(self._latched)
             left_m_s, right_m_s = wanted
             stand = self._reason_to_stand(left_m_s, right_m_s, senses, decided_at_s, now_s)
             if stand is None:
@@ -121,12 +105,12 @@ class Guard:
                 self._port.send(command.frame)
             except BusError as error:
                 self._note(error)
-                self._latch(BUS_LOST)
+                self._latch(GuardReason.BUS_LOST)
             if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
-                return self._stay_stopped()
+                return self._stay_stopped(self._latched)
             return GuardResult(command.applied, reasons, latched=False)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """Brake now and stay stopped until `release`; the first reason stands. May be repeated, never raises."""
         with self._lock:
             self._latch(reason)
@@ -135,7 +119,7 @@ class Guard:
     def release(self) -> None:
         """End a latched stop; the robot stands until it is driven, and starts from zero."""
         with self._lock:
-            if self._latched == BUS_BLOCKED:
+            if self._latched == GuardReason.BUS_BLOCKED:
                 # Frames that were lost on the way out would count as yet to be carried for ever.
                 self._port.forget_unconfirmed()
             self._latched = None
@@ -143,51 +127,51 @@ class Guard:
 
     def _reason_to_stand(
         self, left_m_s: float, right_m_s: float, senses: SensorReadings, decided_at_s: float, now_s: float
-    ) -> str | None:
+    ) -> GuardReason | None:
         if not (math.isfinite(left_m_s) and math.isfinite(right_m_s)):
-            return NOT_A_NUMBER
+            return GuardReason.NOT_A_NUMBER
         sensed_ago_s = now_s - senses.time_s
         decided_ago_s = now_s - decided_at_s
         if not (now_s >= self._driven_at_s and sensed_ago_s >= 0.0 and decided_ago_s >= 0.0):
-            return CLOCK_RAN_BACKWARDS
+            return GuardReason.CLOCK_RAN_BACKWARDS
         if not decided_ago_s <= self._command_age_s:
-            return COMMAND_TOO_OLD
+            return GuardReason.COMMAND_TOO_OLD
         # Nor is a frame from after the senses a fresh one.
         if not sensed_ago_s <= sensed_ago_s + senses.infrared_age_s <= self._stale_infrared_s:
-            return INFRARED_STALE
+            return GuardReason.INFRARED_STALE
         if not sensed_ago_s <= sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
-            return ENCODER_STALE
+            return GuardReason.ENCODER_STALE
         if not sensed_ago_s <= sensed_ago_s + senses.bumper_age_s <= self._stale_bumper_s:
-            return BUMPER_STALE
+            return GuardReason.BUMPER_STALE
         return None
 
-    def _limit(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[str, ...]:
+    def _limit(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[GuardReason, ...]:
         """Move the set points toward the wanted speeds as far as the limits allow; returns why not further."""
-        reasons: tuple[str, ...] = ()
+        reasons: tuple[GuardReason, ...] = ()
         fastest_m_s = max(abs(left_m_s), abs(right_m_s))
         if fastest_m_s > self._maximum_speed_m_s:
             share = self._maximum_speed_m_s / fastest_m_s  # of both sides, so that the curve is kept
             left_m_s *= share
             right_m_s *= share
-            reasons = (SPEED_LIMIT,)
+            reasons = (GuardReason.SPEED_LIMIT,)
         from_left_m_s, from_right_m_s = self._left_m_s, self._right_m_s
         if bumpers:
             # The old set points too: slewing down from them would go on pushing.
             if bumpers & self._front_bits:
                 if left_m_s > 0.0 or right_m_s > 0.0:
-                    reasons += (FRONT_BUMPER,)
+                    reasons += (GuardReason.FRONT_BUMPER,)
                 left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
                 from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
             if bumpers & self._rear_bits:
                 if left_m_s < 0.0 or right_m_s < 0.0:
-                    reasons += (REAR_BUMPER,)
+                    reasons += (GuardReason.REAR_BUMPER,)
                 left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
                 from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
         elapsed_s = min(now_s - self._driven_at_s, _LONGEST_SLEW_CYCLES * self._cycle_s)
         self._left_m_s = self._slewed(from_left_m_s, left_m_s, elapsed_s)
         self._right_m_s = self._slewed(from_right_m_s, right_m_s, elapsed_s)
         if self._left_m_s != left_m_s or self._right_m_s != right_m_s:
-            reasons += (SLEW_LIMIT,)
+            reasons += (GuardReason.SLEW_LIMIT,)
         return reasons
 
     def _slewed(self, from_m_s: float, to_m_s: float, elapsed_s: float) -> float:
@@ -205,15 +189,15 @@ class Guard:
         point = set_point(self._speed_mode, WheelSpeeds(left_m_s, right_m_s), self._motors)
         return _CachedCommand(left_m_s, right_m_s, control_frame(point), point.wheel_speeds(self._motors))
 
-    def _latch(self, reason: str) -> None:
+    def _latch(self, reason: GuardReason) -> None:
         if self._latched is None:
             self._latched = reason
         self._left_m_s = self._right_m_s = 0.0
 
-    def _stay_stopped(self) -> GuardResult:
+    def _stay_stopped(self, reason: GuardReason) -> GuardResult:
         self._left_m_s = self._right_m_s = 0.0  # again, for the stop may have come in the middle of an approach
         self._send_brake()
-        return GuardResult(STANDSTILL, (self._latched or "",), latched=True)
+        return GuardResult(STANDSTILL, (reason,), latched=True)
 
     def _send_brake(self) -> None:
         try:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from hal.bus_state import ControllerState
+from hal.guard_reason import GuardReason
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +30,7 @@ class Health:
     """What it suffers from and what to do; empty while it is error-active. It may drive on but for bus-off."""
     alarm: str
     """What made the robot stop itself, and what to do: wheels, sensors, another sender; empty after a release."""
-    latched: str | None
+    latched: GuardReason | None
     """Why the robot stays stopped until `release`; None when it does not."""
 
     @property

@@ -10,15 +10,15 @@ import can
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.bus_state import BusState
 from hal.codec import Codec, InvalidFrameError, MessageCodec, load_codec
-from hal.guard import BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY, Guard
+from hal.guard import Guard
+from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.watchdog import TICKS_CEASED, Watchdog
+from hal.watchdog import Watchdog
 from hal.wheel_watch import WheelWatch
 
-CLOSED = "closed"
 REOPEN_PERIOD_S = 1.0
 _CLOCKS_DIFFER_S = 0.01
 """A frame that is stamped later than this after the present has no age: the wall clock was set back, or worse."""
@@ -143,14 +143,14 @@ class Kurt2:
         """Ask for wheel speeds in m/s; what is safe by the newest senses goes out in this tick's CONTROL frame."""
         if self.watchdog.ticks_ceased:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
-            self._guard.emergency_stop(TICKS_CEASED)
+            self._guard.emergency_stop(GuardReason.TICKS_CEASED)
         grant = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
         self._command = grant.wheel_speeds
         self._wheel_watch.set_command(grant.wheel_speeds)
         self.watchdog.beat()
         return grant
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """Brake now and stay stopped until `release`."""
         self._guard.emergency_stop(reason)
 
@@ -165,7 +165,7 @@ class Kurt2:
         """Brake, end the watchdog and give the bus back."""
         self._closed = True
         self.watchdog.stop()
-        self._guard.emergency_stop(CLOSED)
+        self._guard.emergency_stop(GuardReason.CLOSED)
         self._bus.shutdown()
 
     @property
@@ -194,19 +194,24 @@ class Kurt2:
         """
         senses = self._senses
         if bus_off or self._bus_state.off:
-            self._stop(BUS_OFF)
+            self._stop(GuardReason.BUS_OFF)
         if foreign_control:
-            self._stop(FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it")
+            self._stop(
+                GuardReason.FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it"
+            )
         disobedience = self._wheel_watch.check(
             senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s
         )
         if disobedience:
-            self._stop(WHEELS_DISOBEY, f"{disobedience}; check motors, encoders, cables; switch the robot off and on")
+            self._stop(
+                GuardReason.WHEELS_DISOBEY,
+                f"{disobedience}; check motors, encoders, cables; switch the robot off and on",
+            )
         freeze = self._infrared_watch.check_frozen(senses.time_s, driving=self._command != STANDSTILL and not paused)
         if freeze:
-            self._stop(INFRARED_FROZEN, freeze)
+            self._stop(GuardReason.INFRARED_FROZEN, freeze)
 
-    def _stop(self, reason: str, alarm: str = "") -> None:
+    def _stop(self, reason: GuardReason, alarm: str = "") -> None:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it
             self._alarm = alarm
             self._guard.emergency_stop(reason)
@@ -224,7 +229,7 @@ class Kurt2:
                 self._bus_lost = True
                 self._receive_trouble = str(error)
                 self._reopen_at_s = now_s + REOPEN_PERIOD_S
-                self._guard.emergency_stop(BUS_LOST)
+                self._guard.emergency_stop(GuardReason.BUS_LOST)
         if self._bus_lost and now_s >= self._reopen_at_s and not self._closed:
             self._reopen(now_s)
         self._frames += len(messages)

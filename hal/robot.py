@@ -2,6 +2,8 @@
 
 from typing import NamedTuple, Protocol
 
+from hal.guard_reason import GuardReason
+
 
 class WheelSpeeds(NamedTuple):
     """Set points of the two sides in metres per second, forward positive.
@@ -44,8 +46,8 @@ class GuardResult(NamedTuple):
 
     wheel_speeds: WheelSpeeds
     """Set points that stand in the CONTROL frame of this tick."""
-    reasons: tuple[str, ...]
-    """Why they differ from what was asked for, in the guard's words; empty when they do not."""
+    reasons: tuple[GuardReason, ...]
+    """Why they differ from what was asked for; empty when they do not."""
     latched: bool
     """True while the robot stays stopped until `release` is called (emergency stop, ticks ceased, an alarm)."""
 
@@ -61,7 +63,7 @@ class Robot(Protocol):
         """Ask for wheel speeds; what is safe goes out in this tick's CONTROL frame."""
         ...
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """Brake now and stay stopped until `release`."""
         ...
 

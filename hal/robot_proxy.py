@@ -1,5 +1,6 @@
 """What stands between a runtime and its robot, to look on or to change one thing."""
 
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, Robot, SensorReadings, WheelSpeeds
 
 
@@ -17,7 +18,7 @@ class RobotProxy:
         """As the robot does."""
         return self._robot.drive(wanted, decided_at_s, now_s)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """As the robot does."""
         self._robot.emergency_stop(reason)
 

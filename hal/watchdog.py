@@ -7,8 +7,8 @@ from types import TracebackType
 from typing import Self
 
 from hal.guard import Guard
+from hal.guard_reason import GuardReason
 
-TICKS_CEASED = "ticks ceased"
 POLL_S = 0.01
 
 
@@ -79,4 +79,4 @@ class Watchdog:
         while not self._stopping.wait(POLL_S):
             if self.check(self._clock()):
                 # At every poll anew: one brake frame may meet a full queue, and the controller forgets after 200 ms.
-                self._guard.emergency_stop(TICKS_CEASED)
+                self._guard.emergency_stop(GuardReason.TICKS_CEASED)

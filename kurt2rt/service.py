@@ -9,6 +9,7 @@ from pathlib import Path
 
 import anyio
 
+from hal.guard_reason import GuardReason
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld
@@ -49,7 +50,6 @@ from kurt2rt.timing.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.timing.timerfd import TimerfdClock
 from kurt2rt.upkeep import Upkeep
 
-_ENDS = "the service ends"
 _RECORDING_S = 2.0
 """For the disk to keep the end of the recording."""
 _JOURNAL_S = 10.0
@@ -188,13 +188,14 @@ async def serve(
                     tasks.start_soon(upkeep.reloading.serve, _Taking(rounds, service, upkeep))
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 # The wheels first, also where the loop hangs.
-                acts = (lambda: robot.emergency_stop(_ENDS), runtime.scheduler.end, upkeep.notifier.stopping)
+                stop_wheels = partial(robot.emergency_stop, GuardReason.SERVICE_ENDS)
+                acts = (stop_wheels, runtime.scheduler.end, upkeep.notifier.stopping)
                 ending.waits_for = "its loop"
                 with quiet_gc(), short_turns(), watch, ending.first(*acts):
                     try:
                         await runtime.scheduler.run(ticks, after_tick)
                     finally:
-                        robot.emergency_stop(_ENDS)
+                        stop_wheels()
                 ending.waits_for = "the teachers' channel"
                 tasks.cancel_scope.cancel()
             rounds.save_statistics()

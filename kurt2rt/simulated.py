@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position, WorldPlan
@@ -198,6 +199,6 @@ def simulated_robot(
                 Kurt2World(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
             )
             # While the simulation still runs, so that the last frame finds a listener.
-            simulation.robot.emergency_stop("the run is over")
+            simulation.robot.emergency_stop(GuardReason.RUN_OVER)
     finally:
         simulation.close()

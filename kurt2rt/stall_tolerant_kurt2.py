@@ -2,9 +2,9 @@
 
 from typing import Final
 
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import GuardResult, WheelSpeeds
-from hal.watchdog import TICKS_CEASED
 
 
 class StallTolerantKurt2(Kurt2):
@@ -14,28 +14,28 @@ class StallTolerantKurt2(Kurt2):
     a simulator in another program, which goes on while this one stalls.
     """
 
-    _stopped_because = ""
-    """Reason given to `emergency_stop` last; empty since the last release."""
+    _requested: GuardReason | None = None
+    """Reason given to `emergency_stop` last; None since the last release."""
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """Ask for wheel speeds; the tick that ends a stall stands, and its latch is not kept."""
         grant = super().drive(wanted, decided_at_s, now_s)
-        if not grant.latched or grant.reasons != _STALLED or self._stopped_because:
+        if not grant.latched or grant.reasons != _STALLED or self._requested is not None:
             return grant
         super().release()
-        if self._stopped_because:  # by a signal's thread, just before the release
-            super().emergency_stop(self._stopped_because)
+        if self._requested is not None:  # by a signal's thread, just before the release
+            super().emergency_stop(self._requested)
         return grant._replace(latched=self.health.latched is not None)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """Brake now and stay stopped until `release`, whatever stalled before."""
-        self._stopped_because = reason
+        self._requested = reason
         super().emergency_stop(reason)
 
     def release(self) -> None:
         """End a latched stop."""
-        self._stopped_because = ""
+        self._requested = None
         super().release()
 
 
-_STALLED: Final = (TICKS_CEASED,)
+_STALLED: Final = (GuardReason.TICKS_CEASED,)

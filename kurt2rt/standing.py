@@ -6,7 +6,7 @@ The one source of this for page, terminal, status line, status and channel; `kur
 from enum import StrEnum
 from typing import NamedTuple
 
-from hal import guard, watchdog
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.rla.rla import MID
@@ -71,24 +71,24 @@ class Standing(NamedTuple):
 
 DRIVES = Standing()
 
-LATCHED = {
-    watchdog.TICKS_CEASED: StandReason.COMPUTER_TOO_SLOW,
-    guard.BUS_LOST: StandReason.BUS_LOST,
-    guard.BUS_BLOCKED: StandReason.BUS_BLOCKED,
-    guard.BUS_OFF: StandReason.BUS_OFF,
-    guard.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
-    guard.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
-    guard.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
+LATCHED: dict[str, StandReason] = {
+    GuardReason.TICKS_CEASED: StandReason.COMPUTER_TOO_SLOW,
+    GuardReason.BUS_LOST: StandReason.BUS_LOST,
+    GuardReason.BUS_BLOCKED: StandReason.BUS_BLOCKED,
+    GuardReason.BUS_OFF: StandReason.BUS_OFF,
+    GuardReason.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
+    GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
+    GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
 }
 """By the guard's word for why it keeps the robot stopped; any other word is one that the program gave it."""
 
-_HELD = {
-    guard.INFRARED_STALE: StandReason.BLIND,
-    guard.ENCODER_STALE: StandReason.ENCODERS_SILENT,
-    guard.BUMPER_STALE: StandReason.BUMPERS_SILENT,
-    guard.COMMAND_TOO_OLD: StandReason.LATE,
-    guard.CLOCK_RAN_BACKWARDS: StandReason.CLOCK,
-    guard.NOT_A_NUMBER: StandReason.NOT_A_NUMBER,
+_HELD: dict[str, StandReason] = {
+    GuardReason.INFRARED_STALE: StandReason.BLIND,
+    GuardReason.ENCODER_STALE: StandReason.ENCODERS_SILENT,
+    GuardReason.BUMPER_STALE: StandReason.BUMPERS_SILENT,
+    GuardReason.COMMAND_TOO_OLD: StandReason.LATE,
+    GuardReason.CLOCK_RAN_BACKWARDS: StandReason.CLOCK,
+    GuardReason.NOT_A_NUMBER: StandReason.NOT_A_NUMBER,
 }
 """By the guard's word for what it lets no set point through, tick by tick."""
 
@@ -150,7 +150,7 @@ def touched(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> StandReason 
     """
     if wheel_speeds != STANDSTILL:
         return None
-    front, rear = guard.FRONT_BUMPER in reasons, guard.REAR_BUMPER in reasons
+    front, rear = GuardReason.FRONT_BUMPER in reasons, GuardReason.REAR_BUMPER in reasons
     if front and rear:
         return StandReason.BOTH_BUMPERS
     return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 import pytest
 
 from hal.bus import open_bus
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import load_robot
-from hal.watchdog import TICKS_CEASED
 from kurt2rt.app import open_robot
 from kurt2rt.bus_names import SIMULATED
 from kurt2rt.layers.decision import Cause
@@ -61,7 +61,7 @@ def test_on_a_bus_a_stall_keeps_the_robot_stopped_until_go() -> None:
     with scene(Kurt2) as robot:
         for _ in range(20):
             robot.tick()
-        assert robot.stall() == GuardResult(STANDSTILL, (TICKS_CEASED,), latched=True)
+        assert robot.stall() == GuardResult(STANDSTILL, (GuardReason.TICKS_CEASED,), latched=True)
         assert all(robot.tick().latched for _ in range(100))
         robot.robot.release()
         assert not robot.tick().latched
@@ -71,7 +71,7 @@ def test_simulated_in_the_program_it_brakes_and_drives_on() -> None:
     with scene(StallTolerantKurt2) as robot:
         for _ in range(20):
             robot.tick()
-        assert robot.stall() == GuardResult(STANDSTILL, (TICKS_CEASED,), latched=False)
+        assert robot.stall() == GuardResult(STANDSTILL, (GuardReason.TICKS_CEASED,), latched=False)
         assert not any(robot.tick().latched for _ in range(100))
         assert robot.tick().wheel_speeds == TURN
 
@@ -79,14 +79,14 @@ def test_simulated_in_the_program_it_brakes_and_drives_on() -> None:
 def test_a_stop_that_was_asked_for_outlasts_a_stall() -> None:
     with scene(StallTolerantKurt2) as robot:
         robot.tick()
-        robot.robot.emergency_stop("somebody said so")
+        robot.robot.emergency_stop(GuardReason.OTHER)
         assert robot.stall().latched
-        assert robot.tick().reasons == ("somebody said so",)
+        assert robot.tick().reasons == (GuardReason.OTHER,)
         robot.robot.release()
         assert not robot.tick().latched
         robot.now_s += 0.5
         robot.robot.watchdog.check(robot.now_s)
-        robot.robot.emergency_stop("after the stall")  # as a signal does while no tick runs
+        robot.robot.emergency_stop(GuardReason.SERVICE_ENDS)  # as a signal does while no tick runs
         assert robot.tick().latched
         assert robot.tick().latched
 
@@ -96,14 +96,14 @@ def test_a_stop_that_comes_just_before_the_release_is_not_lifted(monkeypatch: py
 
     def overtaken(robot: Kurt2) -> None:
         monkeypatch.setattr(Kurt2, "release", release)
-        robot.emergency_stop("a signal came")  # from another thread
+        robot.emergency_stop(GuardReason.SERVICE_ENDS)  # from another thread
         release(robot)
 
     with scene(StallTolerantKurt2) as robot:
         robot.tick()
         monkeypatch.setattr(Kurt2, "release", overtaken)
         assert robot.stall().latched
-        assert robot.tick().reasons == ("a signal came",)
+        assert robot.tick().reasons == (GuardReason.SERVICE_ENDS,)
 
 
 def test_only_the_robot_in_this_program_tolerates_stalls() -> None:

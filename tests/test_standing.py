@@ -5,7 +5,7 @@ from dataclasses import replace
 import cbor2
 import pytest
 
-from hal import guard, watchdog
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
@@ -36,11 +36,6 @@ from tests.channel.states import state
 FORWARD = WheelSpeeds(0.3, 0.3)
 BY_RLA = Decision(FORWARD, Cause.RLA, "forward", 1, None, True)
 ASKS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
-LATCHES = [
-    value
-    for name, value in vars(guard).items()
-    if name.isupper() and not name.startswith("_") and isinstance(value, str) and value in LATCHED
-]
 
 
 UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)
@@ -56,7 +51,7 @@ class LatchingDesk(Desk):
         self.run(3)
         assert self.record.standing == DRIVES
 
-    def latch(self, word: str) -> None:
+    def latch(self, word: GuardReason) -> None:
         drive = self.robot.drive
 
         def latched(wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
@@ -81,7 +76,7 @@ def page_of(picture: State) -> str:
 
 def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> None:
     desk = LatchingDesk()
-    desk.latch(watchdog.TICKS_CEASED)
+    desk.latch(GuardReason.TICKS_CEASED)
     desk.stall(11)
     desk.run(5)  # what was measured stays
     assert desk.record.decision.driving  # its layer goes on wanting to
@@ -102,8 +97,8 @@ class _Keeping:
     last_write_s: float | None = None
 
 
-@pytest.mark.parametrize("word", [*LATCHES, watchdog.TICKS_CEASED])
-def test_each_latch_of_the_guard_has_a_text_with_go(word: str) -> None:
+@pytest.mark.parametrize("word", LATCHED)
+def test_each_latch_of_the_guard_has_a_text_with_go(word: GuardReason) -> None:
     desk = LatchingDesk()
     desk.latch(word)
     desk.run()
@@ -116,13 +111,13 @@ def test_each_latch_of_the_guard_has_a_text_with_go(word: str) -> None:
 
 
 def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
-    alarms = {guard.BUS_LOST, guard.BUS_BLOCKED, guard.BUS_OFF, guard.FOREIGN_CONTROL}
-    assert alarms | {guard.WHEELS_DISOBEY, guard.INFRARED_FROZEN, watchdog.TICKS_CEASED} == set(LATCHED)
+    alarms = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.BUS_OFF, GuardReason.FOREIGN_CONTROL}
+    assert alarms | {GuardReason.WHEELS_DISOBEY, GuardReason.INFRARED_FROZEN, GuardReason.TICKS_CEASED} == set(LATCHED)
 
 
 def test_a_stop_of_the_program_is_told_in_its_own_words() -> None:
     desk = LatchingDesk()
-    desk.latch("the service ends")
+    desk.latch(GuardReason.SERVICE_ENDS)
     desk.run()
     assert page_of(desk.picture) == "Stands: the service ends. GO lets it drive on"
 
@@ -170,7 +165,7 @@ def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:
 
 def test_one_late_tick_is_no_standing_and_many_are() -> None:
     watch = StandingWatch()
-    late = GuardResult(STANDSTILL, (guard.COMMAND_TOO_OLD,), latched=False)
+    late = GuardResult(STANDSTILL, (GuardReason.COMMAND_TOO_OLD,), latched=False)
     told = [watch.update(BY_RLA, late, 0.01 * tick, None, None).reason for tick in range(HELD_TICKS + 1)]
     assert told == [*[StandReason.DRIVES] * HELD_TICKS, StandReason.LATE]
     assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, None, None) == DRIVES
@@ -178,7 +173,7 @@ def test_one_late_tick_is_no_standing_and_many_are() -> None:
 
 
 def test_a_question_waits_while_the_guard_has_latched() -> None:
-    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (guard.BUS_LOST,), latched=True), 0.0, None, None)
+    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (GuardReason.BUS_LOST,), latched=True), 0.0, None, None)
     assert told == Standing(StandReason.BUS_LOST, True, True)
 
 

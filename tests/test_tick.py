@@ -8,7 +8,7 @@ import pytest
 
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
-from hal.guard import FRONT_BUMPER
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
@@ -51,13 +51,13 @@ class CorridorRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         self.command_ages_s.append(now_s - decided_at_s)
         self.latched = self.latched or self.relatches
-        granted, reasons = (STANDSTILL, ("emergency stop",)) if self.latched else (wanted, ())
+        granted, reasons = (STANDSTILL, (GuardReason.OTHER,)) if self.latched else (wanted, ())
         if self.touches_in_front and max(granted) > 0.0:
-            granted, reasons = WheelSpeeds(min(granted[0], 0.0), min(granted[1], 0.0)), (FRONT_BUMPER,)
+            granted, reasons = WheelSpeeds(min(granted[0], 0.0), min(granted[1], 0.0)), (GuardReason.FRONT_BUMPER,)
         self.driven.append(granted)
         return GuardResult(granted, reasons, self.latched)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         assert reason
         self.latched = True
 
@@ -258,9 +258,9 @@ def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> N
 
 
 def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corridor) -> None:
-    driving.robot.emergency_stop("bumper")
+    driving.robot.emergency_stop(GuardReason.OTHER)
     first = driving.run()
-    assert first.grant == GuardResult(STANDSTILL, ("emergency stop",), latched=True)
+    assert first.grant == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
     for _ in range(5):
         record = driving.run()
         assert record.grant.latched
@@ -272,7 +272,7 @@ def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corri
 def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving: Corridor) -> None:
     driving.run(100, stop("s"))
     driving.run(100, resume("again"))
-    driving.robot.emergency_stop("bumper")
+    driving.robot.emergency_stop(GuardReason.OTHER)
     record = driving.run(100, resume("again"))
     assert record.results[0].text == "had been taken already; counted once"
     assert record.grant.latched
@@ -281,7 +281,7 @@ def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving:
 
 def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving: Corridor) -> None:
     said_on = driving.run(100).tick
-    driving.robot.emergency_stop("bumper")
+    driving.robot.emergency_stop(GuardReason.OTHER)
     stopped_on = driving.run(100).tick
     late = driving.run(100, Resume("on its way", "Ann", said_on))
     assert late.results[0].text == "the robot was stopped after this was said; look at it, then say it again"
@@ -290,13 +290,13 @@ def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving
 
 
 def test_a_resume_does_not_end_the_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
-    driving.robot.emergency_stop("bumper")  # as the senses of the next tick do
+    driving.robot.emergency_stop(GuardReason.OTHER)  # as the senses of the next tick do
     assert driving.run(100, resume("said before")).grant.latched
     assert not driving.run(100, resume("after a look")).grant.latched
 
 
 def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(driving: Corridor) -> None:
-    driving.robot.emergency_stop("bus lost")
+    driving.robot.emergency_stop(GuardReason.BUS_LOST)
     seen = driving.run(100).tick
     driving.robot.relatches = True
     again = driving.run(100, Resume("1", "Ann", seen))

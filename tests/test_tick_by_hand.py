@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
@@ -295,7 +296,7 @@ def test_what_the_hand_did_is_not_an_rlas_to_be_blamed_for(driving: Corridor) ->
 
 
 def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:
-    driving.robot.emergency_stop("bumper")
+    driving.robot.emergency_stop(GuardReason.OTHER)
     record = driving.run(100, Resume("r", "Ben"))
     assert not record.results[0].accepted
     assert record.grant.latched
@@ -303,7 +304,7 @@ def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) 
 
 def test_while_it_is_latched_the_lease_runs_out_and_the_press_is_over(driving: Corridor) -> None:
     driving.run(100, press(driving))
-    driving.robot.emergency_stop("bumper")
+    driving.robot.emergency_stop(GuardReason.OTHER)
     causes(driving, LEASE)
     driving.robot.release()
     assert stands(driving.run(100, press(driving)))

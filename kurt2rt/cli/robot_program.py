@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import anyio
 
+from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.robot_settings import RobotSettings
 from kurt2rt.app import OpenedRobot, Opening, open_robot
@@ -55,7 +56,6 @@ if TYPE_CHECKING:
 _KNOWLEDGE = "knowledge"
 _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""
-_WAITS = "the robot program waits for what it needs"
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +296,7 @@ class RobotProgram:
 
     def _brake(self) -> None:
         if self._opened is not None:
-            self._opened.robot.emergency_stop(_WAITS)
+            self._opened.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
 
     def _take_robot(self) -> None:
         orders = self._orders

@@ -8,6 +8,7 @@ from typing import Self
 import anyio
 from anyio.lowlevel import checkpoint
 
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
@@ -17,7 +18,6 @@ from kurt2rt.commission.listener import Listener
 from kurt2rt.commission.person import LEAVE, LeftError, Person, Question, Tone
 from kurt2rt.timing.clock import Clock
 
-WAITS = "the checklist waits"
 RAN_AWAY = "the wheels ran away"
 UNANSWERED = "a side does not turn, or its encoder counts nothing"
 TURNS_SHARE = 0.1
@@ -46,7 +46,7 @@ class Drive:
     """From then on, until they rested."""
     granted: WheelSpeeds
     """Set points of the last frame of the order."""
-    reasons: tuple[str, ...]
+    reasons: tuple[GuardReason, ...]
     """The guard's, of that frame."""
     stopped_by: str | None
     """Why it was ended early."""
@@ -152,7 +152,7 @@ class Bench:
             # An alarm has braked: that is not the controller's merit.
             silent = replace(silent, stopped_by=_stopped_by(robot))
         finally:
-            robot.emergency_stop(WAITS)
+            robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
             if self._second_guard:
                 robot.watchdog.start()
         await self._until_rest(drive, _HALT_S, STANDSTILL)
@@ -182,7 +182,7 @@ class Bench:
         return any(abs(its) < TURNS_SHARE * abs(told) for its, told in zip(counted, wanted, strict=True))
 
     async def _brake(self, robot: Kurt2, drive: Drive) -> Drive:
-        robot.emergency_stop(WAITS)
+        robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
         return await self._until_rest(drive, _HALT_S, STANDSTILL)
 
     async def _until_rest(self, drive: Drive, at_most_s: float, wanted: WheelSpeeds | None) -> Drive:
@@ -207,7 +207,7 @@ class Bench:
             settings = bench_settings(self.settings, mode, ear.channels, has_bumpers=ear.has_bumpers)
             robot = self._robot = self._open_robot(settings)
             self._mode = mode
-            robot.emergency_stop(WAITS)
+            robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
             if self._second_guard:
                 robot.watchdog.start()
         await self.stand(_BREATH_S)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
 
-from hal.guard import SLEW_LIMIT
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.explain.lesson_words import LessonWords
@@ -282,7 +281,7 @@ def _doing(entry: TickEntry) -> tuple[Kind, str]:
 
 def _out_of_the_ordinary(entry: TickEntry) -> tuple[str, ...]:
     """Why the guard changed what was decided, but for the slew at each change of action."""
-    return tuple(reason for reason in entry.grant.reasons if reason != SLEW_LIMIT)
+    return tuple(reason for reason in entry.grant.reasons if not reason.routine)
 
 
 def _share(decision: DecisionEntry) -> float:

@@ -5,6 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from hal.errors import UserError
+from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.clocks import DisturbedClock, DrillClock
 from kurt2rt.faults.complaint import Complaint
@@ -24,7 +25,6 @@ from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.tick import InMemoryEventStore, LessonKeeper, TickRecord
 from kurt2rt.timing.clock import Clock
 
-SERVICE_ENDS = "the service ends"
 """The word with which the service stops the robot when its loop ends, for whatever reason."""
 
 
@@ -148,7 +148,7 @@ class _Drill:
         except DidNotDriveError:
             raise
         except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the service
-            self._place.robot.emergency_stop(SERVICE_ENDS)
+            self._place.robot.emergency_stop(GuardReason.SERVICE_ENDS)
             self._ended_by = repr(error)
 
     def _start_anew(self) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, is_dataclass
 from typing import Any
 
+from hal.guard_reason import GuardReason
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.simulation_view import SIMULATION, SimulationView
 from kurt2rt.channel.state import State
@@ -18,6 +19,9 @@ from kurt2rt.teaching.lesson_line import LessonLine
 from kurt2rt.teaching.link import Link
 from kurt2rt.teaching.question import FeatureDifference
 from kurt2rt.teaching.world import World
+
+_EACH_CHANGE_OF_SPEED = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
+"""Limits that every change of speed meets; the page leaves them out."""
 
 
 def state_view(state: State, link: Link, age_s: float, refused: str, words: SensorWords = NO_WORDS) -> dict[str, Any]:
@@ -59,7 +63,7 @@ def state_view(state: State, link: Link, age_s: float, refused: str, words: Sens
         "unsaved": state.unsaved,
         "session": state.session,
         "clock_s": state.clock_s,
-        "guard": state.guard,
+        "guard": [reason for reason in state.guard if reason not in _EACH_CHANGE_OF_SPEED],
         "trouble": state.trouble,
         "late_p99_ms": _finite(state.late_p99_ms),
         "missed_ticks": state.missed_ticks,

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, TypeVar
 
+from hal.guard_reason import guard_reason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.knowledge.events import decode_event, encode_event
@@ -142,7 +143,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
             senses["bumpers"],
             float(senses["bumper_age_s"]),
         ),
-        GuardResult(_speeds_of(grant["wheels"]), tuple(grant["reasons"]), grant["latched"]),
+        GuardResult(_speeds_of(grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]),
         _all(decode_command, content.get("commands", ())),
         content.get("trouble"),
         content.get("saved", False),

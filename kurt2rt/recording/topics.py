@@ -16,7 +16,7 @@ from foxglove.channels import (
 )
 from foxglove.messages import Log, LogLevel
 
-from hal.guard import SLEW_LIMIT
+from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedPlace, WorldPlan
@@ -66,7 +66,7 @@ class Topics:
         self._begins: PlanePose | None = None
         self._doing = ""
         self._asking = False
-        self._reasons: tuple[str, ...] = ()
+        self._reasons: tuple[GuardReason, ...] = ()
         self._trouble: str | None = None
         self._tick = _channel(TICK, TICK_SCHEMA, context)
         self._lesson = _channel(LESSON, LESSON_SCHEMA, context)
@@ -155,7 +155,7 @@ class Topics:
             self._reasons = record.grant.reasons
             if self._reasons:
                 # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
-                gently = LogLevel.Debug if self._reasons == (SLEW_LIMIT,) else LogLevel.Warning
+                gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
                 level = LogLevel.Error if record.grant.latched else gently
                 self.say(f"guard: {', '.join(self._reasons)}", level, time_ns)
         if record.trouble != self._trouble:

@@ -1,5 +1,6 @@
 """What stands round a tick that is replayed: robot, clock and journal say what the recorded ones said."""
 
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.recording.entries import TickEntry
 from kurt2rt.rla.rla import TeachingEvent
@@ -35,7 +36,7 @@ class Replayed:
         """What the guard let through then, whatever is wanted now: the robot is where it was (Robot)."""
         return self._entry.grant
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """The recorded grants tell whether it stopped (Robot)."""
 
     def release(self) -> None:

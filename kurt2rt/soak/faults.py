@@ -4,7 +4,7 @@ import random
 from collections.abc import Callable
 from typing import NamedTuple
 
-from hal.guard import WHEELS_DISOBEY
+from hal.guard_reason import GuardReason
 from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.place import Disturbance
 from kurt2rt.faults.recorder import FailingRecorder
@@ -132,7 +132,7 @@ class SoakFaults:
         # A robot that stood already shows nothing. One that is told to drive on by a teacher who has not seen what is
         # wrong may try again, and may put as many old set points into a queue that is blocked as the first time.
         # And wheels show only at some speed whether they obey: in a narrow curve one side nearly stands.
-        shows = WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
+        shows = GuardReason.WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
         if case.must.leads_to == "stands" and self._drove and stood_at_s is None and shows:
             complaints.append(complaint(ComplaintCode.DROVE_ALL_THE_WHILE))
         old_frames = witness.envelope.old_frames - self._old_frames

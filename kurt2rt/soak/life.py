@@ -6,9 +6,9 @@ from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from kurt2rt.faults.complaint import Complaint
-from kurt2rt.faults.drill import SERVICE_ENDS
 from kurt2rt.faults.hand_link import TEACHER, HandLink
 from kurt2rt.faults.place import Disturbance
 from kurt2rt.faults.table import Target
@@ -139,7 +139,7 @@ class Life:
             except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged
                 self.ended_by = _told(error)
             finally:
-                self._witness.emergency_stop(SERVICE_ENDS)
+                self._witness.emergency_stop(GuardReason.SERVICE_ENDS)
         self._started_s = None
 
     def close(self) -> Complaint | None:

@@ -2,6 +2,7 @@
 
 import math
 
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope
@@ -127,7 +128,7 @@ class SoakWitness:
         assert self._robot is not None
         return self._robot.drive(wanted, decided_at_s, now_s)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         """As the robot does."""
         assert self._robot is not None
         self._robot.emergency_stop(reason)

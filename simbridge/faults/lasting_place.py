@@ -9,12 +9,13 @@ import can
 from hal.bus import CONTROL_ID, CanBus
 from hal.can_interface import CanInterface
 from hal.codec import load_codec
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from hal.tap import Tap
-from hal.watchdog import POLL_S, TICKS_CEASED
+from hal.watchdog import POLL_S
 from simbridge.faults.cable import Cable
 from simbridge.faults.changing_end import Links, NumberedFrame, SwitchableInterface
 from simbridge.faults.disturbance import Kind, TimedFault
@@ -154,7 +155,7 @@ class LongRunRig:
     def _poll_watchdog(self) -> None:
         robot = self.robot
         if robot is not None and robot.watchdog.check(self.time.now_s()):
-            robot.emergency_stop(TICKS_CEASED)
+            robot.emergency_stop(GuardReason.TICKS_CEASED)
 
     def _open_bus(self, wire: str) -> None:
         """Another wire between the two ends that will be opened."""

@@ -8,11 +8,12 @@ import can
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import load_codec
+from hal.guard_reason import GuardReason
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
-from hal.watchdog import POLL_S, TICKS_CEASED
+from hal.watchdog import POLL_S
 from simbridge.faults.disturbance import TimedFault
 from simbridge.faults.disturbed_end import FaultyInterface
 from simbridge.faults.event_time import EventScheduler
@@ -75,7 +76,7 @@ class SimulatedFaultRig:
 
     def _poll_watchdog(self) -> None:
         if self.robot.watchdog.check(self.time.now_s()):
-            self.robot.emergency_stop(TICKS_CEASED)
+            self.robot.emergency_stop(GuardReason.TICKS_CEASED)
 
     def _open_robots_end(self, name: str) -> FaultyInterface:
         self._robots_end = FaultyInterface(

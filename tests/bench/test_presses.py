@@ -4,6 +4,7 @@ from itertools import islice
 
 import pytest
 
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.bench.press import press_result
 from kurt2rt.bench.presses import Press, Start, WitnessedRobot, rhythms, waits_ns
@@ -38,7 +39,7 @@ class GrantingRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002
         return GuardResult(wanted, (), latched=False)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         self.told.append(reason)
 
     def release(self) -> None:
@@ -66,7 +67,7 @@ def test_each_start_of_the_wheels_is_noted_once() -> None:
         assert witness.drive(speeds, 5.0, 5.0).wheel_speeds == speeds
     assert witness.starts == [Start(5_000_000_000, True), Start(5_000_000_000, False)]
     assert witness.sense(6.0) == robot.sense(6.0)
-    witness.emergency_stop("enough")
+    witness.emergency_stop(GuardReason.SERVICE_ENDS)
     witness.release()
     witness.close()
     assert robot.told == ["enough", "release", "close"]

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Mapping
 from typing import Any, cast
 
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
 from hal.simulation import SimulatedWorld
@@ -52,7 +53,7 @@ class WideRobot(CorridorRobot):
     def __init__(self) -> None:
         super().__init__()
         self.bumpers = 0
-        self.refuses: tuple[str, ...] = ()
+        self.refuses: tuple[GuardReason, ...] = ()
 
     def sense(self, now_s: float) -> SensorReadings:
         counts = (self.counts,) * len(ROBOT.infrared.sensors)

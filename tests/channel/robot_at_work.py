@@ -8,6 +8,7 @@ from typing import Any
 
 import anyio
 
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.channel.channel import Channel
@@ -45,7 +46,7 @@ class CheapRobot:
         """Grants all until it is latched."""
         return GuardResult(STANDSTILL if self.latched else wanted, (), self.latched)
 
-    def emergency_stop(self, reason: str) -> None:  # noqa: ARG002
+    def emergency_stop(self, reason: GuardReason) -> None:  # noqa: ARG002
         self.latched = True
 
     def release(self) -> None:

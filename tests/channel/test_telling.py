@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from hal.guard_reason import GuardReason
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.requests import (
     AppraiseRequest,
@@ -190,10 +191,10 @@ def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
 def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
     desk.robot.infrared_age_s = math.inf
     desk.robot.bumpers = 5
-    desk.robot.refuses = ("infra-red stale", "bumper")
+    desk.robot.refuses = (GuardReason.INFRARED_STALE, GuardReason.FRONT_BUMPER)
     desk.run()
     told = picture(desk)
-    assert (told.infrared_age_s, told.bumpers, told.guard) == (math.inf, 5, ("infra-red stale", "bumper"))
+    assert (told.infrared_age_s, told.bumpers, told.guard) == (math.inf, 5, desk.robot.refuses)
     assert told.cause == "blind"
 
 

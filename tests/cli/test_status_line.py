@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from hal.bus_state import ControllerState
-from hal.guard import BUS_LOST, FOREIGN_CONTROL
+from hal.guard_reason import GuardReason
 from hal.health import Health
 from kurt2rt.cli.status_line import status_line
 from kurt2rt.rounds import Status
@@ -27,7 +27,7 @@ WELL = Health(
     latched=None,
 )
 PASSIVE = replace(WELL, controller=ControllerState.PASSIVE, controller_trouble="bus can0: error-passive, 130 errors")
-LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=BUS_LOST)
+LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=GuardReason.BUS_LOST)
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_a_lost_bus_is_told_until_somebody_says_resume(status: Status) -> None:
 
 
 def test_what_stopped_the_robot_is_told_with_it(status: Status) -> None:
-    stopped = replace(WELL, alarm="somebody else sends CONTROL", foreign_control=2, latched=FOREIGN_CONTROL)
+    stopped = replace(WELL, alarm="somebody else sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
     line = status_line(status, stopped)
     assert line.endswith(" | somebody else sends CONTROL | 2 CONTROL frames of another sender so far")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hal.bus import open_bus
-from hal.guard import FOREIGN_CONTROL
+from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.commission.bench import UNANSWERED
 from kurt2rt.commission.checklist import barring
@@ -124,7 +124,7 @@ async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
         session = Session(workshop, tmp_path)
         workshop.stranger = open_bus(workshop.spec)
         await session.walk("modes")
-    assert any(FOREIGN_CONTROL in line for line in session.to_do("modes"))
+    assert any(GuardReason.FOREIGN_CONTROL in line for line in session.to_do("modes"))
     assert session.outcome("modes") is Outcome.FAILED
 
 
@@ -314,5 +314,5 @@ async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_c
         workshop.stranger_waits_s = 2 * DRIVE_S + 0.2  # some cycles after the second drive
         await session.walk("stop")
     (told,) = session.to_do("stop")
-    assert FOREIGN_CONTROL in told
+    assert GuardReason.FOREIGN_CONTROL in told
     assert session.progress.findings.controller_watchdog_s is None

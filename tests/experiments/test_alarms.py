@@ -5,6 +5,7 @@ from pathlib import Path
 
 import anyio
 
+from hal.guard_reason import GuardReason
 from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lesson import LessonResult
@@ -31,7 +32,7 @@ class StageWithAnAlarm(Kurt2SimulationFactory):
             nonlocal cycles
             cycles += 1
             if cycles == ALARM_CYCLE:
-                simulation.robot.emergency_stop("bus lost")
+                simulation.robot.emergency_stop(GuardReason.BUS_LOST)
             step()
 
         simulation.step = step_on  # type: ignore[method-assign]
@@ -73,7 +74,7 @@ def test_an_exam_ends_and_says_why() -> None:
 
     (result,) = anyio.run(exam)
     drive = result.teacher
-    assert drive.alarm == "bus lost"
+    assert drive.alarm == GuardReason.BUS_LOST
     assert drive.duration_s == ALARM_CYCLE / 100
     assert not drive.stuck
     # The teacher was stopped after a quarter of the time: that is no measure.

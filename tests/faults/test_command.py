@@ -1,6 +1,5 @@
 """`kurt2rt faults`, as it is typed."""
 
-import inspect
 import json
 from pathlib import Path
 
@@ -8,11 +7,10 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-import kurt2rt.service
 from config import CONFIG_DIR
 from hal.settings import content_of
 from kurt2rt.cli.faults import faults
-from kurt2rt.faults.drill import SERVICE_ENDS, DidNotDriveError
+from kurt2rt.faults.drill import DidNotDriveError
 
 
 @pytest.fixture
@@ -88,9 +86,3 @@ def test_a_robot_that_stands_anyway_shows_nothing(app: typer.Typer, tmp_path: Pa
     path.write_text(json.dumps({**content, "action": "stand"}))
     with pytest.raises(DidNotDriveError, match="tick stuck: the robot stands before anything fails"):
         run(app, "--target", "tick", "--kind", "stuck", "--table", str(path))
-
-
-def test_the_drill_ends_as_the_service_does() -> None:
-    source = inspect.getsource(kurt2rt.service)
-    assert f'_ENDS = "{SERVICE_ENDS}"' in source
-    assert "robot.emergency_stop(_ENDS)" in source

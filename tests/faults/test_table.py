@@ -6,22 +6,15 @@ from typing import Any
 
 import pytest
 
-import hal.guard
-import hal.watchdog
 from config import CONFIG_DIR
+from hal.guard_reason import GuardReason
 from hal.settings import SettingsError, content_of
-from kurt2rt.faults.drill import SERVICE_ENDS
 from kurt2rt.faults.table import cases_of, load_faults
 from kurt2rt.layers.decision import Cause
 from tests.faults.helpers import ROBOT, TABLE, tried
 
 SHIPPED = CONFIG_DIR / "faults" / "kurt2.yaml"
-WORDS = {
-    *(value for name, value in vars(hal.guard).items() if name.isupper() and isinstance(value, str)),
-    hal.watchdog.TICKS_CEASED,
-    SERVICE_ENDS,
-    *Cause,
-}
+WORDS = {*GuardReason, *Cause}
 
 
 def changed(tmp_path: Path, change: Any) -> Path:

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from typing import Any
 
 from hal.bus import CanBus
-from hal.guard import BUS_BLOCKED, BUS_LOST, Guard
+from hal.guard import Guard
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, BumperSettings, RobotSettings, SpeedMode
-from hal.watchdog import TICKS_CEASED
 
 MakeGuard = Callable[[RobotSettings, CanBus], Guard]
 
@@ -92,15 +92,15 @@ class Forgetful(Guard):
 
 
 class BelievesTheLast(Guard):
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         self.release()
         super().emergency_stop(reason)
 
 
 class StopsAtTheNextTick(Guard):
-    due: str | None = None
+    due: GuardReason | None = None
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         self.due = self.due or reason
 
     def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
@@ -111,15 +111,15 @@ class StopsAtTheNextTick(Guard):
 
 
 class IgnoresTheWatchdog(Guard):
-    def emergency_stop(self, reason: str) -> None:
-        if reason != TICKS_CEASED:
+    def emergency_stop(self, reason: GuardReason) -> None:
+        if reason != GuardReason.TICKS_CEASED:
             super().emergency_stop(reason)
 
 
 class ReleasesItself(Guard):
     """Gets over a stop of its own, as if nothing had been."""
 
-    why = BUS_LOST
+    why = GuardReason.BUS_LOST
 
     def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         grant = super().drive(wanted, senses, decided_at_s, now_s)
@@ -129,7 +129,7 @@ class ReleasesItself(Guard):
 
 
 class OverlooksABlockedBus(ReleasesItself):
-    why = BUS_BLOCKED
+    why = GuardReason.BUS_BLOCKED
 
 
 class NeverReleases(Guard):

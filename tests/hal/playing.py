@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from hal.bus import CanBus
 from hal.frame import Frame
-from hal.guard import BUS_BLOCKED, Guard
+from hal.guard import Guard
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.watchdog import TICKS_CEASED, Watchdog
+from hal.watchdog import Watchdog
 from tests.hal.streams import Bytes, Flags, Floats, Streams
 
-FIRST, AGAIN, SIGNAL = "first stop", "second stop", "signal"
+FIRST, AGAIN, SIGNAL = GuardReason.SERVICE_ENDS, GuardReason.RUN_OVER, GuardReason.PROGRAM_WAITS
 """Reasons of the stops in a stream."""
 
 MakeGuard = Callable[[RobotSettings, CanBus], Guard]
@@ -215,13 +216,13 @@ def _play_one(
             if streams.stop[at, tick]:
                 guard.emergency_stop(FIRST)
             if streams.release[at, tick]:
-                if guard.latched == BUS_BLOCKED:
+                if guard.latched == GuardReason.BUS_BLOCKED:
                     end.forget()  # as the guard does, for frames that were lost would wait for ever
                 guard.release()
             if streams.stop_again[at, tick]:
                 guard.emergency_stop(AGAIN)
         if watchdog.check(watchdog_s):
-            guard.emergency_stop(TICKS_CEASED)
+            guard.emergency_stop(GuardReason.TICKS_CEASED)
         if eventful[tick]:
             end.interrupt = interrupt if streams.signal[at, tick] else None
             if streams.early_signal[at, tick]:

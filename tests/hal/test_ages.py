@@ -5,7 +5,7 @@ import math
 import pytest
 
 from hal.bus import CanBus
-from hal.guard import BUMPER_STALE, ENCODER_STALE, INFRARED_STALE
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
 from tests.hal.desk_bus import Ride
@@ -48,7 +48,7 @@ def test_a_frame_of_the_future_proves_nothing(ride: Ride, ago_s: float) -> None:
         ride.sleep(TICK_S)
         ride.desk.arrive(*ride.frames(), ago_s=ago_s)
         grant = ride.decide()
-    assert grant.reasons == (INFRARED_STALE,)
+    assert grant.reasons == (GuardReason.INFRARED_STALE,)
     assert ride.kurt2.health.junk == 12 * len(ride.frames())
 
 
@@ -62,9 +62,9 @@ def test_clocks_that_differ_by_a_moment_are_no_matter(ride: Ride) -> None:
 @pytest.mark.parametrize(
     ("old", "ago_s", "reason"),
     [
-        (INFRARED, LIMITS.stale_infrared_s + 0.001, INFRARED_STALE),
-        (ENCODER, LIMITS.stale_encoder_s + 0.001, ENCODER_STALE),
-        (BUMPERS, LIMITS.stale_bumper_s + 0.001, BUMPER_STALE),
+        (INFRARED, LIMITS.stale_infrared_s + 0.001, GuardReason.INFRARED_STALE),
+        (ENCODER, LIMITS.stale_encoder_s + 0.001, GuardReason.ENCODER_STALE),
+        (BUMPERS, LIMITS.stale_bumper_s + 0.001, GuardReason.BUMPER_STALE),
     ],
 )
 def test_a_robot_with_old_feelings_stands(ride: Ride, old: slice, ago_s: float, reason: str) -> None:
@@ -81,7 +81,7 @@ def test_after_a_hang_it_stands_until_fresh_frames_come_however_many_old_ones_wa
         ride.desk.arrive(*ride.frames())
     ride.sleep(0.6)
     for _ in range(3):
-        assert ride.decide().reasons == (INFRARED_STALE,)
+        assert ride.decide().reasons == (GuardReason.INFRARED_STALE,)
         ride.sleep(TICK_S)
     assert ride.tick(0.01, 0.01).reasons == ()
 
@@ -92,7 +92,7 @@ def test_a_runtime_whose_clock_ran_backwards_does_not_take_old_frames_for_new(en
     robot.sense(1000.0)
     senses = robot.sense(10.0)
     assert senses.infrared_age_s == senses.encoder_age_s == senses.bumper_age_s == math.inf
-    assert robot.drive(WheelSpeeds(0.3, 0.3), 10.0, 10.0).reasons == (INFRARED_STALE,)
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 10.0, 10.0).reasons == (GuardReason.INFRARED_STALE,)
     send(ends[1], cycle())
     assert robot.sense(10.0).infrared_age_s == 0.0
     robot.close()

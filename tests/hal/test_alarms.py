@@ -7,7 +7,7 @@ from hal.bus import CanBus
 from hal.bus_state import ControllerState
 from hal.control import Mode, RawControl, RawSide, SpeedControl, encode_brake
 from hal.frame import Frame
-from hal.guard import BUS_BLOCKED, BUS_LOST, BUS_OFF, FOREIGN_CONTROL, INFRARED_FROZEN, WHEELS_DISOBEY
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from tests.hal.desk_bus import Ride
@@ -18,7 +18,7 @@ OFF, RESTARTED = error_frame(0x040), error_frame(0x100)
 FORWARD = Frame(0x01, bytes.fromhex("0002001E001E0001"))
 
 
-def stopped(reason: str) -> GuardResult:
+def stopped(reason: GuardReason) -> GuardResult:
     return GuardResult(STANDSTILL, (reason,), latched=True)
 
 
@@ -30,19 +30,19 @@ def test_another_sender_of_control_stops_the_robot_in_the_same_tick(ride: Ride, 
     ride.desk.arrive(frame)
     ride.kurt2.sense(ride.now_s)
     assert ride.sent() == [BRAKE]  # before anybody has decided anything
-    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    assert ride.tick() == stopped(GuardReason.FOREIGN_CONTROL)
     health = ride.kurt2.health
-    assert (health.foreign_control, health.latched) == (1, FOREIGN_CONTROL)
+    assert (health.foreign_control, health.latched) == (1, GuardReason.FOREIGN_CONTROL)
     assert health.trouble == "bus can0: somebody else sends CONTROL; find and end it"
 
 
 def test_it_stops_again_after_a_resume_while_the_other_goes_on(ride: Ride) -> None:
     ride.desk.arrive(FORWARD, FORWARD)
-    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    assert ride.tick() == stopped(GuardReason.FOREIGN_CONTROL)
     ride.kurt2.release()
     assert ride.kurt2.health.trouble == ""
     ride.desk.arrive(FORWARD)
-    assert ride.tick() == stopped(FOREIGN_CONTROL)
+    assert ride.tick() == stopped(GuardReason.FOREIGN_CONTROL)
     ride.kurt2.release()
     assert not ride.tick().latched
     assert ride.kurt2.health.foreign_control == 3
@@ -65,9 +65,9 @@ def test_what_slips_past_the_filter_is_neither(ride: Ride) -> None:
 
 
 def test_what_stopped_it_first_is_what_is_told(ride: Ride) -> None:
-    ride.kurt2.emergency_stop("teacher")
+    ride.kurt2.emergency_stop(GuardReason.SERVICE_ENDS)
     ride.desk.arrive(FORWARD)
-    assert ride.tick() == stopped("teacher")
+    assert ride.tick() == stopped(GuardReason.SERVICE_ENDS)
     assert (ride.kurt2.health.foreign_control, ride.kurt2.health.trouble) == (1, "")
 
 
@@ -78,10 +78,10 @@ def test_a_blocked_bus_gets_no_set_point_put_behind_others_but_brakes(ride: Ride
     ride.desk.carries = False
     assert not ride.tick().latched
     assert not ride.tick().latched
-    assert ride.tick() == stopped(BUS_BLOCKED)
+    assert ride.tick() == stopped(GuardReason.BUS_BLOCKED)
     ride.drive_for(0.1)
     health = ride.kurt2.health
-    assert health.latched == BUS_BLOCKED
+    assert health.latched == GuardReason.BUS_BLOCKED
     assert health.trouble == "bus can0: frames are not carried; switch the robot on, check cable and bit rate"
     assert health.send_failures == 0
     ride.desk.carry()
@@ -94,7 +94,7 @@ def test_a_bus_that_carries_again_stays_stopped_until_released(ride: Ride) -> No
     ride.drive_for(0.05)
     ride.desk.carry()
     ride.desk.carries = True
-    assert ride.drive_for(0.05) == stopped(BUS_BLOCKED)
+    assert ride.drive_for(0.05) == stopped(GuardReason.BUS_BLOCKED)
     ride.kurt2.release()
     assert ride.kurt2.health.trouble == ""
     assert not ride.drive_for(0.05).latched
@@ -106,7 +106,7 @@ def test_released_too_early_it_is_blocked_again_after_two_slow_set_points(ride: 
     ride.kurt2.release()
     first, second, third = ride.tick(), ride.tick(), ride.tick()
     assert max(*first.wheel_speeds, *second.wheel_speeds) <= 0.05
-    assert third == stopped(BUS_BLOCKED)
+    assert third == stopped(GuardReason.BUS_BLOCKED)
 
 
 def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride: Ride) -> None:
@@ -114,7 +114,7 @@ def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride
     ride.drive_for(0.05)
     ride.desk.lose()
     ride.desk.carries = True
-    assert ride.drive_for(0.05) == stopped(BUS_BLOCKED)  # nobody can tell it from a bus that is late
+    assert ride.drive_for(0.05) == stopped(GuardReason.BUS_BLOCKED)  # nobody can tell it from a bus that is late
     ride.kurt2.release()
     assert not ride.drive_for(0.05).latched
 
@@ -132,11 +132,11 @@ def test_frames_from_before_a_resume_that_are_carried_after_it_are_still_its_own
 
 
 def test_a_resume_after_another_stop_forgets_nothing_of_what_waits(ride: Ride) -> None:
-    ride.kurt2.emergency_stop("teacher")
+    ride.kurt2.emergency_stop(GuardReason.SERVICE_ENDS)
     ride.desk.carries = False
     ride.drive_for(0.05)
     ride.kurt2.release()
-    assert ride.tick() == stopped(BUS_BLOCKED)
+    assert ride.tick() == stopped(GuardReason.BUS_BLOCKED)
 
 
 def test_one_frame_late_is_no_alarm(ride: Ride) -> None:
@@ -153,9 +153,9 @@ def test_bus_off_stops_and_says_how_to_come_back(ride: Ride) -> None:
     ride.desk.arrive(OFF)
     ride.kurt2.sense(ride.now_s)
     assert ride.sent() == [BRAKE]
-    assert ride.decide() == stopped(BUS_OFF)
+    assert ride.decide() == stopped(GuardReason.BUS_OFF)
     health = ride.kurt2.health
-    assert (health.latched, health.controller, health.error_frames) == (BUS_OFF, ControllerState.OFF, 1)
+    assert (health.latched, health.controller, health.error_frames) == (GuardReason.BUS_OFF, ControllerState.OFF, 1)
     assert "ip link set can0 type can restart" in health.trouble
 
 
@@ -163,7 +163,7 @@ def test_who_resumes_while_the_bus_is_off_gains_nothing(ride: Ride) -> None:
     ride.desk.arrive(OFF)
     ride.decide()
     ride.kurt2.release()
-    assert ride.decide() == stopped(BUS_OFF)
+    assert ride.decide() == stopped(GuardReason.BUS_OFF)
 
 
 @pytest.mark.parametrize("sign", [RESTARTED, *cycle()[:1]], ids=["restarted", "a frame"])
@@ -171,7 +171,7 @@ def test_the_trouble_ends_with_a_sign_of_life_and_the_stop_with_a_resume(ride: R
     ride.desk.arrive(OFF)
     ride.decide()
     ride.desk.arrive(sign)
-    assert ride.decide() == stopped(BUS_OFF)
+    assert ride.decide() == stopped(GuardReason.BUS_OFF)
     assert (ride.kurt2.health.controller, ride.kurt2.health.trouble) == (ControllerState.ACTIVE, "")
     ride.kurt2.release()
     assert not ride.drive_for(0.05).latched
@@ -185,7 +185,7 @@ def test_frames_that_waited_from_before_do_not_hide_bus_off(ride: Ride) -> None:
 
 def test_off_and_back_between_two_ticks_is_a_stop_all_the_same(ride: Ride) -> None:
     ride.desk.arrive(OFF, RESTARTED, *ride.frames())
-    assert ride.decide() == stopped(BUS_OFF)
+    assert ride.decide() == stopped(GuardReason.BUS_OFF)
     assert ride.kurt2.health.controller is ControllerState.ACTIVE
 
 
@@ -219,7 +219,7 @@ def test_an_error_frame_is_no_reading(ride: Ride) -> None:
 
 def test_a_lost_bus_is_told_before_other_troubles(ride: Ride) -> None:
     ride.desk.shutdown()
-    assert ride.decide() == stopped(BUS_LOST)
+    assert ride.decide() == stopped(GuardReason.BUS_LOST)
     assert "receiving failed" in ride.kurt2.health.trouble
 
 
@@ -229,13 +229,13 @@ def test_who_resumes_while_the_bus_is_lost_gains_nothing(ride: Ride, monkeypatch
 
     ride.drive_for(0.5)
     monkeypatch.setattr(ride.desk, "recv", fail)  # sending works again
-    assert ride.tick() == stopped(BUS_LOST)
+    assert ride.tick() == stopped(GuardReason.BUS_LOST)
     ride.kurt2.release()  # the readings are 10 ms old
     for _ in range(10):
-        assert ride.tick() == stopped(BUS_LOST)
+        assert ride.tick() == stopped(GuardReason.BUS_LOST)
     ride.sleep(1.0)
     ride.tick()  # opens the bus anew
-    assert ride.tick() == stopped(BUS_LOST)
+    assert ride.tick() == stopped(GuardReason.BUS_LOST)
     ride.kurt2.release()
     assert not ride.tick().latched
 
@@ -252,7 +252,7 @@ def test_wheels_that_do_not_follow_stop_the_robot(ride: Ride) -> None:
         ride.sleep(TICK_S)
         grants.append(ride.decide())
     assert 19 <= [grant.latched for grant in grants].index(True) <= 21
-    assert grants[-1] == stopped(WHEELS_DISOBEY)
+    assert grants[-1] == stopped(GuardReason.WHEELS_DISOBEY)
     trouble = ride.kurt2.health.trouble
     told = "right wheels were told 0.30 m/s and turn at 0.00"
     assert trouble == f"{told}; check motors, encoders, cables; switch the robot off and on"
@@ -285,7 +285,7 @@ def test_a_board_that_repeats_itself_for_a_second_stops_the_robot(
         ride.sleep(TICK_S)
         grants.append(ride.decide())
     assert 100 <= [grant.latched for grant in grants].index(True) <= 102
-    assert grants[-1] == stopped(INFRARED_FROZEN)
+    assert grants[-1] == stopped(GuardReason.INFRARED_FROZEN)
     assert (
         ride.kurt2.health.trouble
         == f"the distance sensors of the {board} repeated themselves for 1 s; switch the robot off and on"
@@ -306,7 +306,7 @@ def test_channels_without_a_distance_sensor_do_not_keep_a_board_alive(ride: Ride
         ride.desk.arrive(*frames, message.pack(333, 333, n, n))  # 10 and 11 carry something else
         ride.sleep(TICK_S)
         grant = ride.decide()
-    assert grant == stopped(INFRARED_FROZEN)
+    assert grant == stopped(GuardReason.INFRARED_FROZEN)
 
 
 def test_a_robot_that_stands_may_wait_on_a_still_board_and_drives_a_second_with_it(ride: Ride) -> None:
@@ -324,8 +324,8 @@ def test_a_second_in_which_nobody_looked_is_no_second_of_a_still_board(ride: Rid
         ride.tick()
     ride.sleep(1.5)
     ride.desk.arrive(*ride.frames())
-    assert INFRARED_FROZEN not in ride.decide().reasons
-    assert ride.tick().reasons != (INFRARED_FROZEN,)
+    assert GuardReason.INFRARED_FROZEN not in ride.decide().reasons
+    assert ride.tick().reasons != (GuardReason.INFRARED_FROZEN,)
 
 
 def test_after_a_resume_a_frozen_board_stops_it_at_once_and_one_that_lives_does_not(ride: Ride) -> None:

@@ -9,9 +9,8 @@ cycle and other bumpers.
 import numpy as np
 import pytest
 
-from hal import guard as words
+from hal.guard_reason import GuardReason
 from hal.robot_settings import SpeedMode
-from hal.watchdog import TICKS_CEASED
 from kurt2rt.timing.quiet_gc import quiet_gc
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
@@ -76,7 +75,7 @@ def test_every_reason_is_met_and_most_ticks_drive(some: list[tuple[Streams, Play
         for number, count in zip(*np.unique(played.reasons, return_counts=True), strict=True):
             for reason in played.reasons_of[number]:
                 met[reason] = met.get(reason, 0) + int(count)
-    latches = {words.BUS_LOST, words.BUS_BLOCKED, TICKS_CEASED, SIGNAL}
+    latches = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.TICKS_CEASED, SIGNAL}
     assert {reason for reason, count in met.items() if count >= 50} >= {*STANDS_FOR, *APPROACHES_FOR, *latches}
     moves = [(played.granted_left_m_s != 0.0) | (played.granted_right_m_s != 0.0) for _, played in some]
     assert np.mean(moves) > 0.4

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal import guard as words
 from hal.bus import CanBus
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.guard import Guard
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings, SpeedMode
 from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, robot_with, send
@@ -67,13 +67,13 @@ def test_the_robot_speeds_up_no_faster_than_allowed(driver: Driver) -> None:
     assert speeds[:4] == [0.01, 0.03, 0.04, 0.06]
     assert speeds[-1] == 0.3
     driver.sent()
-    assert words.SLEW_LIMIT in driver.drive(0.6, 0.6).reasons
+    assert GuardReason.SLEW_LIMIT in driver.drive(0.6, 0.6).reasons
 
 
 def test_slowing_down_has_its_own_limit_and_a_stop_has_none(driver: Driver) -> None:
     driver.drive_for(1.0, 0.5, 0.5)
-    assert driver.drive(0.1, 0.1) == GuardResult(WheelSpeeds(0.47, 0.47), (words.SLEW_LIMIT,), latched=False)
-    assert driver.drive(0.0, 0.2) == GuardResult(WheelSpeeds(0.0, 0.44), (words.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.1, 0.1) == GuardResult(WheelSpeeds(0.47, 0.47), (GuardReason.SLEW_LIMIT,), latched=False)
+    assert driver.drive(0.0, 0.2) == GuardResult(WheelSpeeds(0.0, 0.44), (GuardReason.SLEW_LIMIT,), latched=False)
     assert driver.drive(0.0, 0.0) == GuardResult(STANDSTILL, (), latched=False)
 
 
@@ -92,7 +92,7 @@ def test_a_late_tick_does_not_turn_into_a_jump(driver: Driver) -> None:
 
 def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
     grant = driver.drive_for(1.0, 1.2, 0.6)
-    assert grant == GuardResult(WheelSpeeds(0.6, 0.3), (words.SPEED_LIMIT,), latched=False)
+    assert grant == GuardResult(WheelSpeeds(0.6, 0.3), (GuardReason.SPEED_LIMIT,), latched=False)
     assert driver.drive_for(1.0, -0.8, -1.2).wheel_speeds == (-0.4, -0.6)
 
 
@@ -100,7 +100,7 @@ def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
 def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     for wanted in ((odd, 0.3), (0.3, odd)):
-        assert driver.drive(*wanted) == GuardResult(STANDSTILL, (words.NOT_A_NUMBER,), latched=False)
+        assert driver.drive(*wanted) == GuardResult(STANDSTILL, (GuardReason.NOT_A_NUMBER,), latched=False)
         assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
@@ -108,18 +108,20 @@ def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
 @pytest.mark.parametrize(
     ("ages_s", "reason"),
     [
-        ((LIMITS.stale_infrared_s + 1e-6, 0.0, 0.0), words.INFRARED_STALE),
-        ((math.inf, 0.0, 0.0), words.INFRARED_STALE),
-        ((math.nan, 0.0, 0.0), words.INFRARED_STALE),
-        ((0.0, LIMITS.stale_encoder_s + 1e-6, 0.0), words.ENCODER_STALE),
-        ((0.0, math.inf, 0.0), words.ENCODER_STALE),
-        ((0.0, math.nan, 0.0), words.ENCODER_STALE),
-        ((0.0, 0.0, LIMITS.stale_bumper_s + 1e-6), words.BUMPER_STALE),
-        ((0.0, 0.0, math.inf), words.BUMPER_STALE),
-        ((0.0, 0.0, math.nan), words.BUMPER_STALE),
+        ((LIMITS.stale_infrared_s + 1e-6, 0.0, 0.0), GuardReason.INFRARED_STALE),
+        ((math.inf, 0.0, 0.0), GuardReason.INFRARED_STALE),
+        ((math.nan, 0.0, 0.0), GuardReason.INFRARED_STALE),
+        ((0.0, LIMITS.stale_encoder_s + 1e-6, 0.0), GuardReason.ENCODER_STALE),
+        ((0.0, math.inf, 0.0), GuardReason.ENCODER_STALE),
+        ((0.0, math.nan, 0.0), GuardReason.ENCODER_STALE),
+        ((0.0, 0.0, LIMITS.stale_bumper_s + 1e-6), GuardReason.BUMPER_STALE),
+        ((0.0, 0.0, math.inf), GuardReason.BUMPER_STALE),
+        ((0.0, 0.0, math.nan), GuardReason.BUMPER_STALE),
     ],
 )
-def test_a_robot_without_feeling_stands(driver: Driver, ages_s: tuple[float, float, float], reason: str) -> None:
+def test_a_robot_without_feeling_stands(
+    driver: Driver, ages_s: tuple[float, float, float], reason: GuardReason
+) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.now_s += TICK_S
     grant = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s, 0, *ages_s))
@@ -141,7 +143,7 @@ def test_a_robot_without_bumpers_does_not_wait_for_them(ends: Ends) -> None:
 def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:
     senses = fresh(driver.now_s)
     driver.now_s += LIMITS.stale_infrared_s + 1e-6
-    assert driver.tell(WheelSpeeds(0.3, 0.3), senses).reasons == (words.INFRARED_STALE,)
+    assert driver.tell(WheelSpeeds(0.3, 0.3), senses).reasons == (GuardReason.INFRARED_STALE,)
 
 
 def test_the_limits_themselves_are_allowed(driver: Driver) -> None:
@@ -155,21 +157,21 @@ def test_an_old_command_stands(driver: Driver) -> None:
     wanted = WheelSpeeds(0.01, 0.01)
     assert driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s - 1e-6).reasons == ()
     grant = driver.tell(wanted, fresh(driver.now_s), LIMITS.command_age_s + 1e-6)
-    assert grant == GuardResult(STANDSTILL, (words.COMMAND_TOO_OLD,), latched=False)
+    assert grant == GuardResult(STANDSTILL, (GuardReason.COMMAND_TOO_OLD,), latched=False)
 
 
 def test_a_clock_that_runs_backwards_stands_for_that_tick(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.now_s -= 0.5
     backwards = driver.tell(WheelSpeeds(0.3, 0.3), fresh(driver.now_s))
-    assert backwards == GuardResult(STANDSTILL, (words.CLOCK_RAN_BACKWARDS,), latched=False)
+    assert backwards == GuardResult(STANDSTILL, (GuardReason.CLOCK_RAN_BACKWARDS,), latched=False)
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
 
 def test_senses_or_commands_from_the_future_stand(driver: Driver) -> None:
     wanted = WheelSpeeds(0.3, 0.3)
-    assert driver.tell(wanted, fresh(driver.now_s + 1.0)).reasons == (words.CLOCK_RAN_BACKWARDS,)
-    assert driver.tell(wanted, fresh(driver.now_s), decided_ago_s=-1.0).reasons == (words.CLOCK_RAN_BACKWARDS,)
+    assert driver.tell(wanted, fresh(driver.now_s + 1.0)).reasons == (GuardReason.CLOCK_RAN_BACKWARDS,)
+    assert driver.tell(wanted, fresh(driver.now_s), decided_ago_s=-1.0).reasons == (GuardReason.CLOCK_RAN_BACKWARDS,)
 
 
 @pytest.mark.parametrize("now_s", [math.nan, math.inf, -math.inf])
@@ -182,21 +184,21 @@ def test_a_time_that_is_none_stands_and_is_forgotten(driver: Driver, now_s: floa
 
 def test_a_front_bumper_lets_the_robot_back_off_only(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
-    assert driver.drive(0.3, 0.3, FRONT) == GuardResult(STANDSTILL, (words.FRONT_BUMPER,), latched=False)
+    assert driver.drive(0.3, 0.3, FRONT) == GuardResult(STANDSTILL, (GuardReason.FRONT_BUMPER,), latched=False)
     assert driver.drive(-0.2, 0.2, FRONT).wheel_speeds == (-0.01, 0.0)
     grant = driver.drive(-0.2, -0.2, FRONT)
-    assert grant == GuardResult(WheelSpeeds(-0.03, -0.01), (words.SLEW_LIMIT,), latched=False)
+    assert grant == GuardResult(WheelSpeeds(-0.03, -0.01), (GuardReason.SLEW_LIMIT,), latched=False)
 
 
 def test_a_rear_bumper_lets_the_robot_drive_on_only(driver: Driver) -> None:
     driver.drive_for(1.0, -0.3, -0.3)
-    assert driver.drive(-0.3, -0.3, REAR) == GuardResult(STANDSTILL, (words.REAR_BUMPER,), latched=False)
+    assert driver.drive(-0.3, -0.3, REAR) == GuardResult(STANDSTILL, (GuardReason.REAR_BUMPER,), latched=False)
     assert driver.drive(0.2, -0.2, REAR).wheel_speeds == (0.01, 0.0)
-    assert driver.drive(0.2, 0.2, REAR).reasons == (words.SLEW_LIMIT,)
+    assert driver.drive(0.2, 0.2, REAR).reasons == (GuardReason.SLEW_LIMIT,)
 
 
 @pytest.mark.parametrize(
-    ("bumper", "reason", "barred"), [(FRONT, words.FRONT_BUMPER, 1), (REAR, words.REAR_BUMPER, -1)]
+    ("bumper", "reason", "barred"), [(FRONT, GuardReason.FRONT_BUMPER, 1), (REAR, GuardReason.REAR_BUMPER, -1)]
 )
 def test_a_bumper_is_a_reason_only_for_a_wheel_it_bars(driver: Driver, bumper: int, reason: str, barred: int) -> None:
     for left, right in ((0.2, -0.2), (-0.2, 0.2), (0.2, 0.0), (0.0, 0.2)):
@@ -222,18 +224,18 @@ def test_a_bumper_does_not_wait_for_the_braking_ramp(driver: Driver) -> None:
 
 
 def test_between_two_bumpers_the_robot_stands(driver: Driver) -> None:
-    assert driver.drive(0.2, -0.2, FRONT | REAR).reasons == (words.FRONT_BUMPER, words.REAR_BUMPER)
+    assert driver.drive(0.2, -0.2, FRONT | REAR).reasons == (GuardReason.FRONT_BUMPER, GuardReason.REAR_BUMPER)
     assert driver.last_sent() == SpeedControl(Mode.SPEED_CM, 0, 0)
 
 
 def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.sent()
-    driver.guard.emergency_stop("teacher")
+    driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     assert driver.sent() == [BRAKE]
-    driver.guard.emergency_stop("somebody else")
+    driver.guard.emergency_stop(GuardReason.OTHER)
     for _ in range(3):
-        assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, ("teacher",), latched=True)
+        assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, (GuardReason.SERVICE_ENDS,), latched=True)
     assert driver.sent() == [BRAKE] * 4
     driver.guard.release()
     assert driver.guard.latched is None
@@ -247,20 +249,20 @@ def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) 
 
         @property
         def bumpers(self) -> int:
-            driver.guard.emergency_stop("signal")
+            driver.guard.emergency_stop(GuardReason.PROGRAM_WAITS)
             return 0
 
     driver.drive_for(1.0, 0.3, 0.3)
     driver.sent()
     driver.now_s += TICK_S
     grant = driver.tell(WheelSpeeds(0.3, 0.3), Interrupted(*fresh(driver.now_s)))
-    assert grant == GuardResult(STANDSTILL, ("signal",), latched=True)
+    assert grant == GuardResult(STANDSTILL, (GuardReason.PROGRAM_WAITS,), latched=True)
     assert driver.last_sent() == BRAKE
 
 
 def test_a_robot_that_was_stopped_and_released_between_two_ticks_starts_from_zero(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
-    driver.guard.emergency_stop("teacher")
+    driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     driver.guard.release()
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
@@ -272,7 +274,7 @@ def test_a_robot_that_was_stopped_by_a_signal_in_the_middle_of_its_approach_star
         __hash__ = float.__hash__
 
         def __eq__(self, other: object) -> bool:
-            driver.guard.emergency_stop("signal")
+            driver.guard.emergency_stop(GuardReason.PROGRAM_WAITS)
             return float(self) == other
 
     driver.drive_for(1.0, 0.3, 0.3)
@@ -286,9 +288,9 @@ def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends
     robot_end, far_end = ends
     driver.drive_for(1.0, 0.3, 0.3)
     robot_end.shutdown()
-    assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, (words.BUS_LOST,), latched=True)
-    driver.guard.emergency_stop("too late")
-    assert driver.guard.latched == words.BUS_LOST
+    assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, (GuardReason.BUS_LOST,), latched=True)
+    driver.guard.emergency_stop(GuardReason.RUN_OVER)
+    assert driver.guard.latched == GuardReason.BUS_LOST
     assert driver.guard.send_failures == 3
     assert "is shut down" in driver.guard.bus_trouble
     robot_end.reopen()
@@ -302,7 +304,7 @@ def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends
 def test_a_full_queue_on_the_way_out_is_a_lost_bus(driver: Driver, ends: Ends) -> None:
     driver.drive(0.1, 0.1)
     send(ends[0], [cycle()[0]] * 4095)
-    assert driver.drive(0.1, 0.1).reasons == (words.BUS_LOST,)
+    assert driver.drive(0.1, 0.1).reasons == (GuardReason.BUS_LOST,)
     assert driver.guard.send_failures == 2
     assert len(ends[1].drain()) == 4096
 
@@ -335,7 +337,7 @@ def test_limits_come_from_the_settings(ends: Ends) -> None:
     driver = Driver(ends, robot_with(maximum_speed_m_s=0.2, acceleration_m_s2=20.0))
     driver.drive(0.0, 0.0)
     driver.drive(0.5, 0.5)
-    assert driver.drive(0.5, 0.5) == GuardResult(WheelSpeeds(0.2, 0.2), (words.SPEED_LIMIT,), latched=False)
+    assert driver.drive(0.5, 0.5) == GuardResult(WheelSpeeds(0.2, 0.2), (GuardReason.SPEED_LIMIT,), latched=False)
 
 
 ANY_FLOAT = st.floats(allow_nan=True, allow_infinity=True)

@@ -6,9 +6,9 @@ import threading
 import can
 import pytest
 
-from hal import guard as words
 from hal.bus import CanBus
 from hal.guard import Guard
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.watchdog import Watchdog
 from tests.hal.helpers import ROBOT, fresh
@@ -27,19 +27,23 @@ def driver(ends: Ends) -> Driver:
 @pytest.mark.parametrize("kind", range(3))
 def test_frames_from_after_the_senses_are_no_proof(driver: Driver, kind: int, age_s: float) -> None:
     ages_s = [age_s if at == kind else 0.0 for at in range(3)]
-    reason = (words.INFRARED_STALE, words.ENCODER_STALE, words.BUMPER_STALE)[kind]
+    reason = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)[kind]
     senses = fresh(driver.now_s, 0, *ages_s)
     assert driver.tell(WheelSpeeds(0.3, 0.3), senses) == GuardResult(STANDSTILL, (reason,), latched=False)
 
 
 def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:
     driver.drive(0.0, 0.0)
-    assert driver.drive(0.9, -0.9, FRONT).reasons == (words.SPEED_LIMIT, words.FRONT_BUMPER, words.SLEW_LIMIT)
+    assert driver.drive(0.9, -0.9, FRONT).reasons == (
+        GuardReason.SPEED_LIMIT,
+        GuardReason.FRONT_BUMPER,
+        GuardReason.SLEW_LIMIT,
+    )
 
 
 def test_a_stop_that_is_over_before_the_next_tick_starts_from_zero_too(driver: Driver) -> None:
     driver.drive_for(1.0, 0.5, -0.5)
-    driver.guard.emergency_stop("teacher")
+    driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     driver.guard.release()
     assert driver.drive(0.5, -0.5).wheel_speeds == (0.01, -0.01)
 
@@ -64,7 +68,7 @@ class RefusesOne(SlowBus):
 def test_a_frame_that_was_refused_is_told_of_though_its_brake_went_out() -> None:
     end = RefusesOne(receives_own_frames=False)
     guard = Guard(ROBOT, CanBus("slow", lambda _: end))
-    assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (words.BUS_LOST,)
+    assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (GuardReason.BUS_LOST,)
     assert guard.send_failures == 1
     assert "transmit queue is full" in guard.bus_trouble
 

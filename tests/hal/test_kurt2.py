@@ -10,11 +10,10 @@ from hypothesis import strategies as st
 
 from hal.bus import BusError, CanBus
 from hal.control import Mode, RawControl, RawSide, SpeedControl
-from hal.guard import BUMPER_STALE, BUS_LOST, COMMAND_TOO_OLD, INFRARED_STALE
+from hal.guard_reason import GuardReason
 from hal.in_process_bus import InProcessBus
-from hal.kurt2 import CLOSED, Kurt2
+from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, Robot, WheelSpeeds
-from hal.watchdog import TICKS_CEASED
 from tests.hal.helpers import (
     CODEC,
     INFRARED_FRAMES,
@@ -50,7 +49,7 @@ def test_before_the_first_frame_it_is_blind_and_stands(robot: Kurt2, ends: Ends)
     senses = robot.sense(1.0)
     assert senses.infrared_counts == (0,) * 18
     assert senses.infrared_age_s == senses.encoder_age_s == senses.bumper_age_s == math.inf
-    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0).reasons == (INFRARED_STALE,)
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0).reasons == (GuardReason.INFRARED_STALE,)
     assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 0, 0)
 
 
@@ -106,7 +105,7 @@ def test_bumpers_that_fall_silent_age_until_the_robot_stands(robot: Kurt2, ends:
         assert senses.bumpers == 0b10  # what is not told is what was told last
         reasons.append(robot.drive(WheelSpeeds(-0.01, -0.01), now_s, now_s).reasons)
     assert reasons[:9] == [()] * 9
-    assert reasons[-1] == (BUMPER_STALE,)
+    assert reasons[-1] == (GuardReason.BUMPER_STALE,)
     send(ends[1], cycle())
     assert robot.sense(now_s).bumper_age_s == 0.0
 
@@ -223,9 +222,9 @@ def test_it_drives_through_the_guard(robot: Kurt2, ends: Ends) -> None:
         grant = robot.drive(WheelSpeeds(0.3, 0.2), now_s, now_s)
     assert grant.wheel_speeds == (0.3, 0.2)
     assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 30, 20)
-    assert robot.drive(WheelSpeeds(0.3, 0.2), now_s - 1.0, now_s).reasons == (COMMAND_TOO_OLD,)
-    robot.emergency_stop("teacher")
-    assert robot.health.latched == "teacher"
+    assert robot.drive(WheelSpeeds(0.3, 0.2), now_s - 1.0, now_s).reasons == (GuardReason.COMMAND_TOO_OLD,)
+    robot.emergency_stop(GuardReason.SERVICE_ENDS)
+    assert robot.health.latched == GuardReason.SERVICE_ENDS
     assert robot.drive(WheelSpeeds(0.3, 0.2), now_s, now_s).latched
     robot.release()
     assert not robot.drive(STANDSTILL, now_s, now_s).latched
@@ -243,11 +242,11 @@ def test_a_bus_that_goes_away_stops_the_robot_until_released(robot: Kurt2, ends:
     pull_the_plug(ends[0])
     senses = robot.sense(1.01)
     assert senses.infrared_age_s == pytest.approx(0.01)
-    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.01, 1.01) == (STANDSTILL, (BUS_LOST,), True)
+    assert robot.drive(WheelSpeeds(0.3, 0.3), 1.01, 1.01) == (STANDSTILL, (GuardReason.BUS_LOST,), True)
     assert robot.sense(1.02).infrared_age_s == pytest.approx(0.02)
     health = robot.health
     assert "receiving failed" in health.bus_trouble
-    assert (health.latched, health.receive_failures, health.send_failures) == (BUS_LOST, 2, 2)
+    assert (health.latched, health.receive_failures, health.send_failures) == (GuardReason.BUS_LOST, 2, 2)
 
     robot.sense(2.02)  # a second later it opens the bus anew
     send(ends[1], cycle(counts=300))
@@ -281,7 +280,7 @@ def test_closing_brakes_and_gives_the_bus_back_for_good() -> None:
     robot.close()
     assert not robot.watchdog.running
     assert controls(far_end) == [BRAKE]
-    assert robot.health.latched == CLOSED
+    assert robot.health.latched == GuardReason.CLOSED
     for now_s in (1.0, 3.0, 5.0):
         robot.sense(now_s)
     assert robot.health.receive_failures == 3
@@ -306,5 +305,5 @@ def test_a_loop_that_comes_back_late_does_not_drive_on_as_if_nothing_had_been(en
         kurt2.sense(1.6)
         grant = kurt2.drive(WheelSpeeds(0.2, 0.2), 1.6, 1.6)
         assert grant.latched
-        assert grant.reasons == (TICKS_CEASED,)
+        assert grant.reasons == (GuardReason.TICKS_CEASED,)
     kurt2.close()

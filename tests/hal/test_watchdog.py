@@ -7,7 +7,8 @@ import pytest
 from hal.bus import CanBus
 from hal.control import RawControl, RawSide
 from hal.guard import Guard
-from hal.watchdog import TICKS_CEASED, Watchdog
+from hal.guard_reason import GuardReason
+from hal.watchdog import Watchdog
 from tests.hal.helpers import ROBOT, controls
 
 Ends = tuple[CanBus, CanBus]
@@ -52,7 +53,7 @@ def test_the_thread_brakes_again_and_again_while_no_tick_comes(ends: Ends) -> No
         clock.now_s += 0.2
         _wait_for(looks, 5)
     assert not watchdog.running
-    assert guard.latched == TICKS_CEASED
+    assert guard.latched == GuardReason.TICKS_CEASED
     brakes = controls(far_end)
     assert len(brakes) >= 2
     assert set(brakes) == {RawControl(RawSide(0, brake=True), RawSide(0, brake=True))}

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from hal.bus_state import ControllerState
+from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.robot_settings import load_robot
 from kurt2rt.health.report import DiskSpace, Trouble
@@ -120,7 +121,7 @@ def test_a_few_late_ticks_of_a_robot_that_stalls_with_the_program_are_no_trouble
 
 
 def test_the_bus_says_itself_what_is_wrong_and_what_to_do(ward: Ward) -> None:
-    off = replace(A_BUS, controller_trouble="bus can0: bus-off; check cable; then restart", latched="bus off")
+    off = replace(A_BUS, controller_trouble="bus can0: bus-off; check cable; then restart", latched=GuardReason.BUS_OFF)
     assert ward.one(replace(CALM, bus=off)) == Trouble(
         "bus", "bus can0: bus-off", 0.0, "check cable; then restart", True
     )

@@ -5,7 +5,7 @@ import pytest
 
 from hal.bus import open_bus
 from hal.bus_state import ControllerState
-from hal.guard import BUS_OFF
+from hal.guard_reason import GuardReason
 from tests.hil.drive import Drive, cansend
 
 pytestmark = pytest.mark.hil
@@ -20,7 +20,7 @@ IS_ACTIVE = "20000004#0040000000000000"
 
 def test_bus_off_stops_the_robot_in_the_same_tick(drive: Drive) -> None:
     cansend(IS_BUS_OFF)
-    assert drive.tick() == ((0.0, 0.0), (BUS_OFF,), True)
+    assert drive.tick() == ((0.0, 0.0), (GuardReason.BUS_OFF,), True)
     assert drive.health.controller is ControllerState.OFF
     assert "ip link set vcan0 type can restart" in drive.health.trouble
 
@@ -29,7 +29,7 @@ def test_after_a_restart_the_trouble_is_over_and_the_stop_is_not(drive: Drive) -
     cansend(IS_BUS_OFF)
     drive.tick()
     cansend(IS_RESTARTED)
-    assert drive.ticks(50) == ((0.0, 0.0), (BUS_OFF,), True)
+    assert drive.ticks(50) == ((0.0, 0.0), (GuardReason.BUS_OFF,), True)
     assert drive.health.controller is ControllerState.ACTIVE
     drive.kurt2.release()
     drive.until_it_drives()

@@ -9,7 +9,7 @@ import pytest
 
 from hal.bus import BusError, CanBus, open_bus
 from hal.control import RawControl, SpeedControl, decode_control, encode_brake
-from hal.guard import BUS_BLOCKED, BUS_LOST
+from hal.guard_reason import GuardReason
 from tests.hal.helpers import CODEC
 from tests.hil.drive import Drive
 from tests.hil.link import Link
@@ -39,7 +39,7 @@ def test_no_set_point_is_put_behind_two_that_the_bus_has_yet_to_carry(drive: Dri
         link.hold_frames_for(1000)
         grants = [drive.tick() for _ in range(5)]
         assert [grant.latched for grant in grants] == [False, False, True, True, True]
-        assert grants[2:] == [((0.0, 0.0), (BUS_BLOCKED,), True)] * 3
+        assert grants[2:] == [((0.0, 0.0), (GuardReason.BUS_BLOCKED,), True)] * 3
         assert "frames are not carried" in drive.health.trouble
         # All of them come at last: what stood in the queue was two set points, and then brakes.
         carried = [decode_control(frame.data) for frame in frames_of(bus, 5)]
@@ -58,7 +58,7 @@ def test_when_the_bus_is_free_again_the_robot_waits_to_be_resumed(drive: Drive, 
     drive.ticks(5)
     link.carry_at_once()
     drive.until_fresh()
-    assert drive.ticks(20) == ((0.0, 0.0), (BUS_BLOCKED,), True)
+    assert drive.ticks(20) == ((0.0, 0.0), (GuardReason.BUS_BLOCKED,), True)
     drive.kurt2.release()
     drive.until_it_drives()
 
@@ -77,7 +77,7 @@ def test_a_queue_that_others_have_filled_stops_the_robot(drive: Drive, link: Lin
     other = open_bus(vcan0)
     with pytest.raises(BusError, match="the transmit queue is full"):
         fill(other)
-    assert drive.tick() == ((0.0, 0.0), (BUS_LOST,), True)
+    assert drive.tick() == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
     assert "the transmit queue is full" in drive.health.trouble
     drive.ticks(20)
     assert drive.health.send_failures > 1  # it goes on braking

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from hal.guard import BUS_LOST
+from hal.guard_reason import GuardReason
 from tests.hil.drive import Drive
 from tests.hil.link import Link
 
@@ -24,8 +24,8 @@ def test_a_robot_that_loses_its_interface_stays_stopped_and_says_what_to_do(
 ) -> None:
     away(link)
     drive.tick()
-    assert drive.grant == ((0.0, 0.0), (BUS_LOST,), True)
-    assert drive.health.latched == BUS_LOST
+    assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
+    assert drive.health.latched == GuardReason.BUS_LOST
     assert drive.health.trouble.startswith("bus vcan0: ")
     assert "\n" not in drive.health.trouble
     drive.until_it_stands()  # by the controller's own watchdog, for no brake came through
@@ -37,7 +37,7 @@ def test_it_goes_on_asking_for_its_interface_without_an_exception_and_without_ha
 ) -> None:
     away(link)
     drive.ticks(350)
-    assert drive.grant == ((0.0, 0.0), (BUS_LOST,), True)
+    assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
     assert drive.senses.infrared_age_s > 3.0
     assert "ip link set vcan0 up" in drive.health.trouble
 
@@ -51,7 +51,7 @@ def test_when_the_interface_is_back_frames_flow_but_the_robot_waits_to_be_resume
     back(link)
     drive.until_fresh()
     assert drive.now_s < 10.0
-    assert drive.ticks(50) == ((0.0, 0.0), (BUS_LOST,), True)
+    assert drive.ticks(50) == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
     drive.kurt2.release()
     drive.until_it_drives()
     assert drive.health.trouble == ""
@@ -61,7 +61,7 @@ def test_a_moment_down_is_long_enough_to_stop(drive: Drive, link: Link) -> None:
     link.down()
     link.up()
     drive.tick()
-    assert drive.grant == ((0.0, 0.0), (BUS_LOST,), True)
+    assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
     drive.until_fresh()
     drive.kurt2.release()
     drive.until_it_drives()
@@ -80,7 +80,7 @@ def test_the_second_loss_is_as_the_first(drive: Drive, link: Link) -> None:
     for away in (Link.down, Link.delete, Link.down):
         away(link)
         drive.ticks(5)
-        assert drive.health.latched == BUS_LOST
+        assert drive.health.latched == GuardReason.BUS_LOST
         back(link)
         drive.until_fresh()
         drive.kurt2.release()

@@ -4,14 +4,14 @@ import pytest
 
 from hal.bus import open_bus
 from hal.control import encode_brake
-from hal.guard import FOREIGN_CONTROL
+from hal.guard_reason import GuardReason
 from tests.hil.drive import Drive, cansend
 
 pytestmark = pytest.mark.hil
 
 FORWARD_30_CM_S = "001#0002001E001E0001"
 STOP = "001#000001 03FF 0103FF".replace(" ", "")
-STOPPED = ((0.0, 0.0), (FOREIGN_CONTROL,), True)
+STOPPED = ((0.0, 0.0), (GuardReason.FOREIGN_CONTROL,), True)
 
 
 @pytest.mark.parametrize("frame", [FORWARD_30_CM_S, STOP, "001#"], ids=["drive", "stop", "empty"])

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from hal.guard import INFRARED_STALE
+from hal.guard_reason import GuardReason
 from tests.hil.drive import FORWARD, Drive
 
 pytestmark = pytest.mark.hil
@@ -16,7 +16,7 @@ def test_frames_that_waited_in_the_socket_while_the_program_hung_are_old(drive: 
     now_s = drive.now_s
     senses = drive.kurt2.sense(now_s)
     assert min(senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s) >= 0.06
-    assert drive.kurt2.drive(FORWARD, now_s, now_s).reasons == (INFRARED_STALE,)
+    assert drive.kurt2.drive(FORWARD, now_s, now_s).reasons == (GuardReason.INFRARED_STALE,)
     drive.until_it_drives()
 
 

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause
@@ -44,7 +45,9 @@ senses = some.builds(
     some.integers(0, 255),
     number,
 )
-grants = some.builds(GuardResult, wheels, some.lists(text, max_size=2).map(tuple), some.booleans())
+grants = some.builds(
+    GuardResult, wheels, some.lists(some.sampled_from(GuardReason), max_size=2).map(tuple), some.booleans()
+)
 matches = some.builds(MatchEntry, some.integers(1), number, number, some.booleans(), maybe_id, number)
 junctions = some.builds(JunctionEvent, some.integers(-1, 2), some.booleans(), some.booleans(), number, number)
 mids = some.builds(

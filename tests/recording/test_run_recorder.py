@@ -10,7 +10,7 @@ from pathlib import Path
 from foxglove.messages import Log, LogLevel
 from mcap.reader import make_reader
 
-from hal.guard import FRONT_BUMPER, SLEW_LIMIT
+from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose
 from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
 from kurt2rt.health.plain import plain_of, report_of
@@ -461,7 +461,7 @@ def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where
     desk = RecordedDesk(tmp_path)
     desk.recorder.tend()
     desk.second()
-    for reasons in ((SLEW_LIMIT,), (FRONT_BUMPER, SLEW_LIMIT)):
+    for reasons in ((GuardReason.SLEW_LIMIT,), (GuardReason.FRONT_BUMPER, GuardReason.SLEW_LIMIT)):
         desk.desk.robot.refuses = reasons
         desk.second()
     desk.recorder.close()

@@ -10,7 +10,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.bus_state import ControllerState
-from hal.guard import BUS_BLOCKED, BUS_OFF, ENCODER_STALE
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.experiments.exam import examine
 from kurt2rt.simulated import Kurt2Simulation
@@ -122,7 +122,7 @@ def test_a_robot_that_misses_every_tenth_frame_turns_on() -> None:
 def test_without_encoders_it_stands(tmp_path: Path) -> None:
     with driving(wire_with(tmp_path, loss={"shares_by_id": [[0x09, 1.0]]})) as drive:
         drive.until(0.5)
-        assert drive.grant.reasons == (ENCODER_STALE,)
+        assert drive.grant.reasons == (GuardReason.ENCODER_STALE,)
         assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
 
 
@@ -133,14 +133,14 @@ def test_noise_that_takes_the_controllers_off_the_bus_stops_it_until_it_is_relea
         assert drive.grant.wheel_speeds == TURN
         drive.until(1.02)
         assert drive.grant.latched
-        assert drive.grant.reasons == (BUS_OFF,)
+        assert drive.grant.reasons == (GuardReason.BUS_OFF,)
         assert drive.controller() is ControllerState.OFF
         drive.until(1.1)  # nothing reaches the robot: its own watchdog has to brake
         assert drive.simulation.simulated_robot.wheel_speeds != (0.0, 0.0)
         drive.until(2.0)
         assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
         assert drive.controller() is ControllerState.ACTIVE
-        assert drive.grant.reasons == (BUS_OFF,)
+        assert drive.grant.reasons == (GuardReason.BUS_OFF,)
         drive.simulation.robot.release()
         drive.until(3.0)
         assert drive.grant.wheel_speeds == TURN
@@ -151,7 +151,7 @@ def test_a_robot_that_goes_off_the_bus_alone_leaves_control_unanswered_and_the_g
     """A millisecond of noise while the robot sends, over before the notebook does."""
     with driving(wire_with(tmp_path, noise={"bursts_s": [[1.0, 1.001]]})) as drive:
         drive.until(1.04)
-        assert drive.grant.reasons == (BUS_BLOCKED,)
+        assert drive.grant.reasons == (GuardReason.BUS_BLOCKED,)
         assert drive.controller() is ControllerState.PASSIVE
         drive.until(2.0)  # the robot is back, and hears what waited: two old set points, then brakes
         assert drive.controller() is ControllerState.ACTIVE

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from hal.bus import open_bus
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from hal.robot_settings import SpeedMode, load_robot
@@ -66,6 +67,6 @@ def test_a_pressed_bumper_stops_the_robot_at_the_wall(pair: Pair) -> None:
 
 def test_an_emergency_stop_brakes_and_holds(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
-    pair[0].emergency_stop("story")
+    pair[0].emergency_stop(GuardReason.OTHER)
     senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
     assert (senses.encoder_left_ticks, senses.encoder_right_ticks) == (0, 0)

@@ -7,7 +7,7 @@ from typing import cast
 
 import pytest
 
-from hal.guard import WHEELS_DISOBEY
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause
 from kurt2rt.soak.person import Person
@@ -81,7 +81,7 @@ def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
 def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LongRunRig) -> None:
     person, robot, time = Person(place, PATIENCE_S, CYCLE_S), place.robot, place.time
     assert robot is not None
-    robot.emergency_stop(WHEELS_DISOBEY)
+    robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
     while time.now_s() < 3 * PATIENCE_S:
         time.run_until(time.now_s() + CYCLE_S)
         robot.sense(time.now_s())
@@ -92,7 +92,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
 
 def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
     person = Person(place, PATIENCE_S, CYCLE_S)
-    again = GuardResult(STANDSTILL, (WHEELS_DISOBEY,), latched=True)
+    again = GuardResult(STANDSTILL, (GuardReason.WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")
 
     def ticks(count: int) -> int:

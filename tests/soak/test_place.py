@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.guard import BUS_BLOCKED
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.soak.clock import SoakClock
@@ -70,7 +70,7 @@ def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(
     place.begin("bus_out", "delayed", begin_s=1.0, end_s=9.0, period_s=1.0, delay_s=0.06)
     for goes, until_s in enumerate((2.0, 3.0, 4.0), 1):
         assert drive(place, until_s, envelope).latched
-        assert robot.health.latched == BUS_BLOCKED
+        assert robot.health.latched == GuardReason.BUS_BLOCKED
         assert envelope.old_frames <= 2 * goes
         robot.release()
 

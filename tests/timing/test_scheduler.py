@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.motor_primitive import MotorPrimitive
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.experiments.exam import NothingIsTaught
 from kurt2rt.layers.basic_level import BasicLevel
@@ -49,7 +50,7 @@ class StandingRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - it stands
         return GuardResult(STANDSTILL, (), latched=False)
 
-    def emergency_stop(self, reason: str) -> None:
+    def emergency_stop(self, reason: GuardReason) -> None:
         raise AssertionError(reason)
 
     def release(self) -> None:

@@ -30,7 +30,6 @@ const FASTEST_BY_HAND_M_S = 0.6;
 const SAID_MS = 8000;
 const PICTURE_MS = 1000;
 const LIST_MS = 5000;
-const USUAL = ["slew limit", "speed limit"]; // each change of speed meets them
 
 const link = new Link();
 const drive = new Drive(link);
@@ -322,8 +321,7 @@ function freshness() {
 }
 
 function warn(state) {
-  const guard = state.guard.filter((reason) => !USUAL.includes(reason));
-  setText($("guard"), guard.length ? `guard: ${guard.join(", ")}` : "");
+  setText($("guard"), state.guard.length ? `guard: ${state.guard.join(", ")}` : "");
   const lines = state.trouble ? [state.trouble] : [];
   lines.push(...health.urgent(state));
   if (state.unsaved) lines.push(`${state.unsaved} not saved yet`);

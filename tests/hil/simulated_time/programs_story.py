@@ -17,7 +17,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.bus import CONTROL_ID, open_bus
-from hal.guard import BUS_LOST, FOREIGN_CONTROL
+from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from kurt2rt.channel.state import State
 from kurt2rt.teaching import TeacherClient
@@ -105,7 +105,7 @@ async def test_an_emergency_stop_by_cansend_is_obeyed_by_robot_and_runtime(vcan0
             passed = await seen.until(lambda frame: frame.arbitration_id == CODEC.message("INFO_1").frame_id)
             assert not any(turns(frame) or drives(frame) for frame in passed)
             assert all(brakes(frame) for frame in passed if is_control(frame))
-        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {FOREIGN_CONTROL}")
+        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {GuardReason.FOREIGN_CONTROL}")
         await until_it_drives(we)  # after resume
 
 
@@ -115,7 +115,7 @@ async def _stopped_by_cansend(bus: str, we: TeacherClient) -> State:
         await until_it_drives(we, "spin_left")
         await anyio.to_thread.run_sync(cansend, bus, STOP)
         state = await state_where(we, lambda state: state.stopped is not None)
-        if FOREIGN_CONTROL in state.guard:
+        if GuardReason.FOREIGN_CONTROL in state.guard:
             return state
 
 
@@ -149,9 +149,11 @@ async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(li
         await anyio.to_thread.run_sync(link.down)
         await anyio.to_thread.run_sync(sim.wait_for, "lost: bus vcan0: ")
         await anyio.to_thread.run_sync(sim.wait_for, "CONTROL has ceased: the watchdog brakes")
-        stopped = await state_where(we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, BUS_LOST))
+        stopped = await state_where(
+            we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, GuardReason.BUS_LOST)
+        )
         assert stopped.trouble.startswith("bus vcan0: ")
-        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {BUS_LOST}")
+        await anyio.to_thread.run_sync(robot.wait_for, f"guard: {GuardReason.BUS_LOST}")
         await anyio.to_thread.run_sync(link.up)
         await anyio.to_thread.run_sync(sim.wait_for, "the bus is there again")
         await until_it_drives(we)
@@ -161,7 +163,7 @@ async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(li
 async def test_an_adapter_that_is_unplugged_and_plugged_in_again(link: Link, tmp_path: Path) -> None:
     async with at_work(NAME, tmp_path) as (sim, _, we):
         await anyio.to_thread.run_sync(link.delete)
-        await state_where(we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, BUS_LOST))
+        await state_where(we, lambda state: state.stopped == ActiveStop(StopReason.GUARD, GuardReason.BUS_LOST))
         await anyio.to_thread.run_sync(sim.wait_for, "such network interface")
         await anyio.to_thread.run_sync(link.make)
         await anyio.to_thread.run_sync(sim.wait_for, "the bus is there again")

@@ -12,7 +12,6 @@ import anyio
 
 from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
-from hal.guard import SLEW_LIMIT
 from hal.kurt2 import Kurt2
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
@@ -60,7 +59,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
 
     def after_tick(record: TickRecord) -> None:
         nonlocal before
-        reasons = tuple(reason for reason in record.grant.reasons if reason != SLEW_LIMIT)
+        reasons = tuple(reason for reason in record.grant.reasons if not reason.routine)
         if reasons != before:
             before = reasons
             turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})

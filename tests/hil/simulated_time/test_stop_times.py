@@ -5,8 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from hal.guard import INFRARED_STALE
-from hal.watchdog import TICKS_CEASED
+from hal.guard_reason import GuardReason
 from tests.hil.simulated_time.log import Turned
 from tests.hil.simulated_time.played import Played
 from tests.hil.simulated_time.stage import Story
@@ -31,7 +30,7 @@ def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_fa
 ) -> None:
     played = play(Story(3.0, phase_s=phase_s, infrared_silent_s=2.0))
     (turn,) = played.runtime["turns"]
-    assert turn["reasons"] == [INFRARED_STALE]
+    assert turn["reasons"] == [GuardReason.INFRARED_STALE]
 
     log = played.log
     last_us = log.infrared_us[-1]
@@ -46,7 +45,7 @@ def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_fa
 def test_a_tick_that_hangs_is_stopped_by_the_second_guard_within_100_ms(play: Play, phase_s: float) -> None:
     played = play(Story(4.0, phase_s=phase_s, tick_hangs=150))
     (turn,) = played.runtime["turns"]
-    assert turn["reasons"] == [TICKS_CEASED]
+    assert turn["reasons"] == [GuardReason.TICKS_CEASED]
 
     hangs_from_us = round(1e6 * played.runtime["hangs_from_s"])
     stop, *later = (told for told in played.log.told if told.at_us > hangs_from_us)
@@ -86,4 +85,4 @@ def test_a_runtime_that_was_stopped_for_a_second_brakes_first_and_takes_nothing_
 
 def test_a_runtime_that_was_stopped_for_a_second_says_so(play: Play) -> None:
     played = play(Story(4.0, runtime_stopped_s=2.0))
-    assert [turn["reasons"] for turn in played.runtime["turns"]] == [[TICKS_CEASED]]
+    assert [turn["reasons"] for turn in played.runtime["turns"]] == [[GuardReason.TICKS_CEASED]]

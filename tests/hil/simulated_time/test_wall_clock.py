@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from hal.guard import INFRARED_STALE
+from hal.guard_reason import GuardReason
 from tests.hil.simulated_time.played import Played
 from tests.hil.simulated_time.stage import Story
 
@@ -16,7 +16,7 @@ Play = Callable[[Story], Played]
 def test_a_clock_that_is_set_forward_makes_one_cycle_old_and_the_robot_drives_on(play: Play) -> None:
     played = play(Story(3.0, phase_s=0.0075, wall_clock_set_s=2.0, wall_clock_by_s=10.0))
     old, young = played.runtime["turns"]
-    assert old["reasons"] == [INFRARED_STALE]
+    assert old["reasons"] == [GuardReason.INFRARED_STALE]
     assert old["infrared_age_s"] > 9.9
     assert young["reasons"] == []
     assert young["tick"] == old["tick"] + 1

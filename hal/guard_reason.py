@@ -1,0 +1,51 @@
+"""Codes for why the guard limits or stops the wheels; recordings and the wire keep their values."""
+
+from enum import StrEnum
+from typing import Final
+
+
+class GuardReason(StrEnum):
+    """Code for a difference between the wanted and the granted wheel speeds, or for a latched stop."""
+
+    NOT_A_NUMBER = "not a number"
+    COMMAND_TOO_OLD = "command too old"
+    CLOCK_RAN_BACKWARDS = "clock ran backwards"
+    INFRARED_STALE = "infra-red stale"
+    ENCODER_STALE = "encoder stale"
+    BUMPER_STALE = "bumper stale"
+    FRONT_BUMPER = "front bumper"
+    REAR_BUMPER = "rear bumper"
+    SPEED_LIMIT = "speed limit"
+    SLEW_LIMIT = "slew limit"
+    BUS_LOST = "bus lost"
+    """The bus did not take a frame: unplugged, down, or its transmit queue is full of others' frames."""
+    BUS_BLOCKED = "bus blocked"
+    """The bus takes frames and does not carry them: no node acknowledges, or it is full."""
+    BUS_OFF = "bus off"
+    FOREIGN_CONTROL = "another CONTROL sender"
+    WHEELS_DISOBEY = "wheels disobey"
+    INFRARED_FROZEN = "infra-red frozen"
+    TICKS_CEASED = "ticks ceased"
+    CLOSED = "closed"
+    """The driver was closed."""
+    SERVICE_ENDS = "the service ends"
+    RUN_OVER = "the run is over"
+    """A simulated run has ended."""
+    PROGRAM_WAITS = "the robot program waits for what it needs"
+    CHECKLIST_WAITS = "the checklist waits"
+    """Commissioning has no step that drives."""
+    OTHER = "other"
+    """A reason of another version of kurt2rt."""
+
+    @property
+    def routine(self) -> bool:
+        """Whether ordinary driving meets this limit: each turn begins at the slew limit."""
+        return self is GuardReason.SLEW_LIMIT
+
+
+_BY_VALUE: Final = {reason.value: reason for reason in GuardReason}
+
+
+def guard_reason(value: str) -> GuardReason:
+    """Return the code of a recorded value; OTHER if this version does not know it."""
+    return _BY_VALUE.get(value, GuardReason.OTHER)
