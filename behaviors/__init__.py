@@ -1,1 +1,1 @@
-"""What the robot can do by itself: the repertoire of actions, and the policies that scripted teachers consult."""
+"""Actions of the repertoire, and the policies and judges that scripted teachers consult."""

@@ -1,4 +1,4 @@
-"""The contract of everything that can stand as an action in an RLA."""
+"""Contract of the actions that an RLA can name."""
 
 from typing import Protocol
 
@@ -6,22 +6,22 @@ from hal.robot import SensorReadings, WheelSpeeds
 
 
 class Behaviour(Protocol):
-    """An action of the repertoire. Its state is its own and begins anew with `start`."""
+    """Action of the repertoire; `start` resets its state."""
 
     @property
     def finished(self) -> bool:
-        """Whether it has done what it was started for; it stands then, and yields to another one at once."""
+        """Return whether the action is complete; it then stands, and another one takes over at once."""
         ...
 
     @property
     def lost(self) -> bool:
-        """Whether it does not know how to go on; it stands then, and whoever chose it asks."""
+        """Return whether the action cannot continue; it then stands, and the level that chose it asks the teacher."""
         ...
 
     def start(self) -> None:
-        """Called in the tick in which this behaviour takes the wheels over from another one."""
+        """Reset the state, in the tick in which this action takes over the wheels."""
         ...
 
     def step(self, senses: SensorReadings) -> WheelSpeeds:
-        """Wheel speeds for this tick; called once per tick while it is active."""
+        """Return the wheel speeds in m/s for this tick; called once per tick while active."""
         ...

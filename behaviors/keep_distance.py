@@ -1,14 +1,13 @@
-"""A control loop: drive along the wall beside the robot at a wanted distance."""
+"""Control loop that drives along a wall at a set distance."""
 
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings
 
 
 class KeepDistance:
-    """Proportional control of distance and angle to the wall, from the two outer sensors of one side."""
+    """Proportional control of distance and angle to the wall, from the outer sensors of one side."""
 
     finished = False
-    """A control loop never is."""
     lost = False
 
     def __init__(
@@ -39,10 +38,10 @@ class KeepDistance:
         self._gain_per_m = gain_per_m
 
     def start(self) -> None:
-        """Nothing to forget: the loop looks at the present reading only."""
+        """Do nothing: the loop has no state."""
 
     def step(self, senses: SensorReadings) -> WheelSpeeds:
-        """Steer towards the wall when too far from it or turned away, and off it when too near or turned to it."""
+        """Return wheel speeds in m/s that steer towards the set distance and parallel to the wall."""
         front_m = self._infrared.distance_m(senses.infrared_counts[self._front])
         back_m = self._infrared.distance_m(senses.infrared_counts[self._back])
         too_far_m = 0.5 * (front_m + back_m) - self._distance_m

@@ -1,4 +1,4 @@
-"""The repertoire: every action by name, built for one robot."""
+"""Repertoire: the actions by name, built for one robot."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -20,19 +20,20 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, find_config, load_settings
 
 Repertoire = Mapping[str, Behaviour]
-"""Behaviours by the name that stands in an RLA's action part."""
+"""Behaviours by their names in an RLA's action part."""
 
 
 BuildTaught = Callable[[TaughtAction | TaskAction, Path], Behaviour]
-"""Builds an action that was taught, which stands in the repertoire of that file. Raises ValueError."""
+"""Builder of a taught action from its entry and the path of the repertoire file. Raises ValueError."""
 
 
 def load_repertoire(
     name_or_path: str, robot: RobotSettings, build_taught: BuildTaught | None = None
 ) -> dict[str, Behaviour]:
-    """Build the actions of a repertoire for a robot. Raises SettingsError.
+    """Return the actions of a repertoire, built for a robot.
 
-    `build_taught`: RLA systems stand above this package, so who knows them builds the actions that are such systems.
+    `build_taught` builds actions that are RLA systems, which this package does not know; None refuses them.
+    Raises SettingsError that names file and entry.
     """
     path = find_config("repertoires", name_or_path)
     settings = load_settings(path, RepertoireSettings)

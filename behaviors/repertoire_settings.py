@@ -1,4 +1,4 @@
-"""Schema of `config/repertoires/*.yaml`: the actions a teacher may choose from."""
+"""Schema of `config/repertoires/*.yaml`, the actions that a teacher may choose."""
 
 from typing import Annotated, Literal, Self
 
@@ -9,7 +9,7 @@ from hal.settings import Settings
 Speed = Annotated[float, Field(ge=-1.0, le=1.0)]
 PositiveSpeed = Annotated[float, Field(gt=0, le=1.0)]
 RESERVED = "ask"
-"""Stands in place of an RLA's action that was withdrawn (kurt2rt.rla.rla.ASK)."""
+"""Placeholder of a withdrawn action (kurt2rt.rla.rla.ASK)."""
 
 
 def _require_free(name: str) -> str:
@@ -24,7 +24,7 @@ ActionName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,39}$"), AfterValid
 
 
 class MotorAction(Settings):
-    """Direct motor values."""
+    """Fixed speeds of both sides."""
 
     kind: Literal["motor"]
     name: ActionName
@@ -33,7 +33,7 @@ class MotorAction(Settings):
 
 
 class KeepDistanceAction(Settings):
-    """Control loop along a wall."""
+    """Control loop along a wall (behaviors.keep_distance)."""
 
     kind: Literal["keep_distance"]
     name: ActionName
@@ -45,7 +45,7 @@ class KeepDistanceAction(Settings):
 
 
 class TurnByAngleAction(Settings):
-    """Simple behaviour: turn on the spot by an angle, left positive."""
+    """Turn on the spot by an angle, left positive."""
 
     kind: Literal["turn_by_angle"]
     name: ActionName
@@ -54,27 +54,27 @@ class TurnByAngleAction(Settings):
 
 
 class TaughtAction(Settings):
-    """One taught behaviour of a task, with what a knowledge file holds of it: an RLA system as an action."""
+    """One taught behaviour of a task with its lessons from a knowledge file: an RLA system as an action."""
 
     kind: Literal["taught"]
     name: ActionName
     task: str
-    """By name (config/tasks), or path to its YAML file: how it perceives, matches and acts."""
+    """Name in config/tasks or path of a YAML file; it sets perception, match and actions."""
     knowledge: Annotated[str, Field(min_length=1)]
-    """The file; a path that is not absolute begins at the folder of this repertoire."""
+    """Knowledge file; a relative path starts at the folder of this repertoire."""
     behaviour: str = ""
-    """Which one of the task; left out where it has only one."""
+    """Taught behaviour of the task; empty if the task has only one."""
 
 
 class TaskAction(Settings):
-    """A complete task with all its layers, and with what a knowledge file holds of it."""
+    """Complete task with all layers and the lessons of a knowledge file."""
 
     kind: Literal["task"]
     name: ActionName
     task: str
-    """By name (config/tasks), or path to its YAML file."""
+    """Name in config/tasks or path of a YAML file."""
     knowledge: Annotated[str, Field(min_length=1)]
-    """The file; a path that is not absolute begins at the folder of this repertoire."""
+    """Knowledge file; a relative path starts at the folder of this repertoire."""
 
 
 ActionSettings = Annotated[
@@ -83,7 +83,7 @@ ActionSettings = Annotated[
 
 
 class RepertoireSettings(Settings):
-    """A pre-defined repertoire of valid actions (paper, III.A.2)."""
+    """Repertoire of valid actions (paper, III.A.2)."""
 
     name: str
     actions: Annotated[tuple[ActionSettings, ...], Field(min_length=1)]

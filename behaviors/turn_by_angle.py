@@ -1,4 +1,4 @@
-"""A simple behaviour: turn on the spot by an angle, measured by the encoders, then stand."""
+"""Turn on the spot by an angle, measured by the encoders."""
 
 import math
 
@@ -7,7 +7,7 @@ from hal.robot_settings import GeometrySettings
 
 
 class TurnByAngle:
-    """Turns left by a positive angle, right by a negative one; stands when it is done."""
+    """Turn to the left by a positive angle, to the right by a negative one, then standstill."""
 
     lost = False
 
@@ -21,15 +21,15 @@ class TurnByAngle:
 
     @property
     def finished(self) -> bool:
-        """Whether the wheels have run the arc."""
+        """Return whether the wheels have rolled the whole arc."""
         return self._turned_m >= self._wanted_m
 
     def start(self) -> None:
-        """Begin a turn of the whole angle."""
+        """Restart the turn at 0 degrees."""
         self._turned_m = 0.0
 
     def step(self, senses: SensorReadings) -> WheelSpeeds:
-        """Turn until the wheels have run the arc."""
+        """Return the turning speeds in m/s until the wheels have rolled the arc, then standstill."""
         # Signed: a robot that still swings the other way has more to turn, not less.
         difference = self._sign * (senses.encoder_right_ticks - senses.encoder_left_ticks)
         self._turned_m += 0.5 * difference * self._metres_per_tick

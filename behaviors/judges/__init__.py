@@ -1,1 +1,1 @@
-"""What scripted teachers think of how the robot drives: -1, 0 or +1."""
+"""Judges: rewards of -1, 0 or +1 for the way the robot drives."""

@@ -1,4 +1,4 @@
-"""An eight round two columns: what the scripted teacher of that task praises and blames."""
+"""Judge of the figure of eight round two columns."""
 
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
 from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
@@ -6,54 +6,52 @@ from behaviors.policies.distances import Distance
 
 
 class EightSettings(JudgeSettings):
-    """What the teacher looks for; distances from the sensors' faces."""
+    """Thresholds; distances from the sensors' faces."""
 
     trouble: CommonFaults
     front_m: Distance
-    """With something ahead nearer than this it has to turn."""
+    """Distance ahead below which the robot has to turn."""
     last_m: Distance
-    """Nearer than this to what is ahead it must not drive on."""
+    """Distance ahead below which driving on is bad."""
     drives_m_s: Speed
-    """Faster than this it drives on."""
+    """Speed above which the robot drives on."""
     away_rad_s: TurnRate
-    """Turning faster than this is right where it has to."""
+    """Turn rate above which a necessary turn is good."""
     spins_m_s: Speed
-    """Slower than this ..."""
+    """Speed below which a turn above `spins_rad_s` is a spin, which is bad unless the robot has to turn."""
     spins_rad_s: TurnRate
-    """... and turning faster than this it spins, which is wrong where it need not turn."""
     lost_m: Distance
-    """A column beside it farther than this is not seen."""
+    """Distance at the side above which a column counts as not seen."""
     turns_rad_s: TurnRate
-    """Turning faster than this away from the only column beside it is wrong ..."""
+    """Turn rate above which turning away from the only column is bad, unless the edge sensor sees it (`edge_m`)."""
     edge_m: Distance
-    """... where it sees nothing ahead to that side nearer than this."""
     near_m: Distance
-    """Farther than this from the column ..."""
+    """Lower bound of the good distance to a column."""
     far_m: Distance
-    """... and nearer than this ..."""
+    """Upper bound of the good distance to a column."""
     round_rad_s: TurnRate
-    """... turning to it faster than this ..."""
+    """Turn rate towards the column above which the curve is good."""
     round_m_s: Speed
-    """... and driving faster than this is good."""
+    """Speed above which the curve is good."""
     straight_rad_s: TurnRate
-    """Between two columns, turning slower than this is good."""
+    """Turn rate below which driving between two columns is good."""
     unseen_m: Distance
-    """With nothing beside it, and nothing nearer than this ahead to the sides, it must not turn right."""
+    """Distance at both front edges above which a right turn without a column in view is bad."""
 
     def build(self) -> Judge:
-        """The judge."""
+        """Return the judge."""
         return Eight(self)
 
 
 class Eight:
-    """Good is round a column at the wanted distance, or between two; bad is away from the only one, or into one."""
+    """Reward +1 for curves round a column and courses between two, -1 for leaving or hitting one."""
 
     def __init__(self, settings: EightSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: AppraisalFeatures) -> int:
-        """-1 bad, 0 neutral, +1 good."""
-        want, now = self._settings, circumstances
+    def judge(self, features: AppraisalFeatures) -> int:
+        """Return the reward: -1 bad, 0 neutral, +1 good."""
+        want, now = self._settings, features
         if has_fault(now, want.trouble):
             return -1
         if now.front_m < want.front_m:
@@ -72,7 +70,7 @@ class Eight:
         return -1 if unseen and now.turn_rad_s < -want.turns_rad_s else 0
 
     def _round(self, beside_m: float, ahead_m: float, to_it_rad_s: float, speed_m_s: float) -> int:
-        """Round the only column, which is so far beside it; `ahead_m`: what it sees ahead to that side."""
+        """Return the reward next to the only column; `ahead_m`: distance at the front edge on that side."""
         want = self._settings
         if to_it_rad_s < -want.turns_rad_s and ahead_m > want.edge_m:
             return -1

@@ -1,4 +1,4 @@
-"""Fleeing with collision avoidance: what the scripted teacher of that task praises and blames."""
+"""Judge of fleeing with collision avoidance."""
 
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
 from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
@@ -6,54 +6,50 @@ from behaviors.policies.distances import Distance
 
 
 class FleeingSettings(JudgeSettings):
-    """What the teacher looks for; distances from the sensors' faces."""
+    """Thresholds; distances from the sensors' faces."""
 
     trouble: CommonFaults
     front_m: Distance
-    """With something ahead nearer than this ..."""
+    """Distance ahead below which the robot has to spin left."""
     edge_m: Distance
-    """... or ahead to a side nearer than this it has to turn left on the spot."""
+    """Distance at a front edge below which the robot has to spin left."""
     last_m: Distance
-    """Nearer than this to what is ahead ..."""
+    """Distance ahead below which driving faster than `drives_m_s` is bad, unless it turns left by `escapes_rad_s`."""
     drives_m_s: Speed
-    """... it must not drive on faster than this ..."""
     escapes_rad_s: TurnRate
-    """... but where it turns left faster than this."""
     whirls_rad_s: TurnRate
-    """Turning left faster than this is right where it has to; where nothing is near, to the right it is wrong."""
+    """Turn rate of a spin: good to the left where necessary, bad to the right in the open."""
     whirls_m_s: Speed
-    """Slower than this it turns on the spot."""
+    """Speed below which a turn is a spin."""
     free_front_m: Distance
-    """Farther than this from what is ahead ..."""
+    """Distance ahead above which the robot is in the open, together with `free_edge_m`."""
     free_edge_m: Distance
-    """... and from what is ahead to the sides it is free to go."""
     fast_m_s: Speed
-    """Faster than this ..."""
+    """Speed above which a straight course is good."""
     straight_rad_s: TurnRate
-    """... and turning slower than this it is off."""
+    """Turn rate below which a course is straight."""
     creeps_m_s: Speed
-    """Slower than this ..."""
+    """Speed below which the robot wastes the open space, together with `curves_rad_s`."""
     curves_rad_s: TurnRate
-    """... and turning slower than this it wastes its freedom."""
     wary_m: Distance
-    """What is nearer than this ahead to a side it must not curve to."""
+    """Distance at a front edge below which curving to that side is bad."""
     turns_rad_s: TurnRate
-    """Turning faster than this it goes to that side."""
+    """Turn rate above which the robot turns to a side."""
 
     def build(self) -> Judge:
-        """The judge."""
+        """Return the judge."""
         return Fleeing(self)
 
 
 class Fleeing:
-    """Good is to turn left from what is near and to be off where it is free; bad is what drives or turns to things."""
+    """Reward +1 for left spins at obstacles and fast courses in the open, -1 for approaching things."""
 
     def __init__(self, settings: FleeingSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: AppraisalFeatures) -> int:
-        """-1 bad, 0 neutral, +1 good."""
-        want, now = self._settings, circumstances
+    def judge(self, features: AppraisalFeatures) -> int:
+        """Return the reward: -1 bad, 0 neutral, +1 good."""
+        want, now = self._settings, features
         if has_fault(now, want.trouble):
             return -1
         edge_m = min(now.ahead_left_m, now.ahead_right_m)
@@ -66,7 +62,7 @@ class Fleeing:
         return -1 if self._curves_to_what_it_sees(now) else 0
 
     def _near(self, now: AppraisalFeatures) -> int:
-        """It has to turn left on the spot."""
+        """Return the reward in a place that demands a left spin."""
         want = self._settings
         drives_at_it = now.front_m < want.last_m and now.speed_m_s > want.drives_m_s
         if (drives_at_it and now.turn_rad_s < want.escapes_rad_s) or now.turn_rad_s < -want.turns_rad_s:

@@ -1,4 +1,4 @@
-"""The contract of a judge, and what it looks at."""
+"""Contract of judges, and the features they see."""
 
 from abc import abstractmethod
 from typing import NamedTuple, Protocol
@@ -7,48 +7,45 @@ from hal.settings_by_kind import KindSettings
 
 
 class AppraisalFeatures(NamedTuple):
-    """The appraisal situation: how near things are, how the robot moves, and what goes wrong, from its senses alone."""
+    """Appraisal situation: distances, motion and faults, computed from the robot's sensor readings alone."""
 
     left_m: float
-    """Nearest thing on the left, from the sensors' faces."""
+    """Nearest object on the left, from the sensors' faces."""
     front_m: float
     right_m: float
     rear_m: float
     ahead_left_m: float
-    """What the sensors see that look ahead to the left."""
+    """Distance seen by the sensors at the front left edge."""
     ahead_right_m: float
     left_angle_rad: float
-    """How far the nose is turned away from the wall on the left; negative: towards it. 0.0 where there is none."""
+    """Angle of the robot's nose away from the wall on the left, negative towards it; 0.0 without a wall."""
     right_angle_rad: float
-    """The same for the wall on the right."""
+    """Angle of the nose away from the wall on the right."""
     speed_m_s: float
     """Forward positive, smoothed."""
     turn_rad_s: float
     """Counter-clockwise positive, smoothed."""
     bumped: float
-    """1.0 when a bumper was pressed a moment ago, else 0.0."""
+    """1.0 shortly after a bumper was pressed, else 0.0."""
     no_progress: float
-    """1.0 when the robot drives and gets nowhere, else 0.0."""
+    """1.0 if the robot drives without getting anywhere, else 0.0."""
     no_wall: float
-    """1.0 when it has had no wall beside it for long, else 0.0."""
+    """1.0 if no wall has been in view at the sides for long, else 0.0."""
     surprised: float = 0.0
-    """1.0 when something else than expected came a moment ago, else 0.0; 0.0 for a critic that does not look at it."""
+    """1.0 shortly after an unexpected event, else 0.0; 0.0 for a critic without this feature."""
 
 
 class Judge(Protocol):
-    """Says what a teacher would think of the circumstances.
+    """Memoryless reward function: a critic can only learn from its appraisal situation."""
 
-    Memoryless, as a reference policy is: a critic can only learn from what is in its appraisal situation.
-    """
-
-    def judge(self, circumstances: AppraisalFeatures) -> int:
-        """-1 bad, 0 neutral, +1 good."""
+    def judge(self, features: AppraisalFeatures) -> int:
+        """Return the reward: -1 bad, 0 neutral, +1 good."""
         ...
 
 
 class JudgeSettings(KindSettings):
-    """Base of the settings of every judge: a class named after its file in this folder, which is the kind."""
+    """Base of the settings of every judge; the module's name in this folder is the kind."""
 
     @abstractmethod
     def build(self) -> Judge:
-        """The judge."""
+        """Return the judge."""

@@ -1,4 +1,4 @@
-"""What any teacher blames, whatever the task."""
+"""Faults that every judge punishes."""
 
 from typing import Annotated
 
@@ -8,26 +8,25 @@ from behaviors.judges.judge import AppraisalFeatures
 from hal.settings import Settings
 
 Speed = Annotated[float, Field(ge=0, le=1)]
-"""In the settings of a judge, in m/s."""
+"""Speed in m/s."""
 TurnRate = Annotated[float, Field(ge=0, le=4)]
-"""The same in rad/s, to either side."""
+"""Turn rate in rad/s, to either side."""
 
 
 class CommonFaults(Settings):
-    """What is trouble."""
+    """Thresholds of the faults."""
 
     creeps_m_s: Speed
-    """No progress is one only while it drives slower than this."""
+    """Speed below which lack of progress counts as a fault."""
     backs_m_s: Speed
-    """Backwards faster than this is wrong: there it sees least."""
+    """Backward speed above which the robot is punished: it sees least to the rear."""
     stands_m_s: Speed
-    """Slower than this ..."""
+    """Speed below which the robot stands, together with `stands_rad_s`."""
     stands_rad_s: TurnRate
-    """... and turning slower than this it stands."""
 
 
 def has_fault(now: AppraisalFeatures, trouble: CommonFaults) -> bool:
-    """Whether it bumped into something, gets nowhere, backs or stands."""
+    """Return whether the robot bumped into something, makes no progress, backs or stands."""
     return (
         now.bumped > 0.0
         or (now.no_progress > 0.0 and now.speed_m_s < trouble.creeps_m_s)

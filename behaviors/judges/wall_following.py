@@ -1,4 +1,4 @@
-"""Wall following with the wall on the left: what the scripted teacher of that task praises and blames."""
+"""Judge of wall following with the wall on the left."""
 
 from typing import Annotated
 
@@ -9,76 +9,72 @@ from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 Error = Annotated[float, Field(gt=0, le=0.6)]
-"""Difference from the wanted distance, in metres."""
+"""Difference from the set distance, in metres."""
 
 
 class WallFollowingSettings(JudgeSettings):
-    """What the teacher looks for; distances from the sensors' faces."""
+    """Thresholds; distances from the sensors' faces."""
 
     trouble: CommonFaults
     front_m: Distance
-    """With something ahead nearer than this ..."""
+    """Distance ahead below which the robot has to turn right."""
     edge_m: Distance
-    """... or ahead to the left nearer than this ..."""
+    """Distance at the front left edge below which the robot has to turn right."""
     near_m: Distance
-    """... or on the left no farther than this it has to turn right."""
+    """Distance on the left up to which the robot has to turn right."""
     last_m: Distance
-    """Nearer than this to what is ahead it must not drive on."""
+    """Distance ahead below which driving on is bad."""
     drives_m_s: Speed
-    """Faster than this it drives on."""
+    """Speed above which the robot drives on."""
     drifts_m_s: Speed
-    """Faster than this it is on its way, however it turns."""
+    """Speed above which the robot makes way while it turns."""
     spins_m_s: Speed
-    """Slower than this ..."""
+    """Speed below which a turn above `spins_rad_s` is a spin."""
     spins_rad_s: TurnRate
-    """... and turning faster than this it spins."""
     away_rad_s: TurnRate
-    """Turning right faster than this is right where it has to."""
+    """Right turn rate above which a necessary turn is good."""
     curves_rad_s: TurnRate
-    """Turning left or right faster than this it goes to that side."""
+    """Turn rate above which the robot curves to a side."""
     corner_rad_s: TurnRate
-    """The same past the end of the wall."""
+    """Turn rate above which the robot curves past the end of the wall."""
     bay_m: Distance
-    """Only where something ahead to the right is nearer than this may it spin left."""
+    """Distance at the front right edge below which a left spin is allowed."""
     open_front_m: Distance
-    """Where it is free ahead ..."""
+    """Distance ahead above which a right spin is bad, together with the three thresholds below."""
     open_edge_m: Distance
-    """... and ahead to the left ..."""
     open_left_m: Distance
-    """... and to the left ..."""
     open_angle_rad: Annotated[float, Field(ge=0, le=1.6)]
-    """... and its nose looks away from the wall so far, it must not spin right."""
     lost_m: Distance
-    """Farther than this to the left and ahead to the left is no wall."""
+    """Distance above which the left side and the front left edge see no wall."""
     wanted_m: Distance
-    """Distance to the wall on the left."""
+    """Set distance to the wall on the left."""
     heading_weight_m: Annotated[float, Field(ge=0, le=1)]
-    """Metres of error that one radian of heading error counts for."""
+    """Distance error in m per radian of heading error."""
     good_m: Error
-    """Less error than this is good straight on; with more, curving to where it gets less is."""
+    """Error below which straight on is good; above it, curving towards less error is."""
     far_m: Error
-    """With more than this too far off it must not curve away."""
+    """Excess distance above which curving away is bad."""
     close_m: Error
-    """With more than this too close it must not curve to the wall."""
+    """Missing distance above which curving to the wall is bad."""
     free_m: Distance
-    """Ahead at least so much is free where straight on is good ..."""
+    """Free distance ahead that makes straight on good."""
     free_to_wall_m: Distance
-    """... and so much where it curves to the wall."""
+    """Free distance ahead that makes curving to the wall good."""
 
     def build(self) -> Judge:
-        """The judge."""
+        """Return the judge."""
         return WallFollowing(self)
 
 
 class WallFollowing:
-    """Good is along the wall at the wanted distance, or what leads there; bad is what leads away from it or into it."""
+    """Reward +1 for a course along the wall at the set distance or back to it, -1 for leaving or hitting the wall."""
 
     def __init__(self, settings: WallFollowingSettings) -> None:
         self._settings = settings
 
-    def judge(self, circumstances: AppraisalFeatures) -> int:
-        """-1 bad, 0 neutral, +1 good."""
-        want, now = self._settings, circumstances
+    def judge(self, features: AppraisalFeatures) -> int:
+        """Return the reward: -1 bad, 0 neutral, +1 good."""
+        want, now = self._settings, features
         if has_fault(now, want.trouble):
             return -1
         if now.front_m < want.front_m or now.ahead_left_m < want.edge_m or now.left_m <= want.near_m:
@@ -92,7 +88,7 @@ class WallFollowing:
         return self._along(now)
 
     def _blocked(self, now: AppraisalFeatures) -> int:
-        """It has to turn right."""
+        """Return the reward in a place that demands a right turn."""
         want = self._settings
         drives_at_it = now.front_m < want.last_m and now.speed_m_s > want.drives_m_s
         if now.turn_rad_s > want.curves_rad_s or drives_at_it:
@@ -113,7 +109,7 @@ class WallFollowing:
         )
 
     def _past_the_end(self, now: AppraisalFeatures) -> int:
-        """The wall ends: round its corner."""
+        """Return the reward at the end of the wall, where a left curve round its corner is good."""
         want = self._settings
         if now.turn_rad_s > want.corner_rad_s and now.speed_m_s > want.drifts_m_s:
             return 1

@@ -1,1 +1,1 @@
-"""Reference policies that scripted teachers consult: what a consistent person would say, from what the robot senses."""
+"""Reference policies: the answers of a consistent teacher to the robot's sensor readings."""

@@ -1,4 +1,4 @@
-"""A circle, counter-clockwise, round an object that is smaller than the distance between two sensors."""
+"""Counter-clockwise circle round an object smaller than the gap between two sensors."""
 
 from behaviors.policies.distances import LEFT_FRONT_TO_BACK, Distance, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
@@ -6,26 +6,24 @@ from hal.robot_settings import InfraredSettings
 
 
 class CircleSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face."""
+    """Thresholds; distances from the sensors' faces."""
 
     near_m: Distance
-    """An object on the left nearer than this makes the robot drive straight on."""
+    """Distance to the object on the left below which the robot drives straight on."""
     far_m: Distance
-    """Farther than this the object may only be ahead of abeam a little: the robot curves in sooner."""
+    """Distance above which the robot narrows the curve earlier."""
     lost_m: Distance
-    """What is farther on the left than this is not seen."""
+    """Distance on the left above which an object counts as not seen."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy."""
+        """Return the policy."""
         return Circle(self, infrared)
 
 
 class Circle:
-    """With the object on the left it curves, less while that is ahead of abeam.
+    """Curve left round an object on the left, less while it is ahead of abeam; else spin left until it is there.
 
-    Whatever else it sees, or where it sees nothing, it turns on the spot until the object is on the left: one answer to
-    all that looks different and asks for the same, and no way on which the object passes by on the wrong side. Not for
-    where walls are in reach: it would follow one, and never looks ahead.
+    Not for places with walls in range: the robot would follow a wall, and the policy ignores the front sensors.
     """
 
     def __init__(self, settings: CircleSettings, infrared: InfraredSettings) -> None:
@@ -33,7 +31,7 @@ class Circle:
         self._left = Distances(infrared).of(*LEFT_FRONT_TO_BACK)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Name of the action."""
+        """Return the name of the action."""
         want = self._settings
         left = self._left(infrared_counts)
         nearest = min(left)

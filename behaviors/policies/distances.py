@@ -1,4 +1,4 @@
-"""What sensors see, in metres."""
+"""Distances in metres from infra-red counts."""
 
 from collections.abc import Callable
 from typing import Annotated
@@ -11,7 +11,7 @@ from hal.robot_settings import InfraredSettings
 Look = Callable[[tuple[int, ...]], tuple[float, ...]]
 
 Distance = Annotated[float, Field(ge=0.05, le=0.6)]
-"""In the settings of a policy, in metres: what a sensor can tell."""
+"""Distance in metres within the sensors' range."""
 
 LEFT_FRONT_TO_BACK = ("s1", "s3", "s4", "s2")
 RIGHT_FRONT_TO_BACK = ("s5", "s7", "s8", "s6")
@@ -23,7 +23,7 @@ RIGHT_WITH_EDGES = (FRONT_RIGHT_EDGE, *RIGHT_FRONT_TO_BACK, REAR_RIGHT_EDGE)
 
 
 class Distances:
-    """Turns counts into distances from the sensors' faces, by the sensors' own law."""
+    """Lookup table from counts to distances from the sensors' faces."""
 
     def __init__(self, infrared: InfraredSettings) -> None:
         # Looked up, for a teacher asks in every tick of a lesson.
@@ -32,11 +32,11 @@ class Distances:
         self._x_m = {name: sensor.x_m for name, sensor in zip(infrared.names, infrared.sensors, strict=True)}
 
     def of(self, *names: str) -> Look:
-        """A look through these sensors: distances in their order."""
+        """Return a function from counts of all sensors to the distances in m of the named ones, in their order."""
         distance_m = self._distance_m
         places = tuple(self._index[name] for name in names)
         return lambda counts: tuple([distance_m[counts[place]] for place in places])
 
     def ahead_m(self, *names: str) -> tuple[float, ...]:
-        """How far ahead of the robot's centre these sensors sit."""
+        """Return the sensors' positions ahead of the robot's centre, in m."""
         return tuple(self._x_m[name] for name in names)

@@ -1,4 +1,4 @@
-"""An eight round two columns: the one on the left counter-clockwise, the one on the right clockwise."""
+"""Figure of eight round two columns: counter-clockwise round the left one, clockwise round the right one."""
 
 from typing import NamedTuple
 
@@ -14,30 +14,30 @@ _NOWHERE = 5
 
 
 class EightSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face."""
+    """Thresholds; distances from the sensors' faces."""
 
     near_m: Distance
-    """A column beside the robot nearer than this widens the curve."""
+    """Distance to a column at the side below which the robot widens the curve."""
     far_m: Distance
-    """Farther than this it narrows the curve."""
+    """Distance above which the robot narrows the curve."""
     front_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn on the spot, away from the nearer column."""
+    """Distance ahead below which the robot spins away from the nearer column."""
     lost_m: Distance
-    """A column beside the robot farther than this is not seen."""
+    """Distance at the side above which a column counts as not seen."""
     edge_m: Distance
-    """The same for the sensors that look ahead to the sides."""
+    """Threshold like `lost_m` for the front edge sensors."""
     rear_m: Distance
-    """The same for those that look back to the sides."""
+    """Threshold like `lost_m` for the rear edge sensors."""
     close_m: Distance
-    """A column ahead to the side nearer than this makes the robot curve away."""
+    """Distance at a front edge below which the robot curves away from the column."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy."""
+        """Return the policy."""
         return Eight(self, infrared)
 
 
 class _Column(NamedTuple):
-    """What one side sees of a column."""
+    """View of a column by the sensors of one side."""
 
     place: int
     beside_m: float
@@ -45,9 +45,9 @@ class _Column(NamedTuple):
 
 
 class Eight:
-    """Goes round the column that lies farther ahead; straight on from one to the other.
+    """Curve round the column that lies farther ahead, straight on from one column to the other.
 
-    So it needs no memory: it leaves a column as soon as the other one comes into view, and then it has its back to it.
+    No memory is needed: the robot leaves a column once the other one comes into view, and then has its back to it.
     """
 
     def __init__(self, settings: EightSettings, infrared: InfraredSettings) -> None:
@@ -58,7 +58,7 @@ class Eight:
         self._right = distances.of(*RIGHT_WITH_EDGES)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Name of the action."""
+        """Return the name of the action."""
         left, right = self._column(self._left(infrared_counts)), self._column(self._right(infrared_counts))
         if min(self._front(infrared_counts)) < self._settings.front_m:
             to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)
@@ -80,7 +80,7 @@ class Eight:
         return _Column(place, beside_m, edge_m)
 
     def _round(self, column: _Column, other: _Column, here: str, away: str) -> str:
-        """Round the column that lies farther ahead, on the side `here`."""
+        """Return the action round the column that lies farther ahead, on the side `here`."""
         want = self._settings
         if column.place == _NOWHERE:
             return "curve_left"

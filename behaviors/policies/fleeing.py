@@ -1,4 +1,4 @@
-"""Fleeing with collision avoidance: turn away from whatever is near, and be off."""
+"""Fleeing with collision avoidance."""
 
 from behaviors.policies.distances import FRONT, FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE, Distance, Distances
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
@@ -6,22 +6,22 @@ from hal.robot_settings import InfraredSettings
 
 
 class FleeingSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face."""
+    """Thresholds; distances from the sensors' faces."""
 
     front_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn on the spot."""
+    """Distance ahead below which the robot turns on the spot."""
     edge_m: Distance
-    """The same for the sensors that look ahead to the sides."""
+    """Distance at the front edges below which the robot turns on the spot."""
     wary_m: Distance
-    """What these see nearer than this makes it curve away."""
+    """Distance at the front edges below which the robot curves away."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy."""
+        """Return the policy."""
         return Fleeing(self, infrared)
 
 
 class Fleeing:
-    """Always turns left on the spot: neighbouring RLAs that turn to either side turn the robot to and fro for ever."""
+    """Spin left from near obstacles: neighbouring RLAs that spin to either side would oscillate for ever."""
 
     def __init__(self, settings: FleeingSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
@@ -30,7 +30,7 @@ class Fleeing:
         self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Name of the action."""
+        """Return the name of the action."""
         want = self._settings
         left, right = self._edges(infrared_counts)
         if min(self._front(infrared_counts)) < want.front_m or min(left, right) < want.edge_m:

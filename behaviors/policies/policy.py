@@ -1,4 +1,4 @@
-"""The contract of a reference policy."""
+"""Contract of reference policies."""
 
 from abc import abstractmethod
 from typing import ClassVar, Protocol
@@ -8,26 +8,23 @@ from hal.settings_by_kind import KindSettings
 
 
 class ReferencePolicy(Protocol):
-    """Names the right action for what the sensors show now.
-
-    Memoryless, because a robot can only learn from what is in its situation: hidden state in the teacher's head is
-    unlearnable.
-    """
+    """Memoryless choice of the right action: a robot cannot learn from hidden state of the teacher."""
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
-        """Name of the action to take, of the repertoire. `infrared_counts`: as in SensorReadings.
+        """Return the name of the action.
 
-        `behaviour`: the taught behaviour that is wanted, empty where the task has only one.
+        Args: `infrared_counts` as in hal's sensor readings; `behaviour`: the selected taught behaviour, empty if the
+        task has only one.
         """
         ...
 
 
 class PolicySettings(KindSettings):
-    """Base of the settings of every policy: a class named after its file in this folder, which is the kind."""
+    """Base of the settings of every policy; the module's name in this folder is the kind."""
 
     behaviours: ClassVar[tuple[str, ...] | None] = None
-    """The taught behaviours that it tells apart; None: it does the same whatever is wanted."""
+    """Taught behaviours that the policy distinguishes; None if it ignores the selection."""
 
     @abstractmethod
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy, for a robot with these sensors."""
+        """Return the policy for a robot with these sensors."""

@@ -1,4 +1,4 @@
-"""Through streets: straight on, left or right at the next junction, in the middle of the street on the way."""
+"""Street driving in the middle of the street: straight on, left or right at the next junction."""
 
 import math
 from collections.abc import Sequence
@@ -24,34 +24,34 @@ _FIRST_BESIDE = 1
 
 
 class StreetsSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face unless said otherwise."""
+    """Thresholds; distances from the sensors' faces unless said otherwise."""
 
     behaviours: ClassVar[tuple[str, ...] | None] = ("straight_on", "turn_left", "turn_right")
     half_width_m: Annotated[float, Field(ge=0.2, le=0.8)]
-    """From the middle of the street to a wall; for where only one wall is seen."""
+    """Distance from the middle of the street to a wall, used if only one wall is seen."""
     look_m: Annotated[float, Field(ge=0, le=1)]
-    """So far ahead of its centre the robot is to be in the middle, which corrects its heading as well."""
+    """Look-ahead from the robot's centre; it corrects the heading as well."""
     tolerance_m: Tolerance
-    """Dead band round the middle in which the robot drives straight on."""
+    """Dead band round the middle of the street."""
     curve_m: Tolerance
-    """Farther off the middle than this it takes a sharp curve."""
+    """Distance from the middle above which the robot takes a sharp curve."""
     crossing_tolerance_m: Tolerance
     """Dead band in a crossing, where only corners are seen."""
     front_m: Distance
-    """A wall ahead nearer than this makes the robot turn on the spot."""
+    """Distance ahead below which the robot turns on the spot."""
     open_m: Distance
-    """A wall farther than this leaves a side open."""
+    """Distance above which a side is open."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy."""
+        """Return the policy."""
         return Streets(self, infrared)
 
 
 class Streets:
-    """Keeps to the middle between both walls, or off the one there is; curves round the corner where it is to turn.
+    """Keep to the middle between both walls or off the only one; turn round the corner of an open side.
 
-    Straight on through a crossing it goes by what the edge sensors see of the corners: all side sensors look into the
-    open there, and a robot that enters askew would run into the far corner.
+    On the way straight through a crossing the edge sensors' view of the corners decides. All side sensors look into
+    the open there, and a robot that enters askew would run into the far corner.
     """
 
     def __init__(self, settings: StreetsSettings, infrared: InfraredSettings) -> None:
@@ -65,7 +65,7 @@ class Streets:
         self._half_across = 0.5 * math.sin(math.radians(edge.heading_deg))
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
-        """Name of the action."""
+        """Return the name of the action."""
         want = self._settings
         front = self._front(infrared_counts)
         left, right = self._left(infrared_counts), self._right(infrared_counts)
@@ -83,7 +83,7 @@ class Streets:
         return f"bear_{side}" if abs(error_m) > tolerance_m else "forward"
 
     def _error_m(self, left: Sequence[float], right: Sequence[float], *, with_edges: bool) -> float:
-        """How far the middle of the street lies to the left of where the robot is heading."""
+        """Return the offset in m of the street's middle to the left of the robot's course."""
         want = self._settings
         sensors = slice(None) if with_edges else _BESIDE
         to_left_m = self._left_wall.away_m(left, sensors, want.look_m, want.open_m)
@@ -100,10 +100,10 @@ class Streets:
 
 
 class _Wall:
-    """Where the wall on one side runs, as far as the sensors of that side show it."""
+    """Line of the wall on one side, fitted through the points that the sensors of that side see."""
 
     def __init__(self, infrared: InfraredSettings, names: Sequence[str], outward: float) -> None:
-        """`names` from front to back; `outward` is 1 for the left side, -1 for the right."""
+        """Args: sensor `names` from front to back; `outward` is 1 for the left side, -1 for the right."""
         sensors = [infrared.sensors[infrared.names.index(name)] for name in names]
         self._rays = [
             (
@@ -116,7 +116,7 @@ class _Wall:
         ]
 
     def away_m(self, distances: Sequence[float], sensors: slice, look_m: float, reach_m: float) -> float | None:
-        """How far off it is `look_m` ahead of the robot's centre; None where fewer than two points of it are seen."""
+        """Return the wall's distance in m at `look_m` ahead of the robot's centre; None for fewer than two points."""
         points = [
             (x_m + along * distance_m, y_m + across * distance_m)
             for (x_m, y_m, along, across), distance_m in zip(self._rays[sensors], distances[sensors], strict=True)
@@ -129,5 +129,4 @@ class _Wall:
 
 
 def _turn_of(behaviour: str) -> str:
-    """`left`, `right`, or empty for straight on."""
     return behaviour.removeprefix("turn_") if behaviour.startswith("turn_") else ""

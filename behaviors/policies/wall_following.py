@@ -1,4 +1,4 @@
-"""Wall following with the wall on the left: what the scripted teacher of that task says."""
+"""Wall following with the wall on the left."""
 
 from typing import Annotated
 
@@ -17,32 +17,32 @@ from hal.robot_settings import InfraredSettings
 
 
 class WallFollowingSettings(PolicySettings):
-    """What the teacher looks for; distances from the sensor's face."""
+    """Thresholds; distances from the sensors' faces."""
 
     wanted_m: Distance
-    """Distance to the wall on the left."""
+    """Set distance to the wall on the left."""
     tolerance_m: Annotated[float, Field(gt=0, le=0.2)]
-    """Dead band round it in which the robot drives straight on."""
+    """Dead band round the set distance."""
     front_m: Distance
-    """An obstacle ahead nearer than this makes the robot turn right on the spot."""
+    """Distance ahead below which the robot spins right."""
     edge_m: Distance
-    """The same for the sensor that looks ahead to the left."""
+    """Distance at the front left edge below which the robot spins right."""
     corner_m: Distance
-    """A corner that this sensor sees nearer than this is not curved round yet."""
+    """Distance at the front left edge above which a corner is passed."""
     bay_m: Distance
-    """Something to the right ahead nearer than this, where the wall on the left ends: too narrow for a curve."""
+    """Distance at the front right edge below which a curve does not fit at the end of the wall."""
     lost_m: Distance
-    """A wall farther than this is no longer a wall beside the robot."""
+    """Distance above which a wall is lost."""
     heading_weight_m: Annotated[float, Field(ge=0, le=1)]
-    """Metres of error that one radian of heading error counts for."""
+    """Distance error in m per radian of heading error."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """The policy."""
+        """Return the policy."""
         return WallFollowing(self, infrared)
 
 
 class WallFollowing:
-    """Turn right at what is ahead, curve left where the wall ends, else hold distance and heading in a dead band."""
+    """Spin right at an obstacle ahead, curve left at the end of the wall, else hold distance and heading."""
 
     def __init__(self, settings: WallFollowingSettings, infrared: InfraredSettings) -> None:
         self._settings = settings
@@ -55,14 +55,14 @@ class WallFollowing:
         self._baseline_m = front_m - back_m
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Name of the action."""
+        """Return the name of the action."""
         want = self._settings
         left = self._left(infrared_counts)
         left_edge, right_edge = self._edges(infrared_counts)
         front = min(self._front(infrared_counts))
         if front < want.front_m or left_edge < want.edge_m or min(left) <= self._near_m:
             return "spin_right"
-        if left[0] > want.lost_m:  # the wall ends beside the nose, or is gone
+        if left[0] > want.lost_m:  # no wall next to the nose
             past_corner = left_edge > want.corner_m
             if past_corner and right_edge < want.bay_m:
                 return "spin_left"

@@ -5,9 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from behaviors.judges.finding import AnyJudgeSettings
-from behaviors.policies.finding import AnyPolicySettings
 from behaviors.policies.policy import PolicySettings
+from behaviors.registry import AnyJudgeSettings, AnyPolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.critic.settings import CriticSettings
 from kurt2rt.experiments.courses.finding import AnyCourseSettings

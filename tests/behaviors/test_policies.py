@@ -4,9 +4,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from behaviors.policies.finding import policy_settings
 from behaviors.policies.policy import PolicySettings
 from behaviors.policies.wall_following import WallFollowingSettings
+from behaviors.registry import policy_settings
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from kurt2rt.tasks.settings import load_task

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from behaviors.judges.finding import judge_settings
 from behaviors.judges.judge import AppraisalFeatures, Judge
 from behaviors.judges.wall_following import WallFollowingSettings
+from behaviors.registry import judge_settings
 from kurt2rt.tasks.settings import load_task
 from tests.examples import examples
 
