@@ -1,1 +1,1 @@
-"""The other end of the bus: worlds, the simulated body and sensors, and the micro-controller that speaks CAN."""
+"""Simulated robot at the other end of the CAN bus: worlds, body, sensors and micro-controller."""

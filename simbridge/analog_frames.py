@@ -1,4 +1,4 @@
-"""Frames of the analog channels: which reading travels in which frame, packed anew only when it changed."""
+"""Frames of the analog channels, repacked only if a reading changed."""
 
 from collections.abc import Sequence
 
@@ -8,14 +8,14 @@ from hal.robot_settings import InfraredSettings
 from hal.settings import SettingsError
 
 _MESSAGES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15")
-"""ADC12_15 is not among them: it carries motor currents and the board's temperature."""
+"""Messages with sensor channels. ADC12_15 carries motor currents and the board's temperature."""
 
 
 class AnalogFrames:
-    """The newest frame of each analog message. Channels that no sensor is wired to are grounded and read 0."""
+    """Newest frame of each analog message; channels without a sensor are grounded and read 0."""
 
     def __init__(self, infrared: InfraredSettings, codec: Codec) -> None:
-        """Find each sensor's place. Raises SettingsError for a sensor on a channel that carries something else."""
+        """Find each sensor's frame and position. Raises SettingsError for a sensor on another channel."""
         self._messages = [codec.message(name) for name in _MESSAGES]
         self._values = [[0] * len(message.signals) for message in self._messages]
         where = {
@@ -34,11 +34,11 @@ class AnalogFrames:
             message.pack(*values) for message, values in zip(self._messages, self._values, strict=True)
         ]
         self.with_sensor = sorted({number for number, _ in self._places})
-        """Which of the frames carry a distance sensor."""
+        """Indices of the frames that carry a distance sensor."""
         self.without_sensor = [number for number in range(len(_MESSAGES)) if number not in self.with_sensor]
 
-    def note(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Take over the new readings of some sensors; `counts` holds one for every sensor."""
+    def update(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
+        """Repack the frames of the sensors `fresh`; `counts` holds the readings of all sensors."""
         changed = set()
         for sensor in fresh:
             number, place = self._places[sensor]

@@ -1,4 +1,4 @@
-"""The robot's body in the physics engine: pushed by its wheels, stopped by walls."""
+"""Rigid body of the robot in the physics engine."""
 
 import math
 from typing import NamedTuple
@@ -12,15 +12,15 @@ from simbridge.noise import Noise
 from simbridge.world import ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
 
 SLIP_FRACTION = 0.03
-"""Standard deviation of each side's slip."""
+"""Standard deviation of each side's slip ratio."""
 SLIP_TIME_S = 0.3
-"""Slip comes and goes over patches of floor; our choice."""
+"""Correlation time of slip: patches of floor; our choice."""
 _TRACTION_M_S2 = 6.0
-"""Rubber on an office floor holds about 0.6 of the weight: harder than the motors brake, so only walls use it up."""
+"""Traction of rubber on an office floor, 0.6 g; the motors brake less, so only walls exhaust it."""
 
 
 class Contact(NamedTuple):
-    """One point where a wall touches the body, in the body's frame, and the direction in which the wall lies."""
+    """Point where a wall touches the body, and the unit direction towards the wall, both in the body's frame."""
 
     x_m: float
     y_m: float
@@ -29,10 +29,10 @@ class Contact(NamedTuple):
 
 
 class Body:
-    """A box of mass, inertia and outline. It moves as its wheels roll unless a wall stands in the way.
+    """Box with mass and inertia that follows its rolling wheels unless a wall blocks it.
 
-    Wheels pull by a force that is as large as needed for the rolling speed and never larger than the tyres hold. The
-    engine adds it before it resolves contacts, so a wall stops the body and the speed after a step is the real one.
+    The wheels' force makes up for the difference to the rolling speed, limited by traction. It is added before the
+    engine resolves contacts, so a wall stops the body, and the speed after a step is the true one.
     """
 
     def __init__(self, world: World, geometry: GeometrySettings, cycle_s: float, noise: Noise) -> None:
@@ -50,17 +50,17 @@ class Body:
         self._right_slip = 0.0
         self._points: list[pymunk.ContactPointSet] = []
         self.pose = Pose(0.0, 0.0, 0.0)
-        """Where it is after the last cycle."""
+        """Pose after the last cycle."""
         self._body = pymunk.Body(geometry.mass_kg, geometry.yaw_inertia_kg_m2)
         corners = rectangle((0.0, 0.0), geometry.outline_length_m, geometry.outline_width_m, 0.0)
         self._shape = pymunk.Poly(self._body, corners)
         self._shape.friction = WALL_FRICTION
         self._shape.collision_type = ROBOT_KIND
         self._space.add(self._body, self._shape)
-        self._space.on_collision(ROBOT_KIND, WALL_KIND, post_solve=self._note_contact)
+        self._space.on_collision(ROBOT_KIND, WALL_KIND, post_solve=self._store_contact)
 
     def move(self, left_m_s: float, right_m_s: float) -> None:
-        """One cycle with the wheels' rims at these speeds."""
+        """Simulate one cycle with these rim speeds in m/s."""
         keep, gain, normal = self._slip_keep, self._slip_gain, self._noise.normal
         self._left_slip = left_slip = keep * self._left_slip + gain * normal()
         self._right_slip = right_slip = keep * self._right_slip + gain * normal()
@@ -70,7 +70,7 @@ class Body:
         yaw_rad_s = (right_m_s - left_m_s) / self._track_m
         body, cycle_s = self._body, self._cycle_s
         turning_rad_s = body.angular_velocity
-        # The force acts on the way of the next cycle: aim along the heading of its middle.
+        # The force acts during the next cycle: aim along the heading at its middle.
         heading_rad = self.pose.heading_rad + (turning_rad_s + yaw_rad_s / 2) * cycle_s
         velocity_x, velocity_y = body.velocity
         force_x = (forward_m_s * math.cos(heading_rad) - velocity_x) * self._mass_kg / cycle_s
@@ -91,7 +91,7 @@ class Body:
         self.pose = Pose(x_m, y_m, body.angle)
 
     def place(self, pose: Pose) -> None:
-        """Put it down somewhere else, standing."""
+        """Move the body to a pose, at rest."""
         body = self._body
         body.position = (pose.x_m, pose.y_m)
         body.angle = pose.heading_rad
@@ -100,29 +100,29 @@ class Body:
         self._space.reindex_shapes_for_body(body)
 
     def rest(self) -> None:
-        """One cycle without touching anything, wherever the wheels turn."""
+        """Simulate one cycle at rest without contacts."""
         self._body.velocity = (0.0, 0.0)
         self._body.angular_velocity = 0.0
         self._points.clear()
 
     @property
     def velocity(self) -> tuple[float, float, float]:
-        """Speed over ground in x and y of the world (m/s), and yaw rate (rad/s)."""
+        """Return the world-frame velocity: x and y in m/s, yaw rate in rad/s."""
         x_m_s, y_m_s = self._body.velocity
         return x_m_s, y_m_s, self._body.angular_velocity
 
     @property
     def slip(self) -> tuple[float, float]:
-        """Share by which each side's wheels slip now."""
+        """Return the slip ratios of the left and the right side."""
         return self._left_slip, self._right_slip
 
     @property
     def touching(self) -> bool:
-        """True while a wall touches it."""
+        """Return whether a wall touches the body."""
         return bool(self._points)
 
     def contacts(self) -> list[Contact]:
-        """Where walls touch it in this cycle."""
+        """Return the contact points of this cycle."""
         x_m, y_m, heading_rad = self.pose
         cos, sin = math.cos(heading_rad), math.sin(heading_rad)
         found = []
@@ -140,6 +140,6 @@ class Body:
                 )
         return found
 
-    def _note_contact(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:  # noqa: ARG002
-        # The engine's callback cannot raise: only note, think later.
+    def _store_contact(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: object) -> None:  # noqa: ARG002
+        # The engine's callback cannot raise, so it only stores the contact.
         self._points.append(arbiter.contact_point_set)

@@ -1,4 +1,4 @@
-"""Bumpers at both ends of the body, and the count of collisions."""
+"""Bumpers at both ends of the body, and a counter of collisions."""
 
 from collections.abc import Sequence
 
@@ -6,15 +6,15 @@ from hal.robot_settings import BumperEnd, BumperSettings, GeometrySettings
 from simbridge.body import Contact
 
 _FACE_DEPTH_M = 0.01
-"""A contact so close to the end face is on the bumper bar."""
+"""Distance from the end face within which a contact presses the bumper bar."""
 _EDGE_M = 0.001
-"""So far beyond its edge a contact presses a bumper, too: rounding must not decide for a corner of the body."""
+"""Overlap of a bumper's edge, so that rounding does not decide at a corner of the body."""
 _HEAD_ON = 0.5
-"""Share of a push that must come from ahead to press a bumper: a wall that brushes along the side does not."""
+"""Least longitudinal component of a contact's direction that presses a bumper; side contact does not."""
 
 
 class Bumpers:
-    """Bits of BUMPERC from contact points; the bumpers of one end share its width evenly, listed from left to right."""
+    """Bits of BUMPERC from contact points; the bumpers of an end divide its width evenly, left to right."""
 
     def __init__(self, bumpers: Sequence[BumperSettings], geometry: GeometrySettings) -> None:
         self._half_length_m = geometry.outline_length_m / 2
@@ -28,7 +28,7 @@ class Bumpers:
             ]
 
     def pressed(self, contacts: Sequence[Contact]) -> int:
-        """Bits of the bumpers that are pressed; a wall that meets the face at two points presses all between them."""
+        """Return the bits of the pressed bumpers; a wall with two contacts presses all bumpers between them."""
         return self._at(BumperEnd.FRONT, 1.0, contacts) | self._at(BumperEnd.REAR, -1.0, contacts)
 
     def _at(self, end: BumperEnd, sign: float, contacts: Sequence[Contact]) -> int:
@@ -48,7 +48,7 @@ class Bumpers:
 
 
 class CollisionCounter:
-    """Counts collisions: touches that come within 0.5 s of one another are one, a robot may bounce."""
+    """Counter of collisions; touches at most 0.5 s apart count as one, because a robot may bounce."""
 
     EPISODE_GAP_S = 0.5
 
@@ -58,7 +58,7 @@ class CollisionCounter:
         self.count = 0
 
     def update(self, touching: bool) -> None:
-        """One cycle."""
+        """Process one cycle."""
         if not touching:
             self._free_cycles += 1
             return
@@ -67,5 +67,5 @@ class CollisionCounter:
         self._free_cycles = 0
 
     def end_episode(self) -> None:
-        """The robot was put elsewhere: its next touch is a new collision."""
+        """Count the next touch as a new collision, after the robot was repositioned."""
         self._free_cycles = self._gap_cycles + 1

@@ -1,4 +1,4 @@
-"""What a micro-controller needs of its end of the bus."""
+"""Bus interface of the simulated micro-controller."""
 
 from typing import Protocol
 
@@ -6,20 +6,20 @@ import can
 
 
 class SendingPort(Protocol):
-    """A way out to the bus (hal.bus.FramePort)."""
+    """Sender of telemetry frames (hal.bus.FramePort)."""
 
     def send(self, frame: can.Message) -> None:
-        """Send without waiting."""
+        """Send a frame without blocking. Raises hal.bus.BusError."""
         ...
 
 
 class ControllerBus(Protocol):
-    """The controller's end of a bus (hal.bus.CanBus)."""
+    """Bus of the controller (hal.bus.CanBus)."""
 
     def drain(self) -> list[can.Message]:
-        """Every frame of others that waits, oldest first, without blocking."""
+        """Return the received frames, oldest first, without blocking. Raises hal.bus.BusError."""
         ...
 
     def telemetry_port(self) -> SendingPort:
-        """A way out for every frame except CONTROL."""
+        """Return a sender of all frames except CONTROL."""
         ...

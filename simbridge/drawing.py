@@ -1,4 +1,4 @@
-"""Pictures of worlds, robots and their ways, on axes that the caller owns."""
+"""Drawing of worlds, robots and trajectories on the caller's axes."""
 
 import math
 from collections.abc import Sequence
@@ -22,8 +22,8 @@ _MOST_TICKS = 10
 
 
 def draw_world(axes: "Axes", world: WorldSettings) -> None:
-    """Walls and obstacles to scale, seen from above; x to the right, y up, metres."""
-    # Not at the top: who only drives a simulated robot need not wait for it.
+    """Draw walls and obstacles to scale in metres, seen from above."""
+    # Imported here: driving a simulated robot needs no matplotlib.
     from matplotlib.patches import Circle, Polygon
 
     width_m, height_m = world.size_m
@@ -38,7 +38,7 @@ def draw_world(axes: "Axes", world: WorldSettings) -> None:
         solid = axes.add_patch(
             Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
         )
-        solid.set_clip_path(outline)  # many a wall begins within the one that it leans against
+        solid.set_clip_path(outline)  # many walls start inside the wall they lean on
     for post in world.round_obstacles:
         axes.add_patch(
             Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
@@ -54,7 +54,7 @@ def draw_world(axes: "Axes", world: WorldSettings) -> None:
 
 
 def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
-    """The body as a box with a wedge that points ahead."""
+    """Draw the body to scale in metres, with a wedge that points ahead."""
     from matplotlib.patches import Polygon
 
     length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
@@ -72,12 +72,12 @@ def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _RO
 
 
 def draw_trail(axes: "Axes", points: Sequence[Point], colour: str = _ROBOT) -> None:
-    """The way the robot went, in metres."""
+    """Draw a trajectory of (x, y) points in metres."""
     axes.plot(*_columns(points), color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2)
 
 
 def draw_marks(axes: "Axes", points: Sequence[Point], label: str, colour: str = "#c2452d") -> None:
-    """Dots where something happened, named in the legend once the caller asks for one."""
+    """Draw dots at (x, y) points in metres, with a label for the legend."""
     axes.plot(*_columns(points), linestyle="none", marker="o", markersize=4.0, color=colour, label=label, zorder=5)
 
 

@@ -1,4 +1,4 @@
-"""Poses anywhere in a world, to set the robot down at."""
+"""Random free poses in a world."""
 
 import math
 import random
@@ -10,18 +10,18 @@ from simbridge.sight import RayCaster
 from simbridge.world import World
 
 _CLEARANCE_M = 0.1
-"""Nearer to a wall a robot that turns on the spot would begin with a collision."""
+"""Least wall clearance of a robot that is to turn on the spot."""
 _CLOSE_M = 0.015
-"""Nearer it may begin with one that nothing has caused."""
+"""Least wall clearance of a pose close to things; a smaller one may start with a collision."""
 _IN_SIGHT_M = 0.45
-"""What is farther from a sensor is hardly told from nothing."""
+"""Distance at which a sensor hardly detects an object."""
 _ON_A_POST_M = 0.001
 _TRIES = 100_000
-"""Where the only post is small and the room large, some thousands are needed."""
+"""Limit of tries; a single small post in a large room needs some thousands."""
 
 
 class FreePoses:
-    """Draws poses at which the robot stands free and sees something: a post, where the world has posts."""
+    """Sampler of collision-free poses that have something in view: a post, if the world has posts."""
 
     def __init__(self, world: World, robot: RobotSettings) -> None:
         self._world = world
@@ -31,9 +31,9 @@ class FreePoses:
         self._sight = RayCaster(world, reach_m)
 
     def draw(self, chance: random.Random, *, close: bool = False) -> Pose:
-        """One of them; `close`: also so close to something that it cannot turn on the spot.
+        """Return a random pose with 0.1 m clearance, or 0.015 m if `close`.
 
-        Raises hal.settings.SettingsError in a world where none is found.
+        Raises hal.settings.SettingsError if none is found.
         """
         clearance_m = _CLOSE_M if close else _CLEARANCE_M
         world = self._world.settings

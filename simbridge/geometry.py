@@ -1,4 +1,4 @@
-"""What walls and bodies need of plane geometry beside shapely. All in metres."""
+"""Plane geometry of walls and bodies, in metres."""
 
 import math
 from collections.abc import Sequence
@@ -10,23 +10,23 @@ Edge = tuple[Point, Point]
 
 
 def edges_of(corners: Sequence[Point]) -> list[Edge]:
-    """Edges of a polygon given by its corners, the one back to the first corner included."""
+    """Return the edges of a polygon, including the one back to the first corner."""
     return [(corners[i - 1], corners[i]) for i in range(1, len(corners))] + [(corners[-1], corners[0])]
 
 
 def is_convex(corners: Sequence[Point]) -> bool:
-    """True when the corners, each named once, are those of their own convex hull."""
+    """Return whether the corners, each given once, form a convex polygon."""
     polygon = shapely.Polygon(corners)
     return bool(polygon.is_valid) and len(shapely.get_coordinates(polygon.convex_hull)) == len(corners) + 1
 
 
 def polygons_of(shape: shapely.Geometry) -> list[shapely.Polygon]:
-    """The polygons that a shape is made of, without the empty ones; lines and points are left out."""
+    """Return the non-empty polygons of a shape, without lines and points."""
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and not part.is_empty]
 
 
 def rectangle(centre: Point, length_m: float, width_m: float, heading_rad: float) -> tuple[Point, Point, Point, Point]:
-    """Corners of a rectangle, counter-clockwise from front left; length lies along the heading."""
+    """Return the corners counter-clockwise from front left; the length in m lies along the heading."""
     cos, sin = math.cos(heading_rad), math.sin(heading_rad)
     x, y = centre
     half_length, half_width = length_m / 2, width_m / 2

@@ -1,7 +1,7 @@
-"""What the controllers measure and compute besides distances: odometry, gyroscope, tilt, currents, temperature.
+"""Instruments besides distance sensors: odometry, gyroscope, tilt, motor currents, temperature.
 
-Nobody simulates these in depth and the runtime does not drive by them. They follow the motion, so that a recording
-looks like one of a robot; sizes that docs/the-robot.md does not give are our choice.
+Coarse models that follow the motion, so that recordings look real; the runtime does not use them. Numbers are our
+choice unless docs/the-robot.md gives them.
 """
 
 import math
@@ -24,7 +24,7 @@ _U32 = 1 << 32
 
 
 class Instruments:
-    """Raw values of the frames that are sent now and then, in the order of their signals."""
+    """Raw values of the slow telemetry frames, in the order of their signals."""
 
     def __init__(self, robot: RobotSettings, body: Body, wheels: Wheels) -> None:
         self._body = body
@@ -35,7 +35,7 @@ class Instruments:
         self.reset()
 
     def reset(self) -> None:
-        """As after MC_RESET: everything counts from here."""
+        """Reset all counters, as MC_RESET does."""
         self.cycles = 0
         self._left_ticks = self._right_ticks = 0
         self._pose = PlanePose()
@@ -45,7 +45,7 @@ class Instruments:
         self.zero_gyro()
 
     def count(self, left_ticks: int, right_ticks: int) -> None:
-        """One cycle of the encoders."""
+        """Add one cycle's encoder ticks to the odometry."""
         self.cycles += 1
         self._left_ticks += left_ticks
         self._right_ticks += right_ticks
@@ -54,20 +54,20 @@ class Instruments:
         self._pose = self._pose.moved(forward_m, turned_rad)
 
     def set_angle(self, angle_rad: float) -> None:
-        """UPDATE_ANGLE: the host knows better which way the robot looks."""
+        """Set the odometry's heading (UPDATE_ANGLE)."""
         self._pose = self._pose._replace(heading_rad=angle_rad)
 
     def zero_gyro(self) -> None:
-        """RESET_GYRO: its angle counts from here."""
+        """Set the gyroscope's angle to 0 (RESET_GYRO)."""
         self._gyro_zero_rad = self._body.pose.heading_rad
         self._gyro_zero_cycle = self.cycles
 
     def calibrate_gyro(self) -> None:
-        """CALIBRATE_GYRO: its drift is known from here on."""
+        """Stop the gyroscope's drift (CALIBRATE_GYRO)."""
         self._drift_deg_s = 0.0
 
     def deadreck(self) -> tuple[int, ...]:
-        """DEADRECK: x and y in mm, orientation in 1/100 deg."""
+        """Return DEADRECK: x and y in mm, heading in 0.01 deg."""
         return (
             _signed(round(self._pose.x_m * 1000), 24),
             _signed(round(self._pose.y_m * 1000), 24),
@@ -75,18 +75,18 @@ class Instruments:
         )
 
     def getspeed(self) -> tuple[int, ...]:
-        """GETSPEED: accumulated ticks, left and right."""
+        """Return GETSPEED: accumulated ticks, left and right."""
         return _signed(self._left_ticks, 32), _signed(self._right_ticks, 32)
 
     def gyro(self) -> tuple[int, ...]:
-        """GYRO_MC1 and GYRO_MC2: angle and variance."""
+        """Return GYRO_MC1 and GYRO_MC2: raw angle and variance."""
         since_s = (self.cycles - self._gyro_zero_cycle) * self._cycle_s
         turned_deg = math.degrees(self._body.pose.heading_rad - self._gyro_zero_rad) + self._drift_deg_s * since_s
         variance = round(_GYRO_VARIANCE_DEG2_S * since_s * _GYRO_VARIANCE_PER_DEG2)
         return round(_wrapped_deg(turned_deg) * _GYRO_PER_DEG), min(_U32 - 1, variance)
 
     def tilt(self) -> tuple[int, ...]:
-        """TILT_COMP: accelerations to the left and to the front, the board's spare value, compass."""
+        """Return TILT_COMP: raw accelerations to the left and to the front, 0, raw compass."""
         forward_m_s = self._forward_m_s()
         before_cycle, before_m_s = self._speed_before
         self._speed_before = (self.cycles, forward_m_s)
@@ -97,7 +97,7 @@ class Instruments:
         return _tilt(left_g), _tilt(front_g), 0, int(turns * _COMPASS_PER_TURN) % _COMPASS_PER_TURN
 
     def currents(self) -> tuple[int, ...]:
-        """ADC12_15: current of the right and of the left motor in mA, an unused channel, board temperature."""
+        """Return ADC12_15: current of the right and the left motor in mA, 0, board temperature."""
         before_cycle, left_before, right_before = self._wheels_before
         left, right = self._wheels.left_m_s, self._wheels.right_m_s
         self._wheels_before = (self.cycles, left, right)
@@ -132,6 +132,6 @@ def _wrapped_deg(angle_deg: float) -> float:
 
 
 def _signed(value: int, bits: int) -> int:
-    """The value as a counter of so many bits shows it after it ran over."""
+    """Return the value wrapped to a signed counter of `bits` bits."""
     half = 1 << (bits - 1)
     return (value + half) % (1 << bits) - half

@@ -1,4 +1,4 @@
-"""Progress of a wall follower, measured along the wall that it follows."""
+"""Progress of a wall follower, measured along its wall."""
 
 import math
 
@@ -7,25 +7,24 @@ from simbridge.wall_rings import RingPlace, WallRings
 from simbridge.world import World
 
 _GATE_M = 0.02
-"""Largest distance from one gate of a ring to the next."""
+"""Largest distance between two gates of a ring."""
 _CORNER_M = 1.0
-"""A corner or a bulge of the ring explains a jump in arc length up to this; a longer jump crosses the room."""
-_LAP_SHARE = 0.6
-"""A gate counts again after this share of its ring's length."""
+"""Largest jump in arc length that a corner explains; a longer jump crosses the room."""
+_LAP_FRACTION = 0.6
+"""Fraction of the ring's length after which a gate counts again."""
 
 
 class WallProgress:
-    """Signed way along the walls of a room: forward if the wall is on the left.
+    """Signed progress along the walls of a room, forward with the wall on the left.
 
-    Each ring (`WallRings`) has gates. To pass a gate is worth the distance to the next gate. A gate counts once: again
-    only after progress of 60 % of the ring's length, or in the other direction, which takes back what it was worth. So
-    a robot that goes to and fro between two walls makes no progress beyond the first time. Jumps across the room and
-    from one ring to another count nothing.
+    Each ring (`WallRings`) has gates. Passing a gate is worth the distance to the next one. A gate counts again only
+    after progress of 60 % of the ring's length, or in the other direction, which takes its worth back. So driving to
+    and fro between two walls counts once. Jumps across the room and between rings count nothing.
     """
 
     def __init__(self, world: World) -> None:
         self.laps = 0.0
-        """Progress in lengths of the outer wall's ring, also for progress along an island: one unit for one room."""
+        """Progress in lengths of the outer wall's ring, also along an island: one unit for a room."""
         self._world = world
         start = world.settings.start_poses[0]
         self._survey(start.pose)
@@ -33,15 +32,15 @@ class WallProgress:
 
     @property
     def lap_m(self) -> float:
-        """Length of the outer wall's ring."""
+        """Return the length of the outer wall's ring."""
         return self._rings.lengths_m[0]
 
     def reset(self, pose: Pose) -> None:
-        """Note that the robot was put at `pose`: no progress, and all gates count again."""
+        """Restart at a pose after repositioning: no progress, and all gates count again."""
         if self._world.settings is not self._surveyed or not self._rings.contains((pose.x_m, pose.y_m)):
             self._survey(pose)
         self._gates = [_Gates(length_m) for length_m in self._rings.lengths_m]
-        self._way_m = 0.0
+        self._progress_m = 0.0
         self._place: RingPlace | None = None
         self._place = self._rings.place(pose.x_m, pose.y_m, pose.heading_rad, None)
 
@@ -55,8 +54,8 @@ class WallProgress:
         if place is None:
             return self.laps
         if last is not None and last.ring == place.ring:
-            step_m = self._gates[place.ring].pass_through(last.along_m, place.along_m, self._way_m)
-            self._way_m += step_m
+            step_m = self._gates[place.ring].pass_through(last.along_m, place.along_m, self._progress_m)
+            self._progress_m += step_m
             self.laps += step_m / self.lap_m
         self._place = place
         return self.laps
@@ -74,12 +73,12 @@ class _Gates:
         self._length_m = length_m
         self._apart_m = length_m / count
         self._passed: list[tuple[int, float]] = [(0, 0.0)] * count
-        """Of each gate: direction in which it was passed last, 0 if never, and the progress made by then."""
+        """Per gate: direction of the last passage (0: none), and the progress at that time."""
 
-    def pass_through(self, from_m: float, to_m: float, way_m: float) -> float:
+    def pass_through(self, from_m: float, to_m: float, progress_m: float) -> float:
         """Return the progress, in m, of a step from one arc length to another.
 
-        `way_m`: progress on all rings before this step.
+        `progress_m`: progress on all rings before this step.
         """
         step_m = math.remainder(to_m - from_m, self._length_m)
         if abs(step_m) > _CORNER_M:
@@ -92,7 +91,7 @@ class _Gates:
         for index in crossed:
             gate = index % len(self._passed)
             passed, then_m = self._passed[gate]
-            if passed != direction or abs(way_m - then_m) >= _LAP_SHARE * self._length_m:
-                self._passed[gate] = direction, way_m
+            if passed != direction or abs(progress_m - then_m) >= _LAP_FRACTION * self._length_m:
+                self._passed[gate] = direction, progress_m
                 gained_m += direction * self._apart_m
         return gained_m

@@ -1,4 +1,4 @@
-"""The robot's micro-controllers as a CAN node: CONTROL in, motors ordered, telemetry out, in a cycle of their own."""
+"""Micro-controllers of the robot as a CAN node: CONTROL in, motor commands, telemetry out, every 10 ms."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -17,7 +17,7 @@ CRASH_STEP_M_S = 0.45
 
 
 class MotorCommands(NamedTuple):
-    """What the motors are told in a cycle."""
+    """Commands for the two motors in one cycle."""
 
     left_m_s: float
     right_m_s: float
@@ -30,10 +30,10 @@ _BRAKED = MotorCommands(0.0, 0.0, left_brake=True, right_brake=True)
 
 
 class MicroController:
-    """Both controllers of the robot: the newest CONTROL of a cycle wins, junk changes nothing and is counted.
+    """Both controllers of the robot; the newest CONTROL of a cycle wins, invalid ones are only counted.
 
-    Without a valid CONTROL for the watchdog's time the motors are off and braked. A set point that jumps up makes the
-    controller go dead: motors off and no telemetry until MC_RESET. It never reverses a side without ramping it down.
+    Without a valid CONTROL for the watchdog's time the motors are off and braked. A set point that jumps up crashes the
+    controller: motors off and no telemetry until MC_RESET. A side is ramped down before it reverses.
     """
 
     def __init__(self, robot: RobotSettings, bus: ControllerBus, instruments: Instruments) -> None:
@@ -49,14 +49,14 @@ class MicroController:
         self._last_commands = _BRAKED
         self.commands = _BRAKED
         self.crashed = False
-        """True after a crash, until MC_RESET."""
+        """Whether the controller crashed and waits for MC_RESET."""
         self.control_frames = 0
-        """CONTROL frames that were understood, since the robot was switched on."""
+        """Valid CONTROL frames since power-on."""
         self.junk_frames = 0
-        """CONTROL frames that could not be understood, since the robot was switched on."""
+        """Invalid CONTROL frames since power-on."""
 
     def receive(self) -> None:
-        """First half of a cycle: take what waits on the bus and order the motors. Raises hal.bus.BusError."""
+        """Run the first half of a cycle: read the bus, command the motors. Raises hal.bus.BusError."""
         self._silent_cycles += 1
         newest: MotorCommands | None = None
         for message in self._bus.drain():
@@ -85,7 +85,7 @@ class MicroController:
             self.commands = _BRAKED
 
     def power_cycle(self) -> None:
-        """Somebody has switched it off and on: it is dead no longer, and braked until it hears a CONTROL."""
+        """Switch off and on: clears a crash, and brakes until the next CONTROL."""
         self.crashed = False
         self._actuators_on = True
         self.commands = _BRAKED
@@ -93,26 +93,26 @@ class MicroController:
 
     @property
     def watchdog_expired(self) -> bool:
-        """True while the watchdog holds the robot: no valid CONTROL for its time."""
+        """Return whether no valid CONTROL has arrived for the watchdog's time."""
         return self._silent_cycles >= self._watchdog_cycles
 
     @property
     def state(self) -> tuple[int, ...]:
-        """What the next cycle's orders depend on, besides the present ones."""
+        """Return the inputs of the next cycle besides the present commands, for the state hash."""
         return self._silent_cycles, self._actuators_on, self.crashed, self.junk_frames
 
     def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Converter results of the sensors that measured anew."""
+        """Apply new sensor readings in counts."""
         self._telemetry.update_readings(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
-        """Second half of a cycle: what was measured goes out. Raises hal.bus.BusError."""
+        """Run the second half of a cycle: send telemetry. Raises hal.bus.BusError."""
         self._instruments.count(left_ticks, right_ticks)
         if not self.crashed:
             self._telemetry.send(left_ticks, right_ticks, bumpers)
 
     def _decode(self, data: bytes | bytearray) -> None:
-        """Understand a payload; most cycles repeat the last one, so its meaning is kept."""
+        """Decode a payload and cache the result, because most cycles repeat the last one."""
         control = decode_control(data)
         self._last_payload = bytes(data)
         self._last_system_command = control if isinstance(control, SystemControl) else None
@@ -133,7 +133,7 @@ class MicroController:
         self.commands = wanted
 
     def _execute(self, command: SystemControl, newest: MotorCommands | None) -> MotorCommands | None:
-        """Obey a system command; returns the set point that still holds after it."""
+        """Execute a system command and return the motor commands that remain valid after it."""
         if command.mode is Mode.MC_RESET:
             self.crashed = False
             self._actuators_on = True
@@ -159,5 +159,5 @@ class MicroController:
 
 
 def _speed_up_m_s(old_m_s: float, new_m_s: float) -> float:
-    """How much faster the new set point is; after a change of direction it starts from standing."""
+    """Return the increase of speed; a reversal starts from 0."""
     return abs(new_m_s) - (abs(old_m_s) if old_m_s * new_m_s > 0 else 0.0)

@@ -1,4 +1,4 @@
-"""How near the nearest wall or obstacle is, in whatever direction."""
+"""Distance from a position to the nearest wall or obstacle."""
 
 import math
 
@@ -9,14 +9,14 @@ from simbridge.world import World
 
 
 class Clearance:
-    """Distances in a world whose walls may be moved."""
+    """Distance query in a world with movable walls."""
 
     def __init__(self, world: World) -> None:
         self._world = world
         self._survey()
 
     def distance_m(self, position: Point) -> float:
-        """From a position to the nearest face; 0 inside of what stands there."""
+        """Return the distance in m to the nearest face; 0 inside a solid."""
         world = self._world.settings
         if world is not self._surveyed:
             self._survey()

@@ -1,4 +1,4 @@
-"""Numbers of chance for the simulation, drawn in blocks since single draws cost a microsecond each."""
+"""Random numbers of the simulation, drawn in blocks because single draws cost 1 µs each."""
 
 import numpy as np
 
@@ -6,19 +6,19 @@ _BLOCK = 2048
 
 
 class Noise:
-    """One stream of numbers of chance; the same seed gives the same stream in every process."""
+    """Seeded stream of random numbers, equal in every process."""
 
     def __init__(self, seed: int, stream: str) -> None:
-        """Streams of one seed are independent, so that a change in one part does not disturb another part's draws."""
+        """Open the named stream of a seed; streams are independent, so one part's draws never shift another's."""
         self._generator = np.random.Generator(np.random.PCG64([seed, *stream.encode()]))
         self._block: list[float] = []
         self._used = 0
         self._fractions: list[float] = []
         self.drawn = 0
-        """Numbers given out so far; with the seed it is the whole state of the stream."""
+        """Numbers drawn so far; with the seed the whole state of the stream."""
 
     def normal(self) -> float:
-        """Next number of mean 0 and standard deviation 1."""
+        """Return the next standard normal number."""
         if self._used == len(self._block):
             self._block = self._generator.standard_normal(_BLOCK).tolist()
             self._used = 0
@@ -27,12 +27,12 @@ class Noise:
         return self._block[self._used - 1]
 
     def fraction(self) -> float:
-        """Next number from 0 up to, but not including, 1, all alike in chance."""
+        """Return the next uniform number from 0 up to 1, 1 excluded."""
         if not self._fractions:
             self._fractions = self._generator.random(_BLOCK).tolist()
         self.drawn += 1
         return self._fractions.pop()
 
     def uniform(self, count: int) -> list[float]:
-        """Numbers in -1 to 1, for what is fixed once when the robot is built."""
+        """Return uniform numbers from -1 to 1, for constants of a robot."""
         return [float(value) for value in self._generator.uniform(-1.0, 1.0, count)]

@@ -1,4 +1,4 @@
-"""Schema of what stands inside a world: walls, posts and boxes, each with a name to move it by. Lengths in metres."""
+"""Schema of named walls, posts and boxes inside a world. Lengths in metres."""
 
 import math
 from typing import Annotated, Self
@@ -14,7 +14,7 @@ Corner = tuple[Coordinate, Coordinate]
 
 
 class WallSettings(Settings):
-    """A wooden wall inside the world, straight, with square ends; it can be moved while the robot drives."""
+    """Straight wall with square ends; it can be moved while the robot drives."""
 
     name: str
     from_m: Corner
@@ -29,7 +29,7 @@ class WallSettings(Settings):
 
     @property
     def corners(self) -> tuple[Point, ...]:
-        """Corners of the wall seen from above, counter-clockwise."""
+        """Return the corners seen from above, counter-clockwise."""
         (ax, ay), (bx, by) = self.from_m, self.to_m
         heading_rad = math.atan2(by - ay, bx - ax)
         return rectangle(
@@ -37,13 +37,13 @@ class WallSettings(Settings):
         )
 
     def moved(self, dx_m: float, dy_m: float) -> Self:
-        """The same wall at another place."""
+        """Return a copy shifted by this many metres."""
         (ax, ay), (bx, by) = self.from_m, self.to_m
         return self.model_copy(update={"from_m": (ax + dx_m, ay + dy_m), "to_m": (bx + dx_m, by + dy_m)})
 
 
 class RoundObstacleSettings(Settings):
-    """A post."""
+    """Round post."""
 
     name: str
     x_m: Coordinate
@@ -51,12 +51,12 @@ class RoundObstacleSettings(Settings):
     radius_m: Annotated[float, Field(gt=0.001, le=5)]
 
     def moved(self, dx_m: float, dy_m: float) -> Self:
-        """The same post at another place."""
+        """Return a copy shifted by this many metres."""
         return self.model_copy(update={"x_m": self.x_m + dx_m, "y_m": self.y_m + dy_m})
 
 
 class PolygonObstacleSettings(Settings):
-    """A box, a block or an island with straight sides, which may bend inwards too."""
+    """Box, block or island with straight sides; it may be concave."""
 
     name: str
     corners: Annotated[tuple[Corner, ...], Field(min_length=3)]
@@ -70,5 +70,5 @@ class PolygonObstacleSettings(Settings):
         return corners
 
     def moved(self, dx_m: float, dy_m: float) -> Self:
-        """The same box at another place."""
+        """Return a copy shifted by this many metres."""
         return self.model_copy(update={"corners": tuple((x + dx_m, y + dy_m) for x, y in self.corners)})

@@ -1,4 +1,4 @@
-"""The simulated robot in real time: its cycle in a thread of its own, as on the real controller."""
+"""Real-time thread of the simulated robot."""
 
 import threading
 import time
@@ -11,9 +11,9 @@ from simbridge.simulated_robot import SimulatedRobot
 
 
 class RealtimeSimulation:
-    """Steps a robot on absolute monotonic deadlines. Cycles that were missed are skipped whole and counted.
+    """Thread that steps a robot on absolute monotonic deadlines; missed cycles are skipped and counted.
 
-    An error in the thread ends it, shows in `error`, and is raised by `stop` (and so by leaving the with block).
+    An error ends the thread, shows in `error`, and is raised by `stop` and by leaving the with block.
     """
 
     def __init__(self, robot: SimulatedRobot, cycle_s: float = 0.01) -> None:
@@ -26,40 +26,40 @@ class RealtimeSimulation:
         self._thread = threading.Thread(target=self._run, name="simulated-robot", daemon=True)
         self.missed_cycles = 0
         self.error: Exception | None = None
-        """What ended the thread, if something did."""
+        """Error that ended the thread, if any."""
 
     def start(self) -> None:
-        """Begin; once only."""
+        """Start the thread; call this once."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End the thread, wait for it, and raise what ended it before, if something did."""
+        """Stop and join the thread, and raise the error that ended it before, if any."""
         self._end()
         if self.error is not None:
             raise self.error
 
     def submit(self, job: Callable[[], object]) -> None:
-        """Have something done before the next step, by the thread that steps; from any thread. An error ends it."""
+        """Run a job in the stepping thread before its next step; callable from any thread. An error ends the thread."""
         self._jobs.append(job)
 
     def hold(self) -> None:
-        """Let the thread step no more; the holder of the simulation steps it, until `go_on`."""
+        """Suspend the thread; the caller steps the simulation until `go_on`."""
         with self._stepping:
             self._held = True
 
     def step(self) -> None:
-        """One cycle in the caller's thread, while the simulation is held."""
+        """Step once in the caller's thread, while the simulation is held."""
         while self._jobs:
             self._jobs.popleft()()
         self._robot.step()
 
     def go_on(self) -> None:
-        """Let the thread step again."""
+        """Resume the thread after `hold`."""
         with self._stepping:
             self._held = False
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait until the thread has ended, by `stop` or by an error; False when it still runs."""
+        """Wait up to `timeout_s` and return whether the thread has ended."""
         self._thread.join(timeout_s)
         return not self._thread.is_alive()
 
@@ -71,7 +71,7 @@ class RealtimeSimulation:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._end()
-        # What went wrong first is what to mend: a body that failed is not to be hidden by what it left unread.
+        # The body's own error came first, so it wins.
         if error is None and self.error is not None:
             raise self.error
 
@@ -83,7 +83,7 @@ class RealtimeSimulation:
     def _run(self) -> None:
         try:
             self._pace()
-        except Exception as error:  # noqa: BLE001  # kept whole and raised by stop, in the caller's thread
+        except Exception as error:  # noqa: BLE001  # raised again by stop, in the caller's thread
             self.error = error
 
     def _pace(self) -> None:

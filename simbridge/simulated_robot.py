@@ -1,4 +1,4 @@
-"""The simulated KURT2: body, sensors and micro-controller on one end of a CAN bus, one cycle a step."""
+"""Simulated KURT2: body, sensors and micro-controller at one end of a CAN bus."""
 
 import hashlib
 import struct
@@ -22,7 +22,7 @@ _LAPS_EVERY_CYCLES = 10
 
 
 class SimulatedRobot:
-    """The other end of the bus. Its time advances only by `step`; the same seeds and frames give the same run."""
+    """Robot whose time advances only by `step`; equal seeds and frames give equal runs."""
 
     def __init__(
         self,
@@ -34,11 +34,10 @@ class SimulatedRobot:
         robot_seed: int | None = None,
         wheels: Wheels | None = None,
     ) -> None:
-        """Stands at the world's first start pose; takes one end of the bus, which stays the caller's to shut down.
+        """Place the robot at the world's first start pose; the caller shuts `bus` down.
 
-        `robot_seed` (`seed` unless given) says which robot of its kind it is: gains and periods of its sensors.
-        `seed` says which run: noise, phases, slip. So an exam can be driven by the robot that was taught.
-        `wheels`: others than sound ones, to see what becomes of it.
+        Args: `seed` selects the run: noise, phases, slip. `robot_seed` (default: `seed`) selects the robot: gains and
+        periods of its sensors, so that an exam can use the robot that was taught. `wheels` replaces the sound ones.
         """
         cycle_s = robot.can.cycle_s
         self.world = World(world)
@@ -55,12 +54,12 @@ class SimulatedRobot:
         self._progress = WallProgress(self.world)
         self._pressed = 0
         self.lifted = False
-        """True while it stands on a block: its wheels turn in the air and the body stays."""
+        """Whether the robot stands on a block: its wheels turn in the air and the body rests."""
         self.controller = MicroController(robot, bus, Instruments(robot, self._body, self._wheels))
         self.place(world.start_poses[0].pose)
 
     def step(self) -> None:
-        """One cycle of 10 ms: CONTROL in, motors, physics, sensors, telemetry out. Raises hal.bus.BusError."""
+        """Simulate 10 ms: CONTROL in, motors, physics, sensors, telemetry out. Raises hal.bus.BusError."""
         self._cycles += 1
         controller, wheels, body = self.controller, self._wheels, self._body
         controller.receive()
@@ -78,7 +77,7 @@ class SimulatedRobot:
         controller.send(*wheels.take_ticks(), self._pressed)
 
     def place(self, pose: Pose) -> None:
-        """Pick it up and put it down elsewhere: wheels still, sensors settled, no lap or collision counted for it."""
+        """Reposition the robot: wheels still, sensors settled, no lap or collision counted."""
         self._wheels.halt()
         self._body.place(pose)
         self._collisions.end_episode()
@@ -89,51 +88,51 @@ class SimulatedRobot:
 
     @property
     def time_s(self) -> float:
-        """Simulated time since it was switched on."""
+        """Return the simulated time since power-on."""
         return self._cycles * self._cycle_s
 
     @property
     def pose(self) -> Pose:
-        """Where it really is."""
+        """Return the true pose."""
         return self._body.pose
 
     @property
     def wheel_speeds(self) -> WheelSpeeds:
-        """Speeds at which the rims of the two sides really turn."""
+        """Return the true rim speeds of the two sides."""
         return WheelSpeeds(self._wheels.left_m_s, self._wheels.right_m_s)
 
     @property
     def collisions(self) -> int:
-        """Collisions so far; touches within 0.5 s of one another are one."""
+        """Return the number of collisions; touches at most 0.5 s apart count as one."""
         return self._collisions.count
 
     @property
     def touching(self) -> bool:
-        """True while a wall touches the body anywhere."""
+        """Return whether a wall touches the body."""
         return self._body.touching
 
     @property
     def bumped(self) -> bool:
-        """True while a bumper is pressed."""
+        """Return whether a bumper is pressed."""
         return self._pressed != 0
 
     @property
     def laps(self) -> float:
-        """Progress along walls so far in laps, positive if the wall is on the left (`WallProgress`)."""
+        """Return the progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
         return self._progress.laps
 
     @property
     def lap_m(self) -> float:
-        """Length of a lap: the way along the outer wall of the room."""
+        """Return the length of a lap along the outer wall of the room."""
         return self._progress.lap_m
 
     @property
     def infrared_counts(self) -> tuple[int, ...]:
-        """Present readings, in the order of the sensor table."""
+        """Return the present readings in the order of the sensor table."""
         return tuple(self._infrared.counts)
 
     def state_hash(self) -> str:
-        """SHA-256, to the last bit, over everything that its motion and readings depend on; walls excepted."""
+        """Return a SHA-256 over all state that motion and readings depend on, except the walls."""
         numbers = (
             *self._body.pose,
             *self._body.velocity,

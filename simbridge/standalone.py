@@ -1,4 +1,4 @@
-"""The simulated robot alone on its end of a bus, in real time: hardware for a runtime in another process."""
+"""Simulated robot in real time, as hardware for a runtime in another process."""
 
 import random
 import time
@@ -13,22 +13,23 @@ from simbridge.simulated_robot import SimulatedRobot
 from simbridge.steady_bus import ReconnectingBus
 from simbridge.world_settings import WorldSettings
 
-_LISTENS_S = 0.1
-"""Ten times as long as a robot is silent."""
+_LISTEN_S = 0.1
+"""Ten times a robot's longest silence."""
 
 
 class StandaloneRobot:
-    """A robot that is switched on, with the bus it owns. It outlives the loss of its bus."""
+    """Running robot and the bus it owns; it survives the loss of the bus."""
 
     def __init__(
         self, settings: RobotSettings, world: WorldSettings, bus: CanBus, seed: int, *, start: int | None = None
     ) -> None:
-        """`seed` decides the robot's sensors, its noise and, unless `start` says which, the start pose, from 1.
+        """Place a robot in a world.
 
-        Raises BusError when a robot is on the bus already.
+        Args: `seed` selects sensors, noise and, if `start` is None, the start pose; `start` counts from 1.
+        Raises BusError if a robot is on the bus already.
         """
         _require_no_robot(settings, bus)
-        bus.set_id_filter({CONTROL_ID})  # what else passes there, a flood perhaps, is not to cost the robot its cycle
+        bus.set_id_filter({CONTROL_ID})  # other frames must not cost the robot its cycle
         self._bus = bus
         self.bus = ReconnectingBus(bus)
         chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
@@ -51,10 +52,10 @@ class StandaloneRobot:
 
 
 def _require_no_robot(settings: RobotSettings, bus: CanBus) -> None:
-    """Two robots on a bus would both obey, and the runtime would see a mixture of them."""
+    """Raise BusError if a robot sends: two would both execute CONTROL, and their telemetry would mix."""
     encoder_id = load_codec(settings.can.database).message("ENCODER").frame_id
     bus.set_id_filter({encoder_id})
-    time.sleep(_LISTENS_S)
+    time.sleep(_LISTEN_S)
     if any(frame.arbitration_id == encoder_id and not frame.is_error_frame for frame in bus.drain()):
         bus.shutdown()
         raise BusError("a robot is on it already", where=f"bus {bus.name}", do="end that one, or take another bus")

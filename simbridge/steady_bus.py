@@ -1,4 +1,4 @@
-"""A bus that may go and come back under the simulated controller, which goes on as a real one does."""
+"""Bus of the simulated controller that survives the loss of its interface."""
 
 import time
 from collections.abc import Callable
@@ -11,37 +11,37 @@ REOPEN_PERIOD_S = 1.0
 
 
 class ReconnectingBus:
-    """One end of a bus (simbridge.controller_bus.ControllerBus) that raises nothing.
+    """Bus (simbridge.controller_bus.ControllerBus) that never raises.
 
-    While the bus is gone nothing arrives and what is sent is lost and counted; once a second it is opened anew.
+    Without the interface nothing arrives, and sent frames are lost and counted. It is reopened once a second.
     """
 
     def __init__(self, bus: CanBus, now_s: Callable[[], float] = time.monotonic) -> None:
-        """The bus stays the caller's to shut down."""
+        """Wrap a bus, which the caller shuts down."""
         self._bus = bus
         self._now_s = now_s
         self._reopen_at_s: float | None = None
         self._failed = False
         self.error_text = ""
-        """Why nothing gets through; empty while it does. As of the last drain."""
+        """Cause of the interruption at the last drain; empty without one."""
         self.lost = 0
-        """Frames that the bus did not take."""
+        """Number of frames that the bus refused."""
 
     def drain(self) -> list[can.Message]:
-        """Every frame of others that waits, oldest first, without blocking."""
-        self._settle()
+        """Return the received frames, oldest first, without blocking."""
+        self._update_state()
         try:
             return self._bus.drain()
         except BusError as error:
-            self._note(error)
+            self._record(error)
             return []
 
     def telemetry_port(self) -> "ReconnectingPort":
-        """A way out for every frame except CONTROL."""
+        """Return a sender of all frames except CONTROL."""
         return ReconnectingPort(self, self._bus.telemetry_port())
 
-    def _settle(self) -> None:
-        """What the cycle before has shown: the bus is well when nothing failed in it."""
+    def _update_state(self) -> None:
+        """Update the state from the last cycle: the bus is well if nothing failed in it."""
         if not self._failed:
             self._reopen_at_s = None
             self.error_text = ""
@@ -57,22 +57,22 @@ class ReconnectingBus:
             except BusError as error:
                 self.error_text = str(error)
 
-    def _note(self, error: BusError) -> None:
+    def _record(self, error: BusError) -> None:
         self._failed = True
         self.error_text = self.error_text or str(error)
 
 
 class ReconnectingPort:
-    """A way out of a ReconnectingBus."""
+    """Sender of a ReconnectingBus."""
 
     def __init__(self, bus: ReconnectingBus, port: FramePort) -> None:
         self._bus = bus
         self._port = port
 
     def send(self, frame: can.Message) -> None:
-        """Send without waiting, if the bus takes it. Raises ValueError for CONTROL."""
+        """Send without blocking; count the frame as lost if the bus refuses it. Raises ValueError for CONTROL."""
         try:
             self._port.send(frame)
         except BusError as error:
             self._bus.lost += 1
-            self._bus._note(error)
+            self._bus._record(error)

@@ -1,4 +1,4 @@
-"""Frames from the robot to the notebook: which, how often, and in whose turn."""
+"""Schedule of the frames from the robot to the notebook."""
 
 from collections.abc import Callable, Sequence
 
@@ -16,9 +16,9 @@ _FIRMWARE_VERSION = 1
 
 
 class Telemetry:
-    """Every cycle ENCODER, BUMPERC and each analog frame with a distance sensor in it; every tenth cycle all others.
+    """Sender of ENCODER, BUMPERC and the sensors' analog frames in every cycle, of all others in every tenth.
 
-    Slow frames take turns, so that no cycle carries a burst.
+    The slow frames are spread over the ten cycles, so that none carries a burst.
     """
 
     def __init__(self, robot: RobotSettings, codec: Codec, port: SendingPort, instruments: Instruments) -> None:
@@ -40,16 +40,16 @@ class Telemetry:
             (codec.message("GYRO_MC2"), instruments.gyro),
         ]
         self._slow_turns = [slow[turn::SLOW_CYCLES] for turn in range(SLOW_CYCLES)]
-        # Counted on from the last of the others, so that they fill the turns that are still free.
+        # Continued after the slow frames, to fill the free cycles.
         idle = self._analog.without_sensor
         self._idle_turns = [idle[(turn - len(slow)) % SLOW_CYCLES :: SLOW_CYCLES] for turn in range(SLOW_CYCLES)]
 
     def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Take over the new readings of some sensors."""
-        self._analog.note(fresh, counts)
+        """Apply the new readings of some sensors."""
+        self._analog.update(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
-        """The frames of one cycle. Raises hal.bus.BusError."""
+        """Send the frames of one cycle. Raises hal.bus.BusError."""
         send, frames = self._port.send, self._analog.frames
         for number in self._analog.with_sensor:
             send(frames[number])

@@ -1,4 +1,4 @@
-"""Closed ways along the walls of a room: one inside the outer wall, one round each island."""
+"""Closed paths along the walls of a room: one inside the outer wall, one round each island."""
 
 import math
 from typing import NamedTuple
@@ -10,21 +10,21 @@ from simbridge.geometry import Point, polygons_of
 from simbridge.world_settings import WorldSettings
 
 _ROBOT_M = 0.15
-"""From the robot's centre to its side, less 15 mm: the centre is never closer to a wall."""
+"""Distance from the robot's centre to its side less 15 mm, a lower bound of its distance to a wall."""
 _WALL_M = 0.35
-"""From a wall follower's centre to its wall: 0.185 m from its side sensors."""
+"""Distance from a wall follower's centre to its wall: 0.185 m from its side sensors."""
 _SLIT_M = 0.005
-"""Buffers with few corners leave slits of this width between shapes that touch."""
+"""Width of the slits that buffers with few corners leave between touching shapes."""
 _NEAR_M = 0.3
-"""A robot up to this distance from a ring follows it; 0.65 m from a wall its sensors hardly see the wall."""
+"""Range of a ring; at 0.65 m from a wall the sensors hardly see the wall."""
 _AGAINST_M = 0.1
-"""Extra distance of a ring that runs across the robot's heading; twice as much if it runs against the heading."""
+"""Extra cost of a ring across the robot's heading; twice as much against the heading."""
 _KEPT_M = 0.05
-"""A ring that the robot already follows counts as closer by this length."""
+"""Bonus of the ring that the robot already follows."""
 _STRETCH_M = 0.3
-"""A robot that follows a ring moves on by less than this between two updates."""
+"""Longest movement between two updates."""
 _MARGIN_M = 0.25
-"""Faces farther away by this are kept, so that they serve until the robot has gone this far."""
+"""Extra range of cached faces, so that they serve until the robot has moved by it."""
 
 Ring = shapely.LinearRing
 
@@ -33,7 +33,7 @@ class RingPlace(NamedTuple):
     """Place on a ring."""
 
     ring: int
-    """Index of the ring; 0 belongs to the outer wall."""
+    """Index of the ring; 0 is the outer wall's."""
     along_m: float
     """Arc length from the first corner of the ring, 0 to its length."""
 
@@ -111,10 +111,10 @@ def _room_of(world: WorldSettings, position: Point) -> shapely.Polygon:
 
 
 def _outer_ring(room: shapely.Polygon) -> Ring:
-    """Return the clockwise way along the outer wall, in one piece.
+    """Return the clockwise path along the outer wall, in one piece.
 
-    The way is 0.35 m from the wall. A passage narrower than 0.70 m between two parts of the room belongs to it: there
-    the way is as close to both walls as the robot's body allows. Other narrow places are left out.
+    The path is 0.35 m from the wall. A passage narrower than 0.70 m between two parts of the room belongs to it: there
+    the path is as close to both walls as the body allows. Other narrow places are left out.
     """
     whole = shapely.Polygon(room.exterior)
     parts = polygons_of(whole.buffer(_ROBOT_M - _WALL_M, quad_segs=2))
@@ -133,6 +133,6 @@ def _outer_ring(room: shapely.Polygon) -> Ring:
 
 
 def _island_ring(hole: Ring) -> Ring:
-    """Return the counter-clockwise way round an island."""
+    """Return the counter-clockwise path round an island."""
     ring = shapely.remove_repeated_points(shapely.Polygon(hole).buffer(_WALL_M - _ROBOT_M, quad_segs=2).exterior, 1e-6)
     return ring if ring.is_ccw else ring.reverse()

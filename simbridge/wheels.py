@@ -1,4 +1,4 @@
-"""The two sides' motors with their speed loops: set points in, wheel speeds and encoder ticks out."""
+"""Motors of the two sides with their speed loops: set points in, rim speeds and encoder ticks out."""
 
 import math
 
@@ -9,9 +9,9 @@ REVERSAL_SPEED_M_S = 0.02
 
 
 class Wheels:
-    """Three coupled wheels a side behind one motor; first order with limits on speeding up and braking.
+    """Three coupled wheels and one motor per side: a first-order lag with limits of acceleration and braking.
 
-    Wheel speeds are those of the rims: a robot that is blocked has turning, slipping wheels, and its encoders count.
+    Speeds are those of the rims: the wheels of a blocked robot slip, and its encoders count.
     """
 
     def __init__(self, robot: RobotSettings) -> None:
@@ -29,12 +29,12 @@ class Wheels:
     def turn(
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False
     ) -> None:
-        """One cycle toward the targets; a braked side slows as hard as it can, whatever its target."""
+        """Simulate one cycle towards the targets in m/s; a braked side decelerates at its limit."""
         self.left_m_s = self._next_speed(self.left_m_s, left_target_m_s, left_brake)
         self.right_m_s = self._next_speed(self.right_m_s, right_target_m_s, right_brake)
 
     def take_ticks(self) -> tuple[int, int]:
-        """Encoder ticks of this cycle, left and right; fractions are carried to the next."""
+        """Return the encoder ticks of this cycle, left and right; fractions are carried over."""
         left = self._left_carry + self.left_m_s * self._ticks_per_speed
         right = self._right_carry + self.right_m_s * self._ticks_per_speed
         left_ticks, right_ticks = math.floor(left), math.floor(right)
@@ -42,12 +42,12 @@ class Wheels:
         return left_ticks, right_ticks
 
     def halt(self) -> None:
-        """Wheels still at once, for a robot that was picked up and put elsewhere."""
+        """Stop the wheels at once, for a repositioned robot."""
         self.left_m_s = self.right_m_s = self._left_carry = self._right_carry = 0.0
 
     @property
     def state(self) -> tuple[float, ...]:
-        """Everything that the next cycle depends on."""
+        """Return all state that the next cycle depends on."""
         return self.left_m_s, self.right_m_s, self._left_carry, self._right_carry
 
     def _next_speed(self, speed: float, target: float, brake: bool) -> float:

@@ -1,4 +1,4 @@
-"""The walls of a world in the physics engine: what the robot bumps into."""
+"""Walls of a world in the physics engine."""
 
 from collections.abc import Sequence
 
@@ -13,15 +13,15 @@ WALL_KIND = 2
 WALL_FRICTION = 0.3
 """Wood on wood; our choice."""
 _CONTACT_SLOP_M = 0.0005
-"""How far a touching body sinks in, so that a contact lasts while it lasts. The default suits pixels."""
+"""Penetration depth at which a contact is stable. The default of 0.1 suits pixels."""
 
 
 class World:
-    """Walls and obstacles in a pymunk space without gravity; the robot's body joins it from outside."""
+    """Walls and obstacles in a pymunk space without gravity; the robot's body is added from outside."""
 
     def __init__(self, settings: WorldSettings) -> None:
         self.settings = settings
-        """As the world is now: walls that were moved stand where they were moved to."""
+        """Current settings, with moved walls at their new places."""
         self.space = pymunk.Space()
         self.space.collision_slop = _CONTACT_SLOP_M
         self._bodies: dict[str, pymunk.Body] = {}
@@ -32,13 +32,13 @@ class World:
             body = self._add_body(box.name)
             if is_convex(box.corners):
                 self._add_shape(pymunk.Poly(body, box.corners))
-            else:  # of which the engine would take the hull, without a word
+            else:  # pymunk would silently take the convex hull
                 self._add_faces(body, box.corners)
         for post in settings.round_obstacles:
             self._add_shape(pymunk.Circle(self._add_body(post.name), post.radius_m, (post.x_m, post.y_m)))
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Move a named wall or obstacle while all else goes on. Raises KeyError that lists the names."""
+        """Move a named wall or obstacle by an offset in m. Raises KeyError that lists the names."""
         self.settings = self.settings.moved(name, dx_m, dy_m)
         body = self._bodies[name]
         body.position = (body.position.x + dx_m, body.position.y + dy_m)
@@ -51,7 +51,7 @@ class World:
         return body
 
     def _add_faces(self, body: pymunk.Body, corners: Sequence[Point]) -> None:
-        # Radius 0: the corners are those of the faces themselves.
+        # Radius 0 keeps the corners at those of the faces.
         for a, b in edges_of(corners):
             self._add_shape(pymunk.Segment(body, a, b, 0.0))
 

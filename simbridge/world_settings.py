@@ -22,12 +22,12 @@ from simbridge.obstacle_settings import (
 
 Size = Annotated[float, Field(gt=0, le=200)]
 
-_ALIKE_M = 0.01
-_ALIKE_DEG = 1.0
+_EQUAL_M = 0.01
+_EQUAL_DEG = 1.0
 
 
 class StartPoseSettings(Settings):
-    """Where a lesson or an exam may begin."""
+    """Start pose of a lesson or exam."""
 
     x_m: Coordinate
     y_m: Coordinate
@@ -35,12 +35,12 @@ class StartPoseSettings(Settings):
 
     @property
     def pose(self) -> Pose:
-        """The same with the heading in radians."""
+        """Return the pose with the heading in radians."""
         return Pose(self.x_m, self.y_m, math.radians(self.heading_deg))
 
 
 class StreetSettings(Settings):
-    """A straight street between blocks, by its middle line; streets end in the middle of the junction they end at."""
+    """Straight street between blocks by its middle line, which ends in the middle of the last junction."""
 
     from_m: Corner
     to_m: Corner
@@ -48,7 +48,7 @@ class StreetSettings(Settings):
 
 
 class WorldSettings(Settings):
-    """One world, whole. The outline's corners are the inner faces of the outer walls."""
+    """One world; the outline's corners are the inner faces of the outer walls."""
 
     name: str
     size_m: tuple[Size, Size]
@@ -58,7 +58,7 @@ class WorldSettings(Settings):
     round_obstacles: tuple[RoundObstacleSettings, ...] = ()
     polygon_obstacles: tuple[PolygonObstacleSettings, ...] = ()
     streets: tuple[StreetSettings, ...] = ()
-    """For measures only: nothing is built from them."""
+    """Streets for metrics; nothing is built from them."""
     start_poses: Annotated[tuple[StartPoseSettings, ...], Field(min_length=1)]
 
     @field_validator("outline")
@@ -86,18 +86,18 @@ class WorldSettings(Settings):
             raise ValueError(f"two walls or obstacles share the name {', '.join(twice)}")
         room = shapely.Polygon(self.outline)
         for name, shape in zip(names, self.shapes, strict=True):
-            # One that crosses the outline stands against it, which is how most walls do.
+            # Most walls cross the outline, against which they stand.
             if room.intersection(shape).area == 0:
                 raise ValueError(f"{name} stands outside the outline; move it inside, or leave it out")
         for (i, one), (k, other) in combinations(enumerate(self.start_poses), 2):
             turn_deg = abs(math.remainder(one.heading_deg - other.heading_deg, 360.0))
-            if math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) < _ALIKE_M and turn_deg < _ALIKE_DEG:
+            if math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) < _EQUAL_M and turn_deg < _EQUAL_DEG:
                 raise ValueError(f"start_poses.{i} and start_poses.{k} are alike; leave one out")
         return self
 
     @property
     def names(self) -> list[str]:
-        """Names of everything that can be moved."""
+        """Return the names of all walls and obstacles."""
         return [
             *(wall.name for wall in self.walls),
             *(post.name for post in self.round_obstacles),
@@ -106,12 +106,12 @@ class WorldSettings(Settings):
 
     @property
     def solids(self) -> list[tuple[Point, ...]]:
-        """Corners of every wall and box inside the outline."""
+        """Return the corners of every wall and box inside the outline."""
         return [*(wall.corners for wall in self.walls), *(box.corners for box in self.polygon_obstacles)]
 
     @property
     def shapes(self) -> list[shapely.Polygon]:
-        """Everything inside the outline as polygons, in the order of `names`; posts have many corners."""
+        """Return everything inside the outline as polygons, in the order of `names`."""
         posts = [shapely.Point(post.x_m, post.y_m).buffer(post.radius_m) for post in self.round_obstacles]
         walls, boxes = self.walls, self.polygon_obstacles
         return [
@@ -122,21 +122,21 @@ class WorldSettings(Settings):
 
     @property
     def free_space(self) -> shapely.Polygon | shapely.MultiPolygon:
-        """Where nothing stands: the inside of the outline without walls and obstacles, in one piece or several."""
+        """Return the inside of the outline without walls and obstacles, in one or several pieces."""
         free = shapely.Polygon(self.outline).difference(shapely.union_all(self.shapes))
-        # With sides that only touch, the difference may come with lines.
+        # If sides only touch, the difference may contain lines.
         return free if isinstance(free, shapely.Polygon) else shapely.MultiPolygon(polygons_of(free))
 
     @property
     def junctions(self) -> list[Point]:
-        """Where two streets meet, from left to right and from below."""
+        """Return the crossings of streets, by x, then by y."""
         lines = [shapely.LineString([street.from_m, street.to_m]) for street in self.streets]
         places = [one.intersection(other) for one, other in combinations(lines, 2)]
-        # Rounded, since three streets that meet do so in three pairs.
+        # Rounded, because three streets that meet form three pairs.
         return sorted({(round(at.x, 6), round(at.y, 6)) for at in places if isinstance(at, shapely.Point) and at})
 
     def moved(self, name: str, dx_m: float, dy_m: float) -> Self:
-        """The same world with one named wall or obstacle moved. Raises KeyError that lists the names."""
+        """Return a copy with one named wall or obstacle moved. Raises KeyError that lists the names."""
         if name not in self.names:
             raise KeyError(
                 f"world {self.name}: nothing is named {name!r}; there are: {', '.join(self.names) or 'none'}"
@@ -149,11 +149,11 @@ class WorldSettings(Settings):
         )
 
     def clearance_m(self, pose: Pose, geometry: GeometrySettings) -> float:
-        """Distance from the body at a pose to the nearest wall or obstacle; 0 when it overlaps one or is outside."""
+        """Return the distance in m from the body to the nearest wall; 0 if it overlaps one or is outside."""
         return self.clearances_m([pose], geometry)[0]
 
     def clearances_m(self, poses: Iterable[Pose], geometry: GeometrySettings) -> list[float]:
-        """As clearance_m, for several poses at once."""
+        """Return `clearance_m` of several poses."""
         room = shapely.Polygon(self.outline)
         shapely.prepare(room)
         things = [room.exterior, *self.shapes]
