@@ -20,6 +20,7 @@ class KeepDistance:
         speed_m_s: float,
         gain_per_m: float,
     ) -> None:
+        """Set the loop up. Raises ValueError for sensors that are unknown or not on one side, front before back."""
         self._infrared = infrared
         for name in (front_sensor, back_sensor):
             if name not in infrared.names:

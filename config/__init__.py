@@ -1,6 +1,6 @@
 """Data only: robots, worlds, tasks, repertoires, situations, runtime settings and the CAN database.
 
-The schemas that check these files stand beside the code that uses them; `hal.settings` loads them.
+The code that uses these files has their schemas; `hal.settings` loads them.
 """
 
 from pathlib import Path

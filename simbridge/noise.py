@@ -18,7 +18,7 @@ class Noise:
         """Numbers drawn so far; with the seed the whole state of the stream."""
 
     def normal(self) -> float:
-        """Return the next standard normal number."""
+        """Return the next standard normal number, dimensionless."""
         if self._used == len(self._block):
             self._block = self._generator.standard_normal(_BLOCK).tolist()
             self._used = 0

@@ -36,11 +36,11 @@ def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> W
 
 
 def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
-    """A world, a map or a world on a map, told apart by their keys."""
+    """Return the world of a file: a world, a map or a world on a map, by its keys."""
     keys = _keys(path)
     if not keys & {"image", "map"} or "outline" in keys:
         return load_settings(path, WorldSettings)
-    # Not at the top: who drives in no map needs not read images.
+    # Imported here: only maps need the image libraries.
     from simbridge.map_server.world import world_from_map, world_on_map
 
     return world_from_map(path, geometry) if "image" in keys else world_on_map(path)
@@ -50,7 +50,7 @@ def _keys(path: Path) -> set[str]:
     try:
         content = content_of(path)
     except SettingsError:
-        return set()  # the loader of settings says what is wrong with it
+        return set()  # load_settings reports the error
     return set(content) if isinstance(content, dict) else set()
 
 

@@ -6,7 +6,7 @@ from behaviors.policies.distances import FRONT, LEFT_WITH_EDGES, RIGHT_WITH_EDGE
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from hal.robot_settings import InfraredSettings
 
-# Where a column is, from front to back; 0 to 3: which of the sensors beside the robot is nearest to it.
+# Place of a column from front to back; 0 to 3: index of the nearest side sensor.
 _AHEAD = -1
 _FOREMOST, _HINDMOST = 0, 3
 _BEHIND = 4
@@ -69,10 +69,10 @@ class Eight:
 
     def _column(self, side: tuple[float, ...]) -> _Column:
         want = self._settings
-        edge_m, *beside, rear_m = side
-        beside_m = min(beside)
+        edge_m, *at_side, rear_m = side
+        beside_m = min(at_side)
         if beside_m < want.lost_m:
-            place = beside.index(beside_m)
+            place = at_side.index(beside_m)
         elif edge_m < want.edge_m:
             place = _AHEAD
         else:

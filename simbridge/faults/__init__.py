@@ -1,1 +1,1 @@
-"""What can go wrong between the robot's parts and the notebook, put in on purpose, in simulated time."""
+"""Faults injected between the robot's parts and the notebook, in simulated time."""

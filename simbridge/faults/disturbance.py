@@ -1,25 +1,26 @@
-"""What is wrong, from when to when."""
+"""Fault with a time span."""
 
 from typing import Literal, NamedTuple
 
 Kind = Literal["off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"]
-"""The seven ways in which something fails: gives nothing, repeats itself, gives nonsense, gives what is plausible and
-false, comes less often, comes late, comes and goes."""
+"""Kinds of fault: no output, repeated output, random output, plausible but false output, output at a lower rate, late
+output, and output with interruptions.
+"""
 
 
 class TimedFault(NamedTuple):
-    """One fault, for one span of simulated time."""
+    """One fault for one span of simulated time."""
 
     kind: Kind
     begin_s: float
     end_s: float
     period_s: float
-    """slow: between two that pass. intermittent: each span of failing, and each of working."""
+    """slow: time between two outputs. intermittent: length of each span of failing and of working."""
     delay_s: float
-    """delayed: how late."""
+    """delayed: the delay."""
 
     def acts(self, now_s: float) -> bool:
-        """Whether it is there at this time; one that comes and goes counts as there when it fails."""
+        """Return whether the fault acts at this time; an intermittent one acts while it fails."""
         if not self.begin_s <= now_s < self.end_s:
             return False
         return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0

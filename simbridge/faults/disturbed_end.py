@@ -1,4 +1,4 @@
-"""One end of a bus with a way each for what goes out and what comes in, on the clock of simulated time."""
+"""CAN interface with a faulty link per direction, in simulated time."""
 
 import copy
 from collections import deque
@@ -12,9 +12,9 @@ from simbridge.faults.way import FrameLink
 
 
 class FaultyInterface:
-    """Wrapper of a CanInterface that can behave as one of SocketCAN: stamps, and its own frames confirmed.
+    """Wrapper of an interface that adds SocketCAN's timestamps and confirmations (hal.can_interface.CanInterface).
 
-    Frames get their stamp when they come from the bus, before the way in: as the kernel does it.
+    Like the kernel, it stamps a frame that arrives from the bus before the inward link.
     """
 
     overruns = 0
@@ -29,7 +29,7 @@ class FaultyInterface:
         receives_own_frames: bool,
         on_carried: Callable[[], None],
     ) -> None:
-        """`on_carried` is called when the bus has just carried a frame of this end."""
+        """Wrap an interface; `on_carried` is called after the bus carried a frame of this interface."""
         self.receives_own_frames = receives_own_frames
         self._inner = inner
         self._time = time
@@ -39,40 +39,40 @@ class FaultyInterface:
         self._waiting: deque[can.Message] = deque()
 
     def now_s(self) -> float | None:
-        """Simulated time."""
+        """Return the simulated time."""
         return self._time.now_s()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
-        """Deliver only frames with these standard identifiers, and error frames."""
+        """Accept only these standard identifiers and error frames."""
         self._inner.set_id_filter(frame_ids)
 
-    def take_in(self) -> None:
-        """Others have sent: what has come sets out on the way in."""
+    def receive(self) -> None:
+        """Move the frames that arrived on the bus to the inward link."""
         while True:
             frame = self._inner.recv(0)
             if frame is None:
                 return
             frame.timestamp = self._time.now_s()
-            self._inward.carry(frame, self._arrive)
+            self._inward.carry(frame, self._on_delivered)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - nothing here waits
-        """The frame that waits longest."""
+        """Return the oldest frame or None without waiting `timeout` s."""
         return self._waiting.popleft() if self._waiting else None
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
-        """Put a frame on its way. Raises OSError, can.CanError."""
-        self._outward.carry(msg, self._put_on_the_bus)
+        """Send a frame over the outward link without waiting `timeout` s. Raises OSError, can.CanError."""
+        self._outward.carry(msg, self._send_to_bus)
 
     def shutdown(self) -> None:
-        """Give the bus back."""
+        """Close the wrapped interface."""
         self._inner.shutdown()
 
-    def _arrive(self, frame: can.Message) -> None:
-        if not frame.timestamp:  # made on the way
+    def _on_delivered(self, frame: can.Message) -> None:
+        if not frame.timestamp:  # made by the link
             frame.timestamp = self._time.now_s()
         self._waiting.append(frame)
 
-    def _put_on_the_bus(self, frame: can.Message) -> None:
+    def _send_to_bus(self, frame: can.Message) -> None:
         self._inner.send(frame, 0)
         if self.receives_own_frames:
             confirmed = copy.copy(frame)

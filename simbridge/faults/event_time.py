@@ -1,13 +1,13 @@
-"""Simulated time as a queue of events, finer than a cycle: who acts when, between two ticks and during a hung one."""
+"""Event queue of simulated time, finer than a controller cycle."""
 
 import heapq
 from collections.abc import Callable
 
 
 class EventScheduler:
-    """Time passes only by `run_until`, and what was planned happens at its moment, in order.
+    """Scheduler of callbacks in simulated time, which passes only in `run_until`.
 
-    A tick that hangs lets time pass from within: controller and watchdog go on, the loop does not.
+    A tick that hangs calls `run_until` itself: controller and watchdog continue, the loop does not.
     """
 
     def __init__(self) -> None:
@@ -16,19 +16,16 @@ class EventScheduler:
         self._numbers = 0
 
     def now_s(self) -> float:
-        """The present in seconds."""
+        """Return the time in seconds."""
         return self._now_s
 
     def at(self, time_s: float, act: Callable[[], None]) -> None:
-        """Have `act` called at a moment; in the past means as soon as time passes. Equal moments: in order of asking.
-
-        May be asked from within an act.
-        """
+        """Schedule a callback; a past time means as soon as time passes. Equal times run in order of scheduling."""
         self._numbers += 1
         heapq.heappush(self._planned, (time_s, self._numbers, act))
 
     def every(self, period_s: float, first_s: float, act: Callable[[], None]) -> None:
-        """Have `act` called at `first_s` and at each whole period after it, without end."""
+        """Schedule a callback at `first_s` and after each whole period, without end."""
 
         def once(number: int) -> None:
             act()
@@ -40,7 +37,7 @@ class EventScheduler:
         plan(0)
 
     def run_until(self, time_s: float) -> None:
-        """Let time pass, to `time_s` and never backwards."""
+        """Advance the time to `time_s`, never backwards, and run the callbacks that are due."""
         while self._planned and self._planned[0][0] <= time_s:
             moment_s, _, act = heapq.heappop(self._planned)
             self._now_s = max(self._now_s, moment_s)

@@ -1,4 +1,4 @@
-"""The place where faults are tried: a long straight wall on the left, and room on the other side."""
+"""World of the fault drill: a corridor with a long straight wall on the left."""
 
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 
@@ -13,4 +13,4 @@ CORRIDOR_WORLD = WorldSettings(
     outline=((0.0, 0.0), (_LENGTH_M, 0.0), (_LENGTH_M, _WIDTH_M), (0.0, _WIDTH_M), (0.0, 0.0)),
     start_poses=(StartPoseSettings(x_m=1.5, y_m=_WIDTH_M - _HALF_WIDTH_M - _WALL_AT_M, heading_deg=0.0),),
 )
-"""One situation all along, so that whoever stands there does it because of the fault."""
+"""Corridor with one constant situation, so that a standstill is due to the fault."""

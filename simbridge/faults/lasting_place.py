@@ -1,4 +1,4 @@
-"""The simulated robot in a world, in simulated time, for as long as you like: one fault after another, many drivers."""
+"""Simulated robot in a world for long runs with many faults and drivers."""
 
 import math
 import random
@@ -31,24 +31,24 @@ from simbridge.world_loading import load_world
 
 
 class LongRunRig:
-    """Robot, bus and driver (kurt2rt.soak.place.SoakPlace).
+    """Robot, bus and driver in simulated time (kurt2rt.soak.place.SoakPlace).
 
-    The loop's ticks, the controller's cycle and the watchdog have phases of their own. The watchdog's thread is
-    replaced by a look at moments of simulated time.
+    Ticks, controller cycles and watchdog polls have independent phases. Events of simulated time replace the
+    watchdog's thread.
     """
 
     def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
-        """Stands at a start pose of the world, with nobody at its bus. Raises SettingsError."""
+        """Place the robot at a random start pose of the world, without a driver. Raises UserError."""
         self._chance = random.Random(f"lasting place in {world}, seed {seed}")
         self.time = EventScheduler()
         self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
-        """Called with number and payload of each CONTROL that the driver hands to its bus."""
+        """Callback with number and payload of each CONTROL that the driver sends."""
         self.on_control: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
-        """Called for each of them that the robot takes, with the same number and the time of its arrival."""
+        """Callback with number, payload and arrival time in s of each CONTROL that the robot receives."""
         self.turned_m = [0.0, 0.0]
-        """Way of the rims, left and right, forward counts positive."""
+        """Distance rolled by the rims, left and right, forward positive."""
         self.crashes = 0
-        """How often the micro-controller went dead and was switched off and on."""
+        """Number of crashes of the micro-controller, each followed by a power cycle."""
         self._settings = settings
         self._codec = load_codec(settings.can.database)
         self._cycle_s = settings.can.cycle_s
@@ -76,7 +76,7 @@ class LongRunRig:
         self.time.every(POLL_S, self._chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def start_driver(self, wire: str) -> Kurt2:
-        """A driver that knows nothing comes to the bus, over a wire by name or `none`. Raises SettingsError."""
+        """Start a new driver over a wire given by name, or `none`. Raises SettingsError."""
         self.end_driver()
         self._open_bus(wire)
         self._robots_bus.reopen()
@@ -85,7 +85,7 @@ class LongRunRig:
         return self.robot
 
     def end_driver(self) -> None:
-        """The driver's process is over."""
+        """End the driver, like the end of its process."""
         if self.robot is not None:
             self.robot.close()
             self.robot = None
@@ -93,7 +93,7 @@ class LongRunRig:
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
     ) -> TimedFault:
-        """Something is going to fail; one that is no part of robot or bus is left to the caller."""
+        """Schedule a fault; a target that is no part of robot or bus is left to the caller. Times in s."""
         disturbance = TimedFault(kind, begin_s, end_s, period_s, delay_s)
         part, time, chance = part_of(target), self.time, self._chance
         self._robots_links.outward = faulty_telemetry_link(part, disturbance, time, chance, self._codec)
@@ -103,42 +103,42 @@ class LongRunRig:
         return disturbance
 
     def end(self) -> None:
-        """All is well again."""
+        """Remove the fault."""
         self._robots_links.outward = self._notebooks_links.inward = self._notebooks_links.outward = None
         self._wheels.disturb(None, TimedFault("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
 
     def look_on(self, tap: Tap | None) -> None:
-        """Somebody looks on at the driver's end of the bus; None: nobody."""
+        """Attach a tap to the driver's interface; None detaches it."""
         if self._notebooks_bus is not None:
             self._notebooks_bus.tap = tap
 
     def set_down(self) -> None:
-        """Somebody sets the robot down at a start pose."""
+        """Reposition the robot at a random start pose."""
         self.simulation.place(self._chance.choice(self._starts))
 
     def switch_on(self) -> None:
-        """Somebody switches the robot's controller off and on."""
+        """Power-cycle the robot's controller."""
         self.simulation.controller.power_cycle()
 
     @property
     def position_m(self) -> tuple[float, float]:
-        """Where it really is."""
+        """Return the true position."""
         pose: Pose = self.simulation.pose
         return pose.x_m, pose.y_m
 
     @property
     def collisions(self) -> int:
-        """Contacts so far."""
+        """Return the number of collisions."""
         return self.simulation.collisions
 
     @property
     def standing(self) -> bool:
-        """Whether its wheels stand."""
+        """Return whether the wheels stand still."""
         speeds: WheelSpeeds = self.simulation.wheel_speeds
         return math.hypot(*speeds) == 0.0
 
     def close(self) -> None:
-        """Give the bus back."""
+        """End the driver and close the bus."""
         self.end_driver()
         self._robots_bus.shutdown()
 
@@ -158,7 +158,7 @@ class LongRunRig:
             robot.emergency_stop(GuardReason.TICKS_CEASED)
 
     def _open_bus(self, wire: str) -> None:
-        """Another wire between the two ends that will be opened."""
+        """Select the wire that later opened interfaces join."""
         if wire == NO_WIRE:
             cable = Cable(self.time.now_s)
             self._join = lambda _end: cable.open()
@@ -171,9 +171,7 @@ class LongRunRig:
         self._join = lambda end: WireInterface(carrier, nodes[end])
 
     def _open_robots_end(self, _: str) -> CanInterface:
-        return SwitchableInterface(
-            self._join("robot"), self._robots_links, self.time.now_s, on_heard=self._note_arrival
-        )
+        return SwitchableInterface(self._join("robot"), self._robots_links, self.time.now_s, on_heard=self._on_arrival)
 
     def _open_notebooks_end(self, _: str) -> CanInterface:
         return SwitchableInterface(self._join("notebook"), self._notebooks_links, self.time.now_s, on_send=self._number)
@@ -184,6 +182,6 @@ class LongRunRig:
         self.on_put(self._numbers, payload)
         return NumberedFrame(frame.arbitration_id, payload, self._numbers)
 
-    def _note_arrival(self, frame: NumberedFrame) -> None:
+    def _on_arrival(self, frame: NumberedFrame) -> None:
         if frame.arbitration_id == CONTROL_ID:
             self.on_control(frame.number, frame.data, frame.timestamp)

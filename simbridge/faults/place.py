@@ -1,4 +1,4 @@
-"""The simulated robot, its bus and its driver in simulated time, with one fault somewhere between them."""
+"""Simulated robot, bus and driver with one fault between them."""
 
 import random
 import uuid
@@ -25,22 +25,24 @@ from simbridge.simulated_robot import SimulatedRobot
 
 
 class SimulatedFaultRig:
-    """Robot, bus and driver. The loop's ticks, the controller's cycle and the watchdog have phases of their own.
+    """Robot, bus and driver in simulated time (kurt2rt.faults.place.Place).
 
-    The watchdog's thread is replaced by a look at moments of simulated time.
+    Ticks, controller cycles and watchdog polls have independent phases. Events of simulated time replace the
+    watchdog's thread.
     """
 
     def __init__(
         self, settings: RobotSettings, part: Part | None, disturbance: TimedFault, chance: random.Random
     ) -> None:
-        """`part`: what the disturbance hits; None when that is not on this side of the driver."""
+        """Place the robot in the corridor; `part` has the fault, None if it is not on this side of the driver."""
         self.time = EventScheduler()
         self.disturbance = disturbance
         self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
-        """Called for each frame that the driver hands to its bus, before anything can happen to it."""
+        """Callback with number and payload of each frame that the driver sends."""
         self.on_control: Callable[[int, bytes], None] = lambda _number, _payload: None
-        """Called for each of them that arrives at the robot's end as CONTROL, with the same number."""
+        """Callback with number and payload of each CONTROL that arrives at the robot."""
         self._settings = settings
+        self._codec = load_codec(settings.can.database)
         self._part = part
         self._chance = chance
         self._spec = f"faults-{uuid.UUID(int=chance.getrandbits(128))}-{id(self)}"
@@ -56,17 +58,17 @@ class SimulatedFaultRig:
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def start_anew(self) -> Kurt2:
-        """The driver's process has ended and a new one comes, which knows nothing of what was."""
+        """Replace the driver by a new one, like a restart of its process."""
         self.robot.close()
         self.robot = self._driver()
         return self.robot
 
     def look_on(self, tap: Tap) -> None:
-        """Somebody looks on at the driver's end."""
+        """Attach a tap to the driver's interface."""
         self._notebooks_bus.tap = tap
 
     def close(self) -> None:
-        """Give the bus back."""
+        """Close driver and bus."""
         self.robot.close()
         self._robots_bus.shutdown()
 
@@ -82,10 +84,10 @@ class SimulatedFaultRig:
         self._robots_end = FaultyInterface(
             InProcessBus(name),
             self.time,
-            outward=self._way_of_telemetry(),
-            inward=_Watched(IdealLink(), self._note_arrival),
+            outward=self._telemetry_link(),
+            inward=_ObservedLink(self._on_arrival),
             receives_own_frames=False,
-            on_carried=self._notebook_hears,
+            on_carried=self._deliver_to_notebook,
         )
         return self._robots_end
 
@@ -93,42 +95,40 @@ class SimulatedFaultRig:
         self._notebooks_end = FaultyInterface(
             InProcessBus(name),
             self.time,
-            outward=_Numbered(self._way_out(), self._note_put, self._note_coming_out),
-            inward=self._way_in(),
+            outward=_NumberingLink(self._tx_link(), self._number, self._on_delivered),
+            inward=self._rx_link(),
             receives_own_frames=True,
-            on_carried=self._robot_hears,
+            on_carried=self._deliver_to_robot,
         )
         return self._notebooks_end
 
-    def _notebook_hears(self) -> None:
+    def _deliver_to_notebook(self) -> None:
         if self._notebooks_end is not None:
-            self._notebooks_end.take_in()
+            self._notebooks_end.receive()
 
-    def _robot_hears(self) -> None:
+    def _deliver_to_robot(self) -> None:
         if self._robots_end is not None:
-            self._robots_end.take_in()
+            self._robots_end.receive()
 
-    def _note_put(self, payload: bytes) -> int:
+    def _number(self, payload: bytes) -> int:
         self._put += 1
         self.on_put(self._put, payload)
         return self._put
 
-    def _note_coming_out(self, number: int) -> None:
+    def _on_delivered(self, number: int) -> None:
         self._carried = number
 
-    def _note_arrival(self, frame: can.Message) -> None:
+    def _on_arrival(self, frame: can.Message) -> None:
         if frame.arbitration_id == CONTROL_ID:
             self.on_control(self._carried, bytes(frame.data))
 
-    def _way_of_telemetry(self) -> FrameLink:
-        codec = load_codec(self._settings.can.database)
-        return faulty_telemetry_link(self._part, self.disturbance, self.time, self._chance, codec) or IdealLink()
+    def _telemetry_link(self) -> FrameLink:
+        return faulty_telemetry_link(self._part, self.disturbance, self.time, self._chance, self._codec) or IdealLink()
 
-    def _way_in(self) -> FrameLink:
-        codec = load_codec(self._settings.can.database)
-        return faulty_rx_link(self._part, self.disturbance, self.time, self._chance, codec) or IdealLink()
+    def _rx_link(self) -> FrameLink:
+        return faulty_rx_link(self._part, self.disturbance, self.time, self._chance, self._codec) or IdealLink()
 
-    def _way_out(self) -> FrameLink:
+    def _tx_link(self) -> FrameLink:
         return faulty_tx_link(self._part, self.disturbance, self.time, self._chance) or IdealLink()
 
     def _wheels(self) -> FaultyWheels:
@@ -137,33 +137,32 @@ class SimulatedFaultRig:
         return wheels
 
 
-class _Watched:
-    """A way that tells of each frame that sets out on it."""
+class _ObservedLink:
+    """Ideal link that reports each frame."""
 
-    def __init__(self, way: FrameLink, note: Callable[[can.Message], None]) -> None:
-        self._way = way
-        self._note = note
+    def __init__(self, on_frame: Callable[[can.Message], None]) -> None:
+        self._on_frame = on_frame
 
-    def carry(self, frame: can.Message, arrive: Deliver) -> None:
-        """A frame sets out."""
-        self._note(frame)
-        self._way.carry(frame, arrive)
+    def carry(self, frame: can.Message, deliver: Deliver) -> None:
+        """Report and deliver a frame."""
+        self._on_frame(frame)
+        deliver(frame)
 
 
-class _Numbered:
-    """A way that numbers the frames that set out, and tells of each that comes out which one it is."""
+class _NumberingLink:
+    """Link that numbers the frames and reports the number of each one delivered."""
 
-    def __init__(self, way: FrameLink, note: Callable[[bytes], int], note_coming_out: Callable[[int], None]) -> None:
-        self._way = way
-        self._note = note
-        self._note_coming_out = note_coming_out
+    def __init__(self, link: FrameLink, number: Callable[[bytes], int], on_delivered: Callable[[int], None]) -> None:
+        self._link = link
+        self._number = number
+        self._on_delivered = on_delivered
 
-    def carry(self, frame: can.Message, arrive: Deliver) -> None:
-        """A frame sets out. Raises OSError."""
-        number = self._note(bytes(frame.data))
+    def carry(self, frame: can.Message, deliver: Deliver) -> None:
+        """Carry a frame under a new number. Raises OSError."""
+        number = self._number(bytes(frame.data))
 
-        def come_out(each: can.Message) -> None:
-            self._note_coming_out(number)
-            arrive(each)
+        def deliver_numbered(each: can.Message) -> None:
+            self._on_delivered(number)
+            deliver(each)
 
-        self._way.carry(frame, come_out)
+        self._link.carry(frame, deliver_numbered)

@@ -1,4 +1,4 @@
-"""Opens places with a fault."""
+"""Factory of fault rigs."""
 
 import random
 from dataclasses import dataclass
@@ -11,16 +11,16 @@ from simbridge.faults.place import SimulatedFaultRig
 
 @dataclass(frozen=True, slots=True)
 class FaultRigFactory:
-    """A robot in a hall with one thing wrong; can be sent to another process."""
+    """Factory of robots in a corridor with one fault; picklable."""
 
     settings: RobotSettings
 
     def open(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float, seed: int
     ) -> SimulatedFaultRig:
-        """The place where `target` is disturbed from `begin_s` to `end_s`, give or take the seed's phase in a cycle.
+        """Return a rig with a fault from `begin_s` to `end_s`, shifted by the seed's phase within a cycle.
 
-        A target that is no part of the robot or its bus is left to the caller: the place's `disturbance` says when.
+        A target that is no part of robot or bus is left to the caller; the rig's `disturbance` has the times.
         """
         chance = random.Random(f"{target} {kind} {seed}")
         phase_s = chance.uniform(0.0, self.settings.can.cycle_s)

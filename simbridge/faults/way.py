@@ -1,4 +1,4 @@
-"""The way of frames in one direction, straight or disturbed."""
+"""Links that carry frames in one direction, ideal or faulty."""
 
 import random
 from collections import deque
@@ -17,25 +17,25 @@ Deliver = Callable[[can.Message], None]
 
 
 class FrameLink(Protocol):
-    """Takes frames at one end and lets them arrive at the other, now, later or never."""
+    """Link that delivers frames now, later or never."""
 
-    def carry(self, frame: can.Message, arrive: Deliver) -> None:
-        """A frame sets out. Raises OSError where it cannot."""
+    def carry(self, frame: can.Message, deliver: Deliver) -> None:
+        """Carry a frame. Raises OSError if sending fails."""
         ...
 
 
 class IdealLink:
-    """Each frame arrives at once."""
+    """Link without delay or faults."""
 
-    def carry(self, frame: can.Message, arrive: Deliver) -> None:
-        """It is there."""
-        arrive(frame)
+    def carry(self, frame: can.Message, deliver: Deliver) -> None:
+        """Deliver the frame at once."""
+        deliver(frame)
 
 
 class FaultyLink:
-    """Frames with some identifiers suffer, for the disturbance's span; they never overtake one another.
+    """Link with a fault for some identifiers; frames never overtake each other.
 
-    What repeats itself repeats each identifier's last frame, unless `freeze` says what it is that stands still.
+    `stuck` repeats each identifier's last frame unless `freeze` is given.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class FaultyLink:
         freeze: Callable[[can.Message], can.Message] | None = None,
         falsify: Callable[[can.Message], list[can.Message]],
     ) -> None:
-        """`concerns`: identifiers, None for all. `falsify`: what is plausible and false in place of a right frame."""
+        """Args: `concerns`: affected identifiers, None for all; `falsify`: false frames in place of a right one."""
         self._disturbance = disturbance
         self._time = time
         self._chance = chance
@@ -58,45 +58,47 @@ class FaultyLink:
         self._newest: dict[int, can.Message] = {}
         self._passed_at_s: dict[int, float] = {}
         self._late: deque[tuple[can.Message, Deliver]] = deque()
-        time.at(disturbance.end_s, self._let_all_arrive)
+        time.at(disturbance.end_s, self._deliver_all)
 
-    def carry(self, frame: can.Message, arrive: Deliver) -> None:
-        """A frame sets out."""
+    def carry(self, frame: can.Message, deliver: Deliver) -> None:
+        """Carry a frame."""
         if self._concerns is not None and frame.arbitration_id not in self._concerns:
-            arrive(frame)
+            deliver(frame)
         elif not self._disturbance.acts(self._time.now_s()):
             self._newest[frame.arbitration_id] = frame
-            arrive(frame)
+            deliver(frame)
         else:
-            self._disturb(frame, arrive)
+            self._disturb(frame, deliver)
 
-    def _disturb(self, frame: can.Message, arrive: Deliver) -> None:
+    def _disturb(self, frame: can.Message, deliver: Deliver) -> None:
         frame_id, now_s = frame.arbitration_id, self._time.now_s()
         match self._disturbance.kind:
             case "off" | "intermittent":
                 return
             case "stuck":
                 again = self._newest.get(frame_id, frame) if self._freeze is None else self._freeze(frame)
-                arrive(Frame(frame_id, bytes(again.data)))  # anew: its old stamp would give it away
+                deliver(
+                    Frame(frame_id, bytes(again.data))
+                )  # a new frame: the old timestamp would reveal the repetition
             case "garbage":
-                arrive(Frame(frame_id, self._chance.randbytes(len(frame.data))))
+                deliver(Frame(frame_id, self._chance.randbytes(len(frame.data))))
             case "wrong":
                 for each in self._falsify(frame):
-                    arrive(each)
+                    deliver(each)
             case "slow":
                 passed_at_s = self._passed_at_s.get(frame_id, self._disturbance.begin_s)
                 if now_s - passed_at_s > self._disturbance.period_s - _ROUNDING_S:
                     self._passed_at_s[frame_id] = now_s
-                    arrive(frame)
+                    deliver(frame)
             case "delayed":
-                self._late.append((frame, arrive))
-                self._time.at(now_s + self._disturbance.delay_s, self._let_one_arrive)
+                self._late.append((frame, deliver))
+                self._time.at(now_s + self._disturbance.delay_s, self._deliver_one)
 
-    def _let_one_arrive(self) -> None:
+    def _deliver_one(self) -> None:
         if self._late:
-            frame, arrive = self._late.popleft()
-            arrive(frame)
+            frame, deliver = self._late.popleft()
+            deliver(frame)
 
-    def _let_all_arrive(self) -> None:
+    def _deliver_all(self) -> None:
         while self._late:
-            self._let_one_arrive()
+            self._deliver_one()

@@ -1,1 +1,1 @@
-"""Maps of ROS's map_server as worlds: a YAML file beside an image, walls traced."""
+"""Maps of ROS's map_server as worlds: a YAML file with an image, whose walls are traced."""

@@ -1,4 +1,4 @@
-"""From the image of a map to the cells that can be driven on, as map_server reads it."""
+"""Drivable cells from the image of a map, interpreted as map_server does."""
 
 import warnings
 from pathlib import Path
@@ -14,11 +14,11 @@ MOST_CELLS = 4096 * 4096
 
 _UNKNOWN = -1.0
 _HALF_OCCUPIED = 50.0
-"""Of an occupancy grid's 0 to 100; in mode trinary there is nothing between."""
+"""Threshold on an occupancy grid's scale of 0 to 100; mode trinary has nothing between."""
 
 
 def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
-    """Whether each cell is known to be free: row 0 is the lowest, as y goes.
+    """Return the cells known to be free, shape (rows, columns), row 0 at the bottom.
 
     Raises SettingsError that names the map's file and the key.
     """
@@ -56,7 +56,7 @@ def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
 
 
 def _shades(image: Image.Image) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Brightness from 0 to 255, the mean of the colours; and which cells are fully opaque."""
+    """Return the brightness (mean of the colours, 0 to 255) and the opacity of each cell."""
     if image.mode == "P":
         image = image.convert("RGBA")
     elif image.mode not in ("L", "LA", "RGB", "RGBA", "I", "I;16"):
@@ -72,7 +72,7 @@ def _shades(image: Image.Image) -> tuple[NDArray[np.float64], NDArray[np.bool_]]
 
 
 def _occupancy(shade: NDArray[np.float64], is_opaque: NDArray[np.bool_], settings: MapSettings) -> NDArray[np.float64]:
-    """What map_server publishes: 0 free, 100 occupied, -1 unknown."""
+    """Return map_server's occupancy: 0 free, 100 occupied, -1 unknown."""
     bright = 255.0 - shade if settings.negate else shade
     if settings.mode == "raw":
         return np.where(bright <= 100, bright, _UNKNOWN)

@@ -1,4 +1,4 @@
-"""Schema of a map_server map, and of a world that is built on one."""
+"""Schema of a map_server map, and of a world based on one."""
 
 from typing import Annotated, Literal, Self
 
@@ -11,16 +11,16 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MapSettings(Settings):
-    """The YAML file beside the image, with map_server's own keys."""
+    """YAML file of a map with map_server's keys."""
 
     image: str
-    """PGM or PNG; relative to the YAML file."""
+    """PGM or PNG file, relative to the YAML file."""
     resolution: Annotated[float, Field(gt=0, le=1)]
     """Metres per cell."""
     origin: tuple[float, float, float]
-    """Where the lower left corner of the image is, in metres, and how it is turned, in radians, counter-clockwise."""
+    """Position in m and counter-clockwise rotation in rad of the image's lower left corner."""
     negate: bool | Literal[0, 1]
-    """0: dark is occupied; 1: bright is."""
+    """0 if dark cells are occupied, 1 if bright ones are."""
     occupied_thresh: Share
     free_thresh: Share
     mode: Literal["trinary", "scale", "raw"] = "trinary"
@@ -33,10 +33,10 @@ class MapSettings(Settings):
 
 
 class MapWorldSettings(Settings):
-    """A world on a map, with start poses of one's own choice, in the map's frame as RViz shows it."""
+    """World on a map with start poses in the map's frame, as RViz shows it."""
 
     map: str
-    """The map's YAML file, relative to this one."""
+    """YAML file of the map, relative to this file."""
     infrared_rays: Literal[1, 3] | None = None
-    """Default: 3 when something on the map is thinner than the gap between two sensors."""
+    """Rays per sensor; by default 3 if something on the map is thinner than the gap between two sensors."""
     start_poses: Annotated[tuple[StartPoseSettings, ...], Field(min_length=1)]

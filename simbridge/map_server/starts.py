@@ -1,4 +1,4 @@
-"""Start poses found on a map: in sight of a wall on the left, and far from each other."""
+"""Start poses on a map: along a wall on the left, and far from each other."""
 
 import math
 
@@ -12,20 +12,20 @@ from simbridge.geometry import polygons_of
 _STARTS = 8
 _APART_M = 0.5
 _STEP_M = 0.1
-"""From one candidate to the next, at least."""
+"""Least distance between two candidates."""
 _CANDIDATES = 2000
 _ROOM_M = 0.03
-"""Added to the radius in which the robot turns: candidates are so much farther from the wall than they must be."""
+"""Extra distance from the wall beyond the turning radius."""
 _SENSOR_M = 0.14
-"""From the robot's centre to its front and rear side sensors, along its heading."""
+"""Distance from the robot's centre to its front and rear side sensors, along its heading."""
 _IN_SIGHT_M = 0.45
-"""From the robot's centre to a wall that its side sensors see well: 0.285 m from the sensors."""
+"""Distance from the robot's centre to a wall that its side sensors see well: 0.285 m from the sensors."""
 
 Points = NDArray[np.float64]
 
 
 def turning_places(floor: shapely.Polygon, turning_m: float) -> shapely.Polygon | None:
-    """The largest area in which a robot that needs this radius can be everywhere; None when it fits nowhere."""
+    """Return the largest area of centres of a robot with this turning radius; None if it fits nowhere."""
     pieces = polygons_of(shapely.buffer(floor, -turning_m, quad_segs=4))
     return max(pieces, key=lambda piece: float(piece.area), default=None)
 

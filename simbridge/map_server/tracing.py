@@ -1,4 +1,4 @@
-"""From cells to the walls between them: contours by contourpy, made straight by shapely."""
+"""Walls between cells: contours by contourpy, straightened by shapely."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -12,27 +12,28 @@ from numpy.typing import NDArray
 from simbridge.geometry import polygons_of
 
 _TOLERANCE_CELLS = 0.7
-"""A wall that is not parallel to the grid is a staircase of cells. With half a cell many of its steps stay, up to 169
-for eight walls; from 0.71 on, a single cell loses a corner. How near the walls are is the same."""
+"""Tolerance of straightening. A slanted wall is a staircase of cells. With half a cell many steps remain, up to 169 for
+eight walls; from 0.71 on, a single cell loses a corner. The walls' distance is the same.
+"""
 
 _MOST_SIDES = 500_000
 _MOST_OUTLINES = 5_000
 _MOST_BENDS = 50_000
-"""Time grows with their square; these take a few seconds."""
+"""Limit of bends; time grows with their square, and these take a few seconds."""
 
 Ring = NDArray[np.float64]
-"""Corners, (n, 2), the first not repeated."""
+"""Corners, shape (n, 2), the first not repeated."""
 
 
 class TooRaggedError(ValueError):
-    """The cells are no rooms: straightening their outlines would take minutes."""
+    """Cells too ragged to be rooms: straightening their outlines would take minutes."""
 
 
 def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
-    """What is free as polygons with holes; lengths in cells, (0, 0) is the outer corner of cell [0, 0].
+    """Return the free area of a cell map, shape (rows, columns), as polygons with holes.
 
-    Walls parallel to the grid are where the cells end, others a fifth of a cell from there in the mean, and one cell at
-    most. Raises TooRaggedError.
+    Lengths are in cells; (0, 0) is the outer corner of cell [0, 0]. Walls parallel to the grid lie at the cells' edges,
+    others within one cell of them, 0.2 on average. Raises TooRaggedError.
     """
     sides = np.count_nonzero(free[1:] != free[:-1]) + np.count_nonzero(free[:, 1:] != free[:, :-1])
     if sides > _MOST_SIDES:
@@ -70,10 +71,10 @@ def _polygon(rings: list[Ring]) -> shapely.Polygon:
 
 
 def _outline(contour: Ring) -> Ring:
-    """Corners of a contour that passes through the middle of each side between two cells.
+    """Return the corners of a contour, which passes through the middle of each side between two cells.
 
-    It cuts the corners that cells have there. Those of walls are put back; those of stairs, one side long and turning
-    now left and now right, stay cut, since there a slanted wall is meant.
+    The contour cuts the cells' corners. Corners of walls are restored. Those of stairs, one side long and turning to
+    alternating sides, stay cut, because they stand for a slanted wall.
     """
     way = np.roll(contour, -1, axis=0) - contour
     is_cut = np.all(np.abs(way) == 0.5, axis=1)
@@ -94,7 +95,7 @@ def _joined(x_of: Ring, y_of: Ring) -> Ring:
 
 
 def _without_points_on_lines(ring: Ring) -> Ring:
-    """Numbers are halves here, so that what is straight is so exactly."""
+    """Return the ring without points on straight lines; coordinates are multiples of 0.5, so comparisons are exact."""
     differs: NDArray[np.bool_] = np.any(ring != np.roll(ring, 1, axis=0), axis=1)
     ring = ring[differs]
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring

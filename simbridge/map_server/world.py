@@ -1,4 +1,4 @@
-"""Worlds from maps: the room that the robot starts in, its islands as obstacles."""
+"""Worlds from maps: the room of the start poses, with its islands as obstacles."""
 
 import math
 from pathlib import Path
@@ -21,13 +21,13 @@ from simbridge.world_settings import StartPoseSettings, WorldSettings
 MOST_WALLS = 5000
 _MOST_M = 200.0
 _THIN_M = 0.09
-"""The gap between two side sensors; the legs of a chair would often be missed by one ray for each."""
+"""Gap between two side sensors; with one ray per sensor the legs of a chair would often be missed."""
 _SLIP_M = 0.06
-"""Room to spare where the robot turns."""
+"""Extra room for turning."""
 
 
 def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
-    """A map as it is; start poses are found where the robot can turn and sees a wall on its left.
+    """Return the world of a map, with start poses next to a wall on the left.
 
     Raises SettingsError that names file and key.
     """
@@ -59,7 +59,7 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
 
 
 def world_on_map(source: Path) -> WorldSettings:
-    """A world that names its map, and its start poses in the map's frame. Raises SettingsError."""
+    """Return the world of a file with a map and start poses in the map's frame. Raises SettingsError."""
     chosen = load_settings(source, MapWorldSettings)
     map_source = source.parent / chosen.map
     if not map_source.is_file():
@@ -77,7 +77,7 @@ def world_on_map(source: Path) -> WorldSettings:
 
 
 def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
-    """What is free, the largest first, in metres from the lower left corner of the image."""
+    """Return the free areas in m from the lower left corner of the image, the largest first."""
     try:
         cells = trace(drivable_cells(source, settings))
     except TooRaggedError as error:
@@ -104,7 +104,7 @@ def _require_few_walls(source: Path, walls: int) -> None:
 
 
 def _on_grid(start: Pose, settings: MapSettings) -> Pose:
-    """The same pose from the lower left corner of the image, along its edges."""
+    """Return the pose relative to the lower left corner of the image, along its edges."""
     x_m, y_m, turned_rad = settings.origin
     dx, dy = start.x_m - x_m, start.y_m - y_m
     cos, sin = math.cos(turned_rad), math.sin(turned_rad)

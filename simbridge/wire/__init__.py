@@ -1,1 +1,1 @@
-"""A CAN wire in simulated time: bits, arbitration, lost and destroyed frames, error counters, bus-off."""
+"""CAN wire in simulated time: bits, arbitration, lost and destroyed frames, error counters, bus-off."""

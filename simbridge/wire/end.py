@@ -1,4 +1,4 @@
-"""One end of a wire as a bus that hal.bus.CanBus can use."""
+"""CAN interface on a simulated wire."""
 
 import can
 
@@ -7,9 +7,9 @@ from simbridge.wire.wire import Wire
 
 
 class WireInterface:
-    """A controller of its own on the wire, with its reader (hal.can_interface.CanInterface).
+    """Controller on the wire with its reader (hal.can_interface.CanInterface).
 
-    Opening one is plugging an adapter in: its counters begin at zero.
+    Opening one plugs an adapter in: its counters start at zero.
     """
 
     receives_own_frames = True
@@ -19,36 +19,36 @@ class WireInterface:
         self._node = wire.join(settings)
         self._open = True
         self.overruns = 0
-        """Frames that found the reader's buffer full."""
+        """Number of frames dropped because the reader's buffer was full."""
 
     def now_s(self) -> float | None:
-        """The present on the wire's clock, which stamps the frames."""
+        """Return the wire's time, which stamps the frames."""
         return self._wire.now_s()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
-        """Take only frames with these standard identifiers, and error frames."""
+        """Accept only these standard identifiers and error frames."""
         self._wire.set_id_filter(self._node, frame_ids)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
-        """The frame that waits longest; None when there is none. Raises can.CanOperationError after shutdown."""
+        """Return the oldest frame or None without waiting `timeout` s. Raises can.CanOperationError after shutdown."""
         self._check_open()
-        frame = self._wire.take(self._node)
-        self.overruns = self._node.overrun
+        frame = self._wire.recv(self._node)
+        self.overruns = self._node.overruns
         return frame
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Queue a frame of classic CAN. Raises can.CanOperationError when the queue is full or the end is shut down.
+        """Queue a frame of classic CAN without waiting `timeout` s; an error frame travels like a data frame.
 
-        An error frame that somebody sends, as tests do, travels like a data frame of its identifier.
+        Raises can.CanOperationError after shutdown or if the queue is full.
         """
         self._check_open()
-        self._wire.put(self._node, msg)
+        self._wire.enqueue(self._node, msg)
 
     def shutdown(self) -> None:
-        """Unplug it: what is on the wire is finished, what it has queued is gone; may be called twice."""
+        """Unplug the controller: a frame on the wire is finished, queued ones are lost. Repeated calls do nothing."""
         if self._open:
             self._open = False
-            self._wire.leave(self._node)
+            self._wire.unplug(self._node)
 
     def _check_open(self) -> None:
         if not self._open:

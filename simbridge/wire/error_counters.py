@@ -1,4 +1,4 @@
-"""A controller's error counters: how it withdraws from a wire that it disturbs (CAN specification 2.0, section 7)."""
+"""Error counters of a controller and its withdrawal from the bus (CAN specification 2.0, section 7)."""
 
 from enum import IntEnum
 
@@ -7,11 +7,11 @@ PASSIVE_LIMIT = 128
 BUS_OFF_LIMIT = 256
 _SEND_ERROR = 8
 _RECOVERED_RECEIVE = 119
-"""Where the receive counter goes on from after a frame that a passive receiver understood; 119 to 127 are allowed."""
+"""Receive count of a passive receiver after a good frame; 119 to 127 are allowed."""
 
 
 class ErrorState(IntEnum):
-    """How much of a say a controller still has. Compared by severity."""
+    """Error state of a controller, ordered by severity."""
 
     ACTIVE = 0
     WARNING = 1
@@ -27,12 +27,12 @@ class ErrorCounters:
         self.receive = 0
 
     def sent(self) -> None:
-        """A frame of its own was carried."""
+        """Count a carried own frame."""
         if self.transmit:
             self.transmit -= 1
 
     def received(self) -> None:
-        """A frame of another node was understood."""
+        """Count a received frame."""
         if self.receive >= PASSIVE_LIMIT:
             self.receive = _RECOVERED_RECEIVE
         elif self.receive:
@@ -44,23 +44,23 @@ class ErrorCounters:
             self.transmit += _SEND_ERROR
 
     def receive_failed(self) -> None:
-        """A frame of another node was destroyed."""
+        """Count a destroyed frame of another node."""
         if self.receive < BUS_OFF_LIMIT - 1:  # a counter of eight bits
             self.receive += 1
 
     @property
     def transmit_state(self) -> ErrorState:
-        """State by the transmit counter."""
+        """Return the state by the transmit counter."""
         return ErrorState.BUS_OFF if self.transmit >= BUS_OFF_LIMIT else _state(self.transmit)
 
     @property
     def receive_state(self) -> ErrorState:
-        """State by the receive counter, which takes no node off the bus."""
+        """Return the state by the receive counter, which never leads to bus-off."""
         return _state(self.receive)
 
     @property
     def state(self) -> ErrorState:
-        """The graver of both."""
+        """Return the more severe of both states."""
         if not (self.transmit or self.receive):
             return ErrorState.ACTIVE
         return max(self.transmit_state, self.receive_state)

@@ -1,4 +1,4 @@
-"""Messages of the state of one's own controller, laid out as Linux delivers them (linux/can/error.h)."""
+"""Error frames with the state of the own controller, laid out as in linux/can/error.h."""
 
 import can
 
@@ -8,7 +8,7 @@ CLASS_CONTROLLER = 0x004
 CLASS_BUS_OFF = 0x040
 CLASS_RESTARTED = 0x100
 CLASS_COUNTERS = 0x200
-"""Bits of the identifier; the last: bytes 6 and 7 hold the counters."""
+"""Identifier bits; with CLASS_COUNTERS, bytes 6 and 7 hold the counters."""
 
 _ACTIVE_AGAIN = 0x40
 _TRANSMIT_BITS = {ErrorState.ACTIVE: _ACTIVE_AGAIN, ErrorState.WARNING: 0x08, ErrorState.PASSIVE: 0x20}
@@ -17,7 +17,7 @@ _RECEIVE_BITS = {ErrorState.ACTIVE: _ACTIVE_AGAIN, ErrorState.WARNING: 0x04, Err
 
 
 def state_frame(counters: ErrorCounters, time_s: float) -> can.Message:
-    """The controller's state has changed to what these counters say."""
+    """Return the frame that reports the state of these counters; `time_s` in s."""
     by_transmit, by_receive = counters.transmit_state, counters.receive_state
     if by_transmit is ErrorState.BUS_OFF:
         return _error_frame(CLASS_BUS_OFF, 0, counters, time_s)
@@ -28,7 +28,7 @@ def state_frame(counters: ErrorCounters, time_s: float) -> can.Message:
 
 
 def restarted_frame(counters: ErrorCounters, time_s: float) -> can.Message:
-    """The controller was started anew after bus-off."""
+    """Return the frame that reports a restart after bus-off; `time_s` in s."""
     return _error_frame(CLASS_RESTARTED, 0, counters, time_s)
 
 

@@ -1,4 +1,4 @@
-"""Schema of `config/wires/*.yaml`: how fast the wire between robot and notebook is, and what goes wrong on it."""
+"""Schema of `config/wires/*.yaml`: speed and faults of the wire between robot and notebook."""
 
 from enum import StrEnum
 from typing import Annotated, Self
@@ -12,46 +12,47 @@ Seconds = Annotated[float, Field(ge=0, le=3600)]
 
 
 class SendingOrder(StrEnum):
-    """Which of its frames a node offers to the wire first."""
+    """Order in which a node offers its frames."""
 
     FIFO = "fifo"
-    """As it was told, which is what SocketCAN does."""
+    """Order of sending, as in SocketCAN."""
     IDENTIFIER = "identifier"
-    """The best identifier first."""
+    """Lowest identifier first."""
     MAILBOX = "mailbox"
-    """The best identifier first, one frame of each: a newer one takes the place of one that waits, as in the message
-    objects of the robot's controllers."""
+    """Lowest identifier first, one frame of each: a newer one replaces a waiting one, as in the message objects of the
+    robot's controllers.
+    """
 
 
 class NodeSettings(Settings):
-    """One CAN controller with its queue."""
+    """CAN controller with its transmit queue."""
 
     order: SendingOrder
     queue_frames: Annotated[int, Field(ge=1, le=4096)]
     restart_s: Seconds | None
-    """From bus-off to a new start, Linux's restart-ms; None: it stays off until it is opened anew."""
+    """Time from bus-off to the restart (Linux: restart-ms); None: bus-off until it is reopened."""
 
 
 class LossSettings(Settings):
-    """A frame is carried but a receiver misses it: its buffer was overrun. Drawn for each receiver."""
+    """Loss of carried frames at a receiver, such as a buffer overrun; drawn per receiver."""
 
     share: Share
-    """Of all frames that `shares_by_id` does not name."""
+    """Loss probability of identifiers that `shares_by_id` does not list."""
     shares_by_id: tuple[tuple[Annotated[int, Field(ge=0, le=0x7FF)], Share], ...]
-    """Pairs of a standard identifier and its share."""
+    """Pairs of a standard identifier and its loss probability."""
 
 
 class NoiseSettings(Settings):
-    """What destroys frames on their way, so that their sender repeats them."""
+    """Noise that destroys frames, so that their sender repeats them."""
 
     destroyed_share: Share
-    """Of all transmissions, at any time."""
+    """Probability that a transmission is destroyed."""
     bursts_s: tuple[tuple[Seconds, Seconds], ...]
-    """Beginnings and ends of noise in which no transmission survives, in time of the wire."""
+    """Begin and end of each fixed burst, in which no transmission survives, in the wire's time."""
     burst_gap_s: Seconds
-    """Mean time from one burst of chance to the next, both exponential; 0: there are none."""
+    """Mean time between random bursts, exponentially distributed; 0: none."""
     burst_length_s: Seconds
-    """Mean length of a burst of chance."""
+    """Mean length of a random burst, exponentially distributed."""
 
     @model_validator(mode="after")
     def _bursts_go_forward(self) -> Self:
@@ -62,12 +63,12 @@ class NoiseSettings(Settings):
 
 
 class WireSettings(Settings):
-    """The wire, and the controllers at its two ends."""
+    """Wire with the controllers at its two ends."""
 
     name: str
     bit_rate_bit_s: Annotated[int, Field(ge=1000, le=1_000_000_000)]
     notebook_phase_s: Annotated[float, Field(ge=0, lt=1)]
-    """In simulated time: how long after the robot's cycle began the notebook's tick looks at the bus."""
+    """Simulated time from the begin of the robot's cycle to the notebook's tick."""
     robot: NodeSettings
     notebook: NodeSettings
     loss: LossSettings
@@ -75,5 +76,5 @@ class WireSettings(Settings):
 
 
 def load_wire(name_or_path: str) -> WireSettings:
-    """Settings of a shipped wire by name, or of a file by path. Raises hal.settings.SettingsError."""
+    """Return the settings of a wire by name or path. Raises hal.settings.SettingsError."""
     return load_settings(find_config("wires", name_or_path), WireSettings)

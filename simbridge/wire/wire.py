@@ -1,4 +1,4 @@
-"""The wire: one frame at a time, by arbitration, bit for bit as long as a real one takes."""
+"""CAN wire with arbitration and bit-exact transmission times."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,48 +13,48 @@ from simbridge.wire.node import Queued, WireNode
 from simbridge.wire.settings import NodeSettings, WireSettings
 
 ERROR_FRAME_BITS = 20
-"""Error flag of six bits, the flags of others that answer it, six at most, and the delimiter of eight."""
+"""Error flag of six bits, up to six of the other nodes' flags, and the delimiter of eight."""
 SUSPEND_BITS = 8
-"""An error-passive sender lets others go first for so long after its frame."""
+"""Pause of an error-passive sender after its frame."""
 RECOVERY_BITS = 128 * 11
-"""Recessive bits that a node waits for after bus-off before it takes part again."""
+"""Recessive bits after bus-off before a node participates again."""
 _NS_PER_S = 1_000_000_000
 _FAR_NS = 1 << 62
 
 
 @dataclass(frozen=True, slots=True)
 class _Transmission:
-    """What is on the wire now; more than one sender only while they send the same bits."""
+    """Transmission on the wire; several senders as long as their bits agree."""
 
     senders: tuple[tuple[WireNode, Queued], ...]
     others: tuple[WireNode, ...]
-    """Who follows it: acknowledges it and takes it."""
+    """Nodes that acknowledge and receive the frame."""
     start_ns: int
     end_ns: int
     destroyed: bool
     unacknowledged: bool
-    """Destroyed for want of anybody who acknowledges it."""
+    """True if the transmission fails for lack of an acknowledgement."""
 
 
 @dataclass(slots=True)
 class WireCounts:
-    """What became of the transmissions so far."""
+    """Counts of transmissions."""
 
     carried: int = 0
     destroyed: int = 0
-    missed: int = 0
-    """Carried frames that a receiver missed, counted for each."""
+    dropped: int = 0
+    """Drops of carried frames, counted per receiver."""
     busy_ns: int = 0
-    """Time in which the wire was taken, interframe space included."""
+    """Time in which the wire was busy, interframe space included."""
 
 
 class Wire:
-    """Carries frames between its nodes. Its time goes on by `advance` alone, or follows a clock. Thread safe.
+    """Wire between nodes; its time advances only by `advance`, or follows a clock. Thread-safe.
 
-    A frame begins when the wire is free, the best of what the nodes offer then, and nothing interrupts it. Everybody
-    else gets it at the end of its last bit, with that time as its stamp, and its sender gets it back as a confirmation.
-    A frame that is destroyed, by noise or because two senders of one identifier disagree, is followed by an error frame
-    and sent again; the error counters follow, up to bus-off. The same seed and calls give the same run.
+    Once the wire is free, the best of the queued frames starts, and nothing interrupts it. At the end of its last bit
+    the other nodes receive it with that timestamp, and its sender gets it back as a confirmation. A frame destroyed by
+    noise or by two disagreeing senders of one identifier is followed by an error frame and repeated; the error counters
+    follow, up to bus-off. Equal seeds and calls give equal runs.
     """
 
     def __init__(self, settings: WireSettings, seed: int) -> None:
@@ -71,64 +71,64 @@ class Wire:
         self._clock_ahead_s = 0.0
 
     def join(self, settings: NodeSettings) -> WireNode:
-        """A new controller on the wire, which hears what begins from now on."""
+        """Return a new controller on the wire; it receives frames that start from now on."""
         with self._lock:
-            self._follow_clock()
+            self._sync_clock()
             node = WireNode(settings, self._now_ns)
             self._nodes.append(node)
             return node
 
-    def leave(self, node: WireNode) -> None:
-        """Unplug a controller: what it has on the wire is finished, what it has queued is gone with it."""
+    def unplug(self, node: WireNode) -> None:
+        """Unplug a controller: its frame on the wire is finished, its queued ones are lost."""
         with self._lock:
-            self._follow_clock()
-            node.leaving = True
+            self._sync_clock()
+            node.unplugged = True
             node.queue.clear()
-            self._forget_gone()
+            self._remove_unplugged()
 
-    def put(self, node: WireNode, frame: can.Message) -> None:
-        """Queue a copy of a frame. Raises can.CanOperationError when the node's queue is full."""
+    def enqueue(self, node: WireNode, frame: can.Message) -> None:
+        """Queue a copy of a frame. Raises can.CanOperationError if the node's queue is full."""
         with self._lock:
-            self._follow_clock()
-            node.put(frame.__deepcopy__(None))
+            self._sync_clock()
+            node.enqueue(frame.__deepcopy__(None))
 
-    def take(self, node: WireNode) -> can.Message | None:
-        """The frame that waits longest for this node's reader; None: there is none."""
+    def recv(self, node: WireNode) -> can.Message | None:
+        """Return the oldest received frame of this node, or None."""
         with self._lock:
-            self._follow_clock()
-            return node.heard.popleft() if node.heard else None
+            self._sync_clock()
+            return node.received.popleft() if node.received else None
 
     def set_id_filter(self, node: WireNode, frame_ids: frozenset[int]) -> None:
-        """Keep only frames with these standard identifiers, and error frames, for this node's reader."""
+        """Accept only these standard identifiers and error frames for this node."""
         with self._lock:
-            self._follow_clock()
+            self._sync_clock()
             node.set_id_filter(frame_ids)
 
     def now_s(self) -> float:
-        """The present on the clock that stamps the frames."""
+        """Return the time in s of the clock that stamps the frames."""
         with self._lock:
-            self._follow_clock()
+            self._sync_clock()
             return self._now_ns / _NS_PER_S
 
     def advance(self, to_s: float) -> None:
-        """Let time go on, to no earlier than the present. Of no use while the wire follows a clock."""
+        """Advance the time to `to_s`, never backwards. Without effect while the wire follows a clock."""
         with self._lock:
             self._advance(round(to_s * _NS_PER_S))
 
     def follow(self, clock: Callable[[], float] | None) -> None:
-        """Go on from the present as this clock of seconds does; None: stand still until `advance`."""
+        """Advance with this clock of seconds from now on; None stops the time until `advance`."""
         with self._lock:
-            self._follow_clock()
+            self._sync_clock()
             self._clock = clock
             if clock is not None:
                 self._clock_ahead_s = clock() - self._now_ns / _NS_PER_S
 
-    def _follow_clock(self) -> None:
+    def _sync_clock(self) -> None:
         if self._clock is not None:
             self._advance(round((self._clock() - self._clock_ahead_s) * _NS_PER_S))
 
     def _advance(self, to_ns: int) -> None:
-        """Carry all that ends by then. What could begin at that very moment waits: others may still join in."""
+        """Carry all frames that end by then; none starts at that very moment, because other nodes may join in."""
         while True:
             on_the_wire = self._transmission
             if on_the_wire is not None:
@@ -151,7 +151,7 @@ class Wire:
         self._now_ns = max(self._now_ns, to_ns)
 
     def _next_start_ns(self) -> int:
-        # Whatever is queued could not begin before the present, or it would have.
+        # A queued frame that could have started earlier would have.
         waits_ns = [node.waits_until_ns for node in self._nodes if node.queue]
         return max(self._now_ns, self._free_ns, min(waits_ns)) if waits_ns else _FAR_NS
 
@@ -160,7 +160,7 @@ class Wire:
         return min(off, key=lambda node: node.restarts_at_ns or 0) if off else None
 
     def _begin(self, start_ns: int) -> _Transmission:
-        """Arbitration, and what will become of the frame that wins it."""
+        """Arbitrate and return the transmission with its fate."""
         rivals = [node for node in self._nodes if node.queue and node.waits_until_ns <= start_ns]
         best = min([node.queue[0].key for node in rivals])
         senders = tuple((node, node.queue.pop(0)) for node in rivals if node.queue[0].key == best)
@@ -168,22 +168,24 @@ class Wire:
         end_ns = start_ns + self._ns(first.bits)
         sending = [node for node, _ in senders]
         others = tuple(
-            node for node in self._nodes if not node.off and node.hears_from_ns <= start_ns and node not in sending
+            node
+            for node in self._nodes
+            if not node.is_bus_off and node.receives_from_ns <= start_ns and node not in sending
         )
-        wrong_bit = self._wrong_bit(start_ns, end_ns, [queued.frame for _, queued in senders])
-        unacknowledged = wrong_bit is None and not others
+        error_bit = self._first_error_bit(start_ns, end_ns, [queued.frame for _, queued in senders])
+        unacknowledged = error_bit is None and not others
         if unacknowledged:
-            wrong_bit = bits_before_ack(first.bits)
-        if wrong_bit is not None:
-            end_ns = start_ns + self._ns(wrong_bit + 1 + ERROR_FRAME_BITS)
-        return _Transmission(senders, others, start_ns, end_ns, wrong_bit is not None, unacknowledged)
+            error_bit = bits_before_ack(first.bits)
+        if error_bit is not None:
+            end_ns = start_ns + self._ns(error_bit + 1 + ERROR_FRAME_BITS)
+        return _Transmission(senders, others, start_ns, end_ns, error_bit is not None, unacknowledged)
 
-    def _wrong_bit(self, start_ns: int, end_ns: int, frames: list[can.Message]) -> int | None:
-        """The first bit that noise hits, or that two senders of one identifier see differently; None: there is none."""
+    def _first_error_bit(self, start_ns: int, end_ns: int, frames: list[can.Message]) -> int | None:
+        """Return the first bit hit by noise or on which senders disagree; None if there is none."""
         wrong: list[int] = []
-        strike_ns = self._disturbance.corrupted_at_ns(start_ns, end_ns)
-        if strike_ns is not None:
-            wrong.append(int((strike_ns - start_ns) / self._ns_per_bit))
+        hit_ns = self._disturbance.corrupted_at_ns(start_ns, end_ns)
+        if hit_ns is not None:
+            wrong.append(int((hit_ns - start_ns) / self._ns_per_bit))
         for other in frames[1:]:
             differs_at = bits_to_difference(frames[0], other)
             if differs_at is not None:
@@ -191,43 +193,43 @@ class Wire:
         return min(wrong) if wrong else None
 
     def _finish(self, done: _Transmission) -> None:
-        """Deliver it or have it sent again; the counters of everybody who took part follow."""
+        """Deliver the frame or requeue it, and update the counters of all participants."""
         self._free_ns = done.end_ns + self._ns(INTERFRAME_BITS)
         self.counts.busy_ns += self._free_ns - done.start_ns
         if done.destroyed:
             self.counts.destroyed += 1
             for node, queued in done.senders:
                 node.counters.send_failed(unacknowledged=done.unacknowledged)
-                node.put_back(queued)
+                node.requeue(queued)
             for node in done.others:
                 node.counters.receive_failed()
-                node.note_state(done.end_ns)
+                node.update_state(done.end_ns)
         else:
             self._deliver(done)
         for node, _ in done.senders:
-            node.note_state(done.end_ns)
+            node.update_state(done.end_ns)
             if node.state is ErrorState.PASSIVE:
                 node.waits_until_ns = self._free_ns + self._ns(SUSPEND_BITS)
-            if node.leaving:
-                self._forget_gone()
+            if node.unplugged:
+                self._remove_unplugged()
 
     def _deliver(self, done: _Transmission) -> None:
         frame, time_s = done.senders[0][1].frame, done.end_ns / _NS_PER_S
         self.counts.carried += 1
         for node, queued in done.senders:
             node.counters.sent()
-            node.hear(queued.frame, time_s, own=True)
+            node.deliver(queued.frame, time_s, own=True)
         for node in done.others:
             node.counters.received()
-            node.note_state(done.end_ns)
+            node.update_state(done.end_ns)
             if self._loss.drops(frame):
-                self.counts.missed += 1
+                self.counts.dropped += 1
             else:
-                node.hear(frame, time_s, own=False)
+                node.deliver(frame, time_s, own=False)
 
-    def _forget_gone(self) -> None:
+    def _remove_unplugged(self) -> None:
         sending = [] if self._transmission is None else [node for node, _ in self._transmission.senders]
-        self._nodes = [node for node in self._nodes if not node.leaving or node in sending]
+        self._nodes = [node for node in self._nodes if not node.unplugged or node in sending]
 
     def _ns(self, bits: int) -> int:
         return round(bits * self._ns_per_bit)

@@ -1,1 +1,1 @@
-"""New worlds by the seed: rooms and streets that nobody has seen."""
+"""Generator of worlds from seeds."""

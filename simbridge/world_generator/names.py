@@ -1,4 +1,4 @@
-"""Generated worlds by their names, such as `rooms-17`."""
+"""Generated worlds by name, such as `rooms-17`."""
 
 import re
 
@@ -7,12 +7,12 @@ from simbridge.world_generator.streets import streets
 from simbridge.world_settings import WorldSettings
 
 GENERATED = "rooms-N or streets-N with any whole number N up to 9 digits, such as rooms-17"
-"""The names there are, for people."""
+"""Valid names, for messages."""
 _NAME = re.compile(r"(rooms|streets)-(0|[1-9]\d{0,8})", re.ASCII)
 
 
 def generated(name: str) -> WorldSettings | None:
-    """The world of this name, always the same one; None when the name is not one of a generated world."""
+    """Return the world of this name, always the same; None if it is no name of a generated world."""
     match = _NAME.fullmatch(name)
     if match is None:
         return None

@@ -1,4 +1,4 @@
-"""A room under construction: what is put in stays only if the robot still gets everywhere."""
+"""Room under construction; an addition stays only if the robot can still drive everywhere."""
 
 import math
 from itertools import combinations, pairwise
@@ -10,33 +10,33 @@ from simbridge.obstacle_settings import PolygonObstacleSettings, WallSettings
 from simbridge.world_generator.drivable import FOLLOWING_M, is_drivable
 
 _SHORTEST_WALL_M = 0.3
-"""Shorter ones fall between two sensors."""
+"""Least wall length; shorter ones fall between two sensors."""
 _ISLAND_M = 1.2
-"""From an island to all else: a robot 0.2 m from its wall, 0.33 m wide, sees 0.6 m far, and nearer ones lure it off."""
+"""Least distance from an island to other walls; a follower 0.2 m from its wall sees 0.6 m far and would switch over."""
 _LEAST_SEEN = 0.75
-"""Share of a wall or table that must stand free; the rest may be in the wall that it leans against."""
+"""Least free fraction of a wall or table; the rest may be inside the wall that it leans on."""
 
 
 class RoomPlan:
-    """Outline, walls and tables so far."""
+    """Outline, walls and tables of a room."""
 
     def __init__(self, width_m: float, height_m: float) -> None:
         self.width_m, self.height_m = width_m, height_m
         self.corners: tuple[Point, ...] = ((0.0, 0.0), (width_m, 0.0), (width_m, height_m), (0.0, height_m), (0.0, 0.0))
-        """Of the outline, counter-clockwise, the first repeated."""
+        """Corners of the outline, counter-clockwise, the first repeated."""
         self.walls: list[WallSettings] = []
         self.tables: list[PolygonObstacleSettings] = []
 
     @property
     def floor(self) -> shapely.Polygon:
-        """Where nothing stands; islands are holes. Chinks behind what leans against a wall are left out."""
+        """Return the free area with islands as holes, without chinks behind leaning walls."""
         corners = [*(wall.corners for wall in self.walls), *(table.corners for table in self.tables)]
         shapes = [shapely.Polygon(each) for each in corners]
         pieces = polygons_of(shapely.Polygon(self.corners).difference(shapely.union_all(shapes)))
         return max(pieces, key=lambda piece: float(piece.area))
 
     def cut(self, corners: tuple[Point, ...]) -> bool:
-        """Take a part away from the outline; False when that cannot be."""
+        """Cut a polygon off the outline if possible; return whether it was."""
         left = shapely.Polygon(self.corners).difference(shapely.Polygon(corners))
         if not isinstance(left, shapely.Polygon) or left.interiors:
             return False
@@ -54,21 +54,21 @@ class RoomPlan:
         return True
 
     def stand(self, wall: WallSettings) -> bool:
-        """Put a wall in; False when it would stand in the way, or mostly in another."""
+        """Add a wall unless it blocks the way or lies mostly inside another; return whether it was added."""
         if not self._is_free(wall.corners):
             return False
         self.walls.append(wall)
         return True
 
     def lay(self, table: PolygonObstacleSettings) -> bool:
-        """Put a table in; False when it would stand in the way, or mostly in a wall."""
+        """Add a table unless it blocks the way or lies mostly inside a wall; return whether it was added."""
         if not self._is_free(table.corners):
             return False
         self.tables.append(table)
         return True
 
     def edges(self, least_m: float) -> list[tuple[Point, Point]]:
-        """Faces of the outline that are so long or longer."""
+        """Return the outline's faces of at least this length."""
         return [(a, b) for a, b in edges_of(self.corners[:-1]) if math.dist(a, b) >= least_m]
 
     def _is_free(self, corners: tuple[Point, ...]) -> bool:

@@ -1,4 +1,4 @@
-"""Rooms for wall followers and fleers: corners of both kinds, slanted walls, a switchback, tables, a moved wall."""
+"""Random rooms: convex and concave corners, slanted walls, a spur wall, tables, a displaced wall."""
 
 import math
 
@@ -15,7 +15,7 @@ _TRIES = 40
 
 
 def room(seed: int) -> WorldSettings:
-    """The room of a seed: an outline with corners of both kinds, and a wall whose free end is a switchback."""
+    """Return the room of a seed, with convex and concave corners and a spur wall to turn back at."""
     name = f"rooms-{seed}"
     attempt = 0
     while True:
@@ -38,7 +38,7 @@ def room(seed: int) -> WorldSettings:
 
 
 def _furnish(plan: RoomPlan, rng: SeededRandom) -> bool:
-    """Cut corners, put walls and tables in; False when chance left the room too plain."""
+    """Cut the outline, add walls and tables; return False if the room is too plain."""
     cuts = 0
     wanted = _LEAST_CUTS + rng.integer(3)
     for _ in range(_TRIES):
@@ -59,7 +59,7 @@ def _furnish(plan: RoomPlan, rng: SeededRandom) -> bool:
 
 
 def _cut(plan: RoomPlan, rng: SeededRandom) -> tuple[Point, ...]:
-    """A corner or a piece of a side, as a box or slanted."""
+    """Return a rectangular or slanted polygon at a corner or a side."""
     side = rng.integer(4)
     side_m = plan.width_m if side % 2 == 0 else plan.height_m
     long_m, deep_m = rng.length_m(0.5, 1.4), rng.length_m(0.3, 1.1)
@@ -81,7 +81,7 @@ def _cut(plan: RoomPlan, rng: SeededRandom) -> tuple[Point, ...]:
 
 
 def _from_side(plan: RoomPlan, side: int, along_m: float, in_m: float) -> Point:
-    """A place so far along a side, counter-clockwise from below, and so far into the room."""
+    """Return the point at a distance along a side, counter-clockwise from below, and at a depth into the room."""
     return (
         (along_m, in_m),
         (plan.width_m - in_m, along_m),
@@ -91,12 +91,12 @@ def _from_side(plan: RoomPlan, side: int, along_m: float, in_m: float) -> Point:
 
 
 def _spur_wall(plan: RoomPlan, rng: SeededRandom) -> WallSettings:
-    """A wall that reaches from the outline into the room; round its free end the robot turns back."""
+    """Return a spur wall from the outline into the room."""
     return _leaning(plan, rng, "tongue", rng.length_m(0.8, 1.8))
 
 
 def _moved_wall(plan: RoomPlan, rng: SeededRandom) -> WallSettings:
-    """A wall that somebody moved to where it leans against another, or off it into the room."""
+    """Return a wall that leans on another, or one shifted off it into the room."""
     wall = _leaning(plan, rng, "moved-wall", rng.length_m(0.5, 1.2))
     if rng.chance(0.5):
         return wall
@@ -117,7 +117,7 @@ def _leaning(plan: RoomPlan, rng: SeededRandom, name: str, length_m: float) -> W
 
 
 def _table(plan: RoomPlan, rng: SeededRandom, name: str) -> PolygonObstacleSettings:
-    """A box against a wall, or anywhere."""
+    """Return a box at a wall or anywhere."""
     long_m, deep_m = rng.length_m(0.4, 1.0), rng.length_m(0.4, 0.8)
     if rng.chance(0.6):
         edge = rng.choice(plan.edges(0.8))

@@ -1,4 +1,4 @@
-"""Start poses with the wall on the left, as the shipped rooms have them."""
+"""Start poses with the wall on the left."""
 
 import math
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ from simbridge.world_generator.drivable import TURNING_M
 from simbridge.world_settings import StartPoseSettings
 
 _HALF_SEEN_M = 0.24
-"""Half of the wall that the four sensors of a side look at, 0.14 m, and the corners at its ends."""
+"""Half of the wall segment seen by the four sensors of a side, 0.14 m, and its corners."""
 _FARTHEST_M = 0.43
-"""From the wall to the robot's centre: its sensors are 0.165 m nearer."""
+"""Distance from the wall to the robot's centre; its sensors are 0.165 m nearer."""
 _APART_M = 0.45
 
 
 def starts_along_walls(room: shapely.Polygon, rng: SeededRandom) -> tuple[StartPoseSettings, ...]:
-    """Poses along the outer wall of a room, clockwise, each where the robot can turn; none where no wall is long."""
+    """Return clockwise poses along the outer wall with room to turn; none if no wall is long enough."""
     clear = room.buffer(-TURNING_M)
     starts: list[StartPoseSettings] = []
     for a, b in _clockwise(room):

@@ -1,4 +1,4 @@
-"""Streets between blocks, like Manhattan world's: other widths, other numbers, and squares where a block is missing."""
+"""Random street grids with varying widths and numbers of blocks, and squares in place of missing blocks."""
 
 from itertools import accumulate, chain, product
 
@@ -8,28 +8,28 @@ from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_settings import StartPoseSettings, StreetSettings, WorldSettings
 
 _NARROWEST_M, _WIDEST_M = 0.7, 1.1
-"""In narrower ones the robot cannot turn with 6 cm to spare; in wider ones it loses the blocks' corners from sight."""
+"""Street widths. In narrower ones the robot cannot turn with 6 cm to spare; in wider ones it loses the corners."""
 
 Block = tuple[int, int]
-"""Column from the left and row from below."""
+"""Column from the left, row from below."""
 
 
 def streets(seed: int) -> WorldSettings:
-    """The street grid of a seed: 3 to 5 streets each way, those at the border included."""
+    """Return the street grid of a seed: 3 to 5 streets per direction, including those at the border."""
     name = f"streets-{seed}"
     rng = SeededRandom(name)
     columns, rows = _Axis(2 + rng.integer(3), rng), _Axis(2 + rng.integer(3), rng)
     blocks = list(product(range(columns.blocks), range(rows.blocks)))
-    # Not at the corners of the grid, where two streets at the border would go with the block.
+    # Corner blocks stay: without one, two streets at the border would vanish.
     inner = [block for block in blocks if 0 < block[0] < columns.blocks - 1 or 0 < block[1] < rows.blocks - 1]
     for _ in range(rng.integer(2 + len(inner) // 4) if inner else 0):
         inner.remove(missing := rng.choice(inner))
         blocks.remove(missing)
     width_m, height_m = columns.length_m, rows.length_m
     built = set(blocks)
-    stretches = [
-        *_stretches(built, columns, rows, upright=True),
-        *_stretches({(row, column) for column, row in built}, rows, columns, upright=False),
+    sections = [
+        *_sections(built, columns, rows, upright=True),
+        *_sections({(row, column) for column, row in built}, rows, columns, upright=False),
     ]
     return WorldSettings(
         name=name,
@@ -48,18 +48,18 @@ def streets(seed: int) -> WorldSettings:
             )
             for column, row in blocks
         ),
-        streets=_joined(stretches),
-        start_poses=tuple(_start(each, rng) for each in stretches),
+        streets=_joined(sections),
+        start_poses=tuple(_start(each, rng) for each in sections),
     )
 
 
 class _Axis:
-    """Widths along one axis: a street, a block, a street, and so on, and a street at last."""
+    """Widths along one axis: alternating streets and blocks, with streets at both ends."""
 
     def __init__(self, blocks: int, rng: SeededRandom) -> None:
         self.blocks = blocks
         self.widths_m = [rng.length_m(_NARROWEST_M, _WIDEST_M) for _ in range(blocks + 1)]
-        """Of the streets."""
+        """Widths of the streets."""
         block_widths_m = [rng.length_m(0.6, 1.3) for _ in range(blocks)]
         both = chain.from_iterable(zip(self.widths_m, [*block_widths_m, 0.0], strict=True))
         self._edges_m = [0.0, *(round(edge_m, 2) for edge_m in accumulate(both))]
@@ -78,10 +78,10 @@ class _Axis:
         return round((self._edges_m[2 * street] + self._edges_m[2 * street + 1]) / 2, 3)
 
 
-def _stretches(
+def _sections(
     built: frozenset[Block] | set[Block], across: _Axis, along: _Axis, *, upright: bool
 ) -> list[StreetSettings]:
-    """Streets from one junction to the next that have all their blocks beside them."""
+    """Return the street sections between junctions that have blocks on both sides."""
 
     def place(across_m: float, along_m: float) -> Point:
         return (across_m, along_m) if upright else (along_m, across_m)
@@ -94,14 +94,14 @@ def _stretches(
         )
         for street in range(across.blocks + 1)
         for k in range(along.blocks)
-        if all((beside, k) in built for beside in (street - 1, street) if 0 <= beside < across.blocks)
+        if all((block, k) in built for block in (street - 1, street) if 0 <= block < across.blocks)
     ]
 
 
-def _joined(stretches: list[StreetSettings]) -> tuple[StreetSettings, ...]:
-    """The same with stretches that go on straight as one street, so that streets meet at junctions only."""
+def _joined(sections: list[StreetSettings]) -> tuple[StreetSettings, ...]:
+    """Return the sections merged to straight streets, so that streets meet at junctions only."""
     joined: list[StreetSettings] = []
-    for each in stretches:
+    for each in sections:
         if joined and joined[-1].to_m == each.from_m and _is_upright(joined[-1]) == _is_upright(each):
             each = joined.pop().model_copy(update={"to_m": each.to_m})
         joined.append(each)
@@ -113,7 +113,7 @@ def _is_upright(street: StreetSettings) -> bool:
 
 
 def _start(street: StreetSettings, rng: SeededRandom) -> StartPoseSettings:
-    """Halfway between two junctions, one way or the other."""
+    """Return a start pose halfway between two junctions, in one of both directions."""
     (ax, ay), (bx, by) = street.from_m, street.to_m
     heading_deg = rng.choice((90.0, -90.0)) if _is_upright(street) else rng.choice((0.0, 180.0))
     return StartPoseSettings(x_m=round((ax + bx) / 2, 3), y_m=round((ay + by) / 2, 3), heading_deg=heading_deg)
