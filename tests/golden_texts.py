@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, standing
+from tests.texts import complaints, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -34,6 +34,10 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "reports": {
         "complaints of fault drill and soak": complaints.complaints,
         "checks of a soak": complaints.soak_checks,
+    },
+    "studies": {
+        "targets": verdicts.targets,
+        "results": verdicts.results,
     },
     "log": {
         "standing": standing.in_log,

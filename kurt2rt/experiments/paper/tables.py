@@ -12,6 +12,7 @@ from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary, 
 from kurt2rt.experiments.paper.verdict import verdicts
 from kurt2rt.experiments.report import quartiles
 from kurt2rt.experiments.shown.sheet import Sheet
+from kurt2rt.experiments.shown.verdict_text import cells_of, result_text
 
 _SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
@@ -45,10 +46,7 @@ def asked_sheet(summaries: Sequence[Summary], title: str, not_judged_because: Se
     return Sheet(
         _sentence(title),
         ("task", "what", "asked", "came", "verdict"),
-        tuple(
-            (label, verdict.what, verdict.asked, verdict.came, "not judged" if not_judged_because else verdict.word)
-            for label, verdict in found
-        ),
+        tuple((label, *cells_of(verdict), result_text(verdict, not_judged_because)) for label, verdict in found),
         words=5,
         note=" ".join(["Not judged.", *not_judged_because]) if not_judged_because else note,
     )

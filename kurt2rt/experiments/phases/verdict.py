@@ -1,4 +1,4 @@
-"""What was asked, and what came."""
+"""Verdicts on the phases of a task."""
 
 import math
 from collections.abc import Iterator
@@ -10,30 +10,30 @@ from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.summary import Paired, collisions_of, paired, worlds_of
 from kurt2rt.experiments.report import label_of
 from kurt2rt.experiments.shown.intervals import Rate, fall_of, rate_of
-from kurt2rt.experiments.shown.verdict import Verdict
+from kurt2rt.experiments.shown.verdict import Target, Values, Verdict
 
 _HOUR_S = 3600.0
 
 
 def verdicts(study: Study) -> Iterator[Verdict]:
-    """All that is asked of the task."""
+    """Yield the verdict on each target of the task."""
     phases = phases_of(study.programme.task)
     asked = phases.asked
     rewards, alone = study.stages[REWARDS], study.stages[CRITIC_ALONE]
-    yield from _repaired("repaired by phase 3", rewards, asked.repaired_by_rewards)
+    yield from _repaired(Target.REPAIRED_BY_REWARDS, rewards, asked.repaired_by_rewards)
     if asked.repaired_by_rewards and phases.signals.most_blame:
         most = max(stage.teaching.blame for stage in rewards if stage.teaching is not None)
         limit = phases.signals.most_blame
-        yield Verdict("blame in phase 3, most of all robots", f"at most {limit}", f"{most}", most <= limit)
-    yield from _repaired("repaired by the critic alone", alone, asked.repaired_by_critic)
+        yield Verdict(Target.NEGATIVE_REWARDS, {"limit": limit, "most": most}, most <= limit)
+    yield from _repaired(Target.REPAIRED_BY_CRITIC, alone, asked.repaired_by_critic)
     if asked.collisions_fall_by:
         before, after = (collisions_of(_exams(stages)).value for stages in (study.stages[CORRUPTED], alone))
         pairs = [[collisions_of(robot.exams).value for robot in stages] for stages in (study.stages[CORRUPTED], alone)]
         fall = fall_of(*pairs)
+        interval = {"fall": fall.value, "low": fall.low, "high": fall.high}
         yield Verdict(
-            "collisions fall by the critic alone",
-            f"by {asked.collisions_fall_by:.0%}",
-            f"by {fall.value:.0%} ({fall.low:.0%} to {fall.high:.0%}), {before:.2f} to {after:.2f} in 10 min",
+            Target.FEWER_COLLISIONS,
+            {"share": asked.collisions_fall_by, **interval, "before": before, "after": after},
             fall.value >= asked.collisions_fall_by,
         )
     if asked.intact_not_worse:
@@ -41,12 +41,9 @@ def verdicts(study: Study) -> Iterator[Verdict]:
             yield _not_worse(each, asked.not_worse_margin)
     if asked.interventions_below_per_hour:
         rate, limit_h = interventions(study), asked.interventions_below_per_hour
-        yield Verdict(
-            "interventions an hour after phase 5",
-            f"below {limit_h:g}",
-            f"{rate.value:.2f} ({rate.low:.2f} to {rate.high:.2f}); {robots_of_the_long_run(study)}",
-            rate.value < limit_h,
-        )
+        interval = {"rate": rate.value, "low": rate.low, "high": rate.high}
+        values: Values = {"limit": limit_h, **interval, "robots": robots_of_the_long_run(study)}
+        yield Verdict(Target.INTERVENTIONS, values, rate.value < limit_h)
 
 
 def interventions(study: Study, stage: str = LONG_RUN) -> Rate:
@@ -62,30 +59,26 @@ def robots_of_the_long_run(study: Study) -> str:
     return f"{len(taught)} robots of {minutes} min each, of which the worst had {max(t.interventions for t in taught)}"
 
 
-def _repaired(what: str, stages: tuple[StageOutcome, ...], asked: tuple[AskedShare, ...]) -> Iterator[Verdict]:
+def _repaired(target: Target, stages: tuple[StageOutcome, ...], asked: tuple[AskedShare, ...]) -> Iterator[Verdict]:
     share_in = {each.world: each.share for each in asked}
     for world in worlds_of(stages):
         if world.world in share_in:
             # 0.9 of 20 is 18, also where the product is a trifle more.
             needed = math.ceil(share_in[world.world] * world.robots - 1e-9)
-            yield Verdict(
-                f"{what}, {world.label}",
-                f"at least {needed} of {world.robots}",
-                f"{world.succeeded} of {world.robots}",
-                world.succeeded >= needed,
-            )
+            robots = {"robots": world.robots, "succeeded": world.succeeded}
+            values: Values = {"world": world.label, "needed": needed, **robots}
+            yield Verdict(target, values, world.succeeded >= needed)
 
 
 def _not_worse(pair: Paired, margin: float) -> Verdict:
-    what = f"an intact set in phase 5, {label_of(pair.world)}: {pair.measure.name}"
-    came = f"{pair.before:.3f} -> {pair.after:.3f}"
-    if pair.measure.clean is None:
-        asked = f"worse by at most {margin:.0%}, at the bad end of 95 %"
-        came += f", at worst {abs(pair.worst_change):.1%} {'worse' if pair.worst_change > 0 else 'better'}"
-    else:
-        asked = "no robot that was clean is not after"
-        came += f"; robots no longer clean: {pair.no_longer_clean}"
-    return Verdict(what, asked, came, pair.not_worse(margin))
+    values: dict[str, float | str] = {"world": label_of(pair.world), "measure": pair.measure.name}
+    values |= {"before": pair.before, "after": pair.after}
+    if pair.measure.clean is not None:
+        values["no_longer_clean"] = pair.no_longer_clean
+        return Verdict(Target.INTACT_STAYS_CLEAN, values, pair.not_worse(margin))
+    direction = "worse" if pair.worst_change > 0 else "better"
+    values |= {"margin": margin, "worst": abs(pair.worst_change), "direction": direction}
+    return Verdict(Target.INTACT_NOT_WORSE, values, pair.not_worse(margin))
 
 
 def _exams(stages: tuple[StageOutcome, ...]) -> list[ExamOutcome]:

@@ -8,6 +8,8 @@ from kurt2rt.experiments.route.study import Study, Summary
 from kurt2rt.experiments.route.verdict import verdicts
 from kurt2rt.experiments.shown.judging import reasons_of_robots
 from kurt2rt.experiments.shown.sheet import Sheet
+from kurt2rt.experiments.shown.verdict import Result, Verdict
+from kurt2rt.experiments.shown.verdict_text import cells_of, result_text
 from kurt2rt.tasks.settings import TaskSettings
 
 _LAYERS = (
@@ -31,8 +33,8 @@ def asked_sheet(study: Study) -> Sheet:
     """Each number that was asked for beside what came."""
     reasons = list(reasons_of_robots(study.programme.seeds))
     found = list(_verdicts(study))
-    met = sum(row[-1] == "met" for row in found)
-    rows = tuple((*row[:-1], "not judged") for row in found) if reasons else tuple(found)
+    met = sum(verdict.result is Result.MET for _, verdict in found)
+    rows = tuple((route, *cells_of(verdict), result_text(verdict, reasons)) for route, verdict in found)
     return Sheet(
         "What was asked",
         ("route", "what", "asked", "came", "verdict"),
@@ -160,10 +162,10 @@ def _of_robot(outcome: RouteOutcome) -> tuple[str, ...]:
     )
 
 
-def _verdicts(study: Study) -> Iterator[tuple[str, ...]]:
+def _verdicts(study: Study) -> Iterator[tuple[str, Verdict]]:
     for each in study.summaries:
         for verdict in verdicts(each, study.programme.task.paper):
-            yield _heading(each)[1], verdict.what, verdict.asked, verdict.came, verdict.word
+            yield _heading(each)[1], verdict
 
 
 def _heading(summary: Summary) -> tuple[str, str]:

@@ -1,11 +1,11 @@
-"""What was asked, and what came."""
+"""Verdicts on routes of one length."""
 
 import math
 from collections.abc import Iterator
 
 from kurt2rt.experiments.route.study import Summary
 from kurt2rt.experiments.route.variants import TAUGHT
-from kurt2rt.experiments.shown.verdict import Verdict
+from kurt2rt.experiments.shown.verdict import Target, Verdict
 from kurt2rt.tasks.settings import PaperResult
 
 WITHOUT_ERROR = {8: 18 / 20, 12: 18 / 20, 16: 15 / 20}
@@ -15,21 +15,19 @@ RIGHT = 0.99
 
 
 def verdicts(summary: Summary, paper: PaperResult) -> Iterator[Verdict]:
-    """All that is asked of routes of one length; of controls, and of other lengths, nothing is."""
+    """Yield the verdicts on routes of one length; none for controls and for other lengths."""
     experiment = summary.experiment
     share = WITHOUT_ERROR.get(experiment.decisions)
     if experiment.variant != TAUGHT or share is None:
         return
     most = max(each.mid_rlas for each in summary.outcomes)
-    yield Verdict("mid-level RLAs, most", f"at most {paper.rlas}", str(most), most <= paper.rlas)
+    yield Verdict(Target.MID_RLAS, {"limit": paper.rlas, "most": most}, most <= paper.rlas)
     longest_s = max(each.teaching_s for each in summary.outcomes)
-    yield Verdict("teaching", f"at most {paper.teaching_s:g} s", f"{longest_s:g} s", longest_s <= paper.teaching_s)
+    teaching = {"limit_s": paper.teaching_s, "teaching_s": longest_s}
+    yield Verdict(Target.TEACHING, teaching, longest_s <= paper.teaching_s)
     right = summary.right.value
-    yield Verdict("decisions right", f"at least {RIGHT:.0%}", f"{right:.2%} of {summary.junctions}", right >= RIGHT)
+    decisions = {"share": RIGHT, "right": right, "junctions": summary.junctions}
+    yield Verdict(Target.DECISIONS_RIGHT, decisions, right >= RIGHT)
     needed = math.ceil(share * summary.robots - 1e-9)
-    yield Verdict(
-        "drives without an error",
-        f"at least {needed} of {summary.robots}",
-        f"{summary.without_error} of {summary.robots}",
-        summary.without_error >= needed,
-    )
+    drives = {"needed": needed, "robots": summary.robots, "without_error": summary.without_error}
+    yield Verdict(Target.WITHOUT_ERROR, drives, summary.without_error >= needed)

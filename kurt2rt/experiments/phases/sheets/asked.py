@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.verdict import verdicts
 from kurt2rt.experiments.shown.sheet import Sheet
+from kurt2rt.experiments.shown.verdict_text import cells_of, result_text
 
 
 def asked_sheet(study: Study, reasons: Sequence[str]) -> Sheet:
@@ -15,7 +16,7 @@ def asked_sheet(study: Study, reasons: Sequence[str]) -> Sheet:
     return Sheet(
         "What was asked",
         ("what", "asked", "came", "verdict"),
-        tuple((each.what, each.asked, each.came, "not judged" if reasons else each.word) for each in found),
+        tuple((*cells_of(each), result_text(each, reasons)) for each in found),
         words=4,
         note=" ".join(["Not judged.", *reasons]) if reasons else note,
     )
