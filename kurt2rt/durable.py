@@ -1,6 +1,7 @@
 """What has to survive a power cut."""
 
 import os
+import shutil
 from pathlib import Path
 
 
@@ -30,6 +31,12 @@ def make_folder(folder: Path) -> None:
     """Make a folder that outlives a power cut, as `make_private_folder` does. Raises OSError."""
     for each in make_private_folder(folder):
         sync_folder(each.parent)
+
+
+def free_bytes(path: Path) -> int:
+    """Return the bytes that may still be written on the disk of `path`, which may not exist yet. Raises OSError."""
+    path = path.absolute()
+    return shutil.disk_usage(next(each for each in (path, *path.parents) if each.exists())).free
 
 
 def sync_file(path: Path) -> None:

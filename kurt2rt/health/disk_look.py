@@ -1,6 +1,5 @@
 """How much room is on the disks, looked at where a disk that hangs holds up nothing else."""
 
-import os
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -8,6 +7,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from kurt2rt.durable import free_bytes
 from kurt2rt.health.report import DiskSpace
 
 _EVERY_S = 1.0
@@ -30,10 +30,10 @@ class DiskLook:
     def look(self, of: str) -> None:
         """Ask one disk, and wait for it; what the thread does again and again."""
         try:
-            found = os.statvfs(_existing(self._folders[of]))
+            found = free_bytes(self._folders[of])
         except OSError:
             return  # told as a disk that does not answer
-        self._said[of] = self._now(), found.f_bavail * found.f_frsize
+        self._said[of] = self._now(), found
 
     def spaces(self) -> tuple[DiskSpace, ...]:
         """What is free as far as it is known; never waits."""
@@ -58,11 +58,3 @@ class DiskLook:
         self.look(of)
         while not self._ending.wait(_EVERY_S):
             self.look(of)
-
-
-def _existing(folder: Path) -> Path:
-    """The folder, or the one that it will be made in."""
-    folder = folder.absolute()
-    while not folder.exists() and folder != folder.parent:
-        folder = folder.parent
-    return folder

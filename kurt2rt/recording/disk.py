@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Protocol
 
-from kurt2rt.durable import make_private_folder
+from kurt2rt.durable import free_bytes, make_private_folder, sync_folder
 
 _NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS})
 """What a disk answers that knows no locks: of a folder, NFS says EBADF."""
@@ -76,7 +76,7 @@ class RealDisk:
         make_private_folder(path.parent)
         path.mkdir()
         try:
-            _keep_names_in(path.parent)
+            sync_folder(path.parent)
         except OSError:
             with contextlib.suppress(OSError):  # the first error is the one to tell
                 path.rmdir()
@@ -86,7 +86,7 @@ class RealDisk:
         """Make a file whose name outlives a power cut. Raises OSError."""
         file = RealFile(path)
         try:
-            _keep_names_in(path.parent)
+            sync_folder(path.parent)
         except OSError:
             file.close()
             raise
@@ -94,9 +94,7 @@ class RealDisk:
 
     def free_bytes(self, path: Path) -> int:
         """That may still be written where `path` is, or is going to be. Raises OSError."""
-        there = next((each for each in (path, *path.absolute().parents) if each.exists()), path)
-        room = os.statvfs(there)
-        return room.f_bavail * room.f_frsize
+        return free_bytes(path)
 
 
 class HeldFolder:
@@ -137,11 +135,3 @@ def is_held(folder: Path) -> bool:
 
 def _open_folder(folder: Path) -> int:
     return os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-
-
-def _keep_names_in(folder: Path) -> None:
-    descriptor = _open_folder(folder)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
