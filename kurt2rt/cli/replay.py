@@ -53,9 +53,9 @@ def replay(
 ) -> None:
     """Replay a recorded run, and compare every decision and all that is known, bit for bit.
 
-    SensorReadings, commands and the settings of the run go through the same tick again;
-    nothing moves, and no knowledge file is touched. Ends with 1, and says what
-    came out otherwise first, where something did.
+    Sensor readings, commands and settings of the run go through the same tick
+    again; nothing moves, and no knowledge file is touched. Ends with 1 and tells
+    the first difference, if there is one.
 
     With --with other knowledge decides on the very same situations, without
     acting: what would an undo, or another afternoon of teaching, have changed?
