@@ -15,7 +15,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.channel import Channel, Surroundings, open_channel
 from kurt2rt.channel.requests import BOOT_BYTES, FASTEST
-from kurt2rt.channel.simulation import Simulation
+from kurt2rt.channel.simulation import RunControl
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.ending import Ending
@@ -70,7 +70,7 @@ class Openness:
     """Called when the channel is open."""
     exam: LiveExam | None = None
     """Of a robot that is simulated in this program."""
-    simulation: Simulation | None = None
+    simulation: RunControl | None = None
     """The same."""
     world: HeldWorld | None = None
     """The same, where robot time may pass faster than real time."""

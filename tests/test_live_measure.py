@@ -17,7 +17,7 @@ POST = Post("post", 2.0, 2.0, 0.1)
 
 
 class FromAbove:
-    """As much of an simulation as a measure looks at."""
+    """As much of a simulation as a measure looks at."""
 
     def __init__(self, *posts: Post) -> None:
         self.pose = Pose(2.5, 2.0, 0.0)

@@ -15,7 +15,7 @@ from kurt2rt.channel.off_tick_requests import Copies
 from kurt2rt.channel.reception import Reception
 from kurt2rt.channel.reply import done, refusal, unsaved
 from kurt2rt.channel.requests import BOOT_BYTES, VERSION
-from kurt2rt.channel.simulation import Measure, Simulation
+from kurt2rt.channel.simulation import Measure, RunControl
 from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping, Telling
@@ -51,7 +51,7 @@ class Surroundings:
     """The newest report; None before the first."""
     exam: Callable[[], ExamStanding] | None = None
     """Status of the exam; None if the robot is not examined."""
-    simulation: Simulation | None = None
+    simulation: RunControl | None = None
     """None where the simulator is not in this program."""
     speed: Speed | None = None
     """None where robot time is real time."""

@@ -29,7 +29,7 @@ from kurt2rt.channel.requests import (
     UploadRequest,
     WorldRequest,
 )
-from kurt2rt.channel.simulation import Measure, Simulation, TeacherNow
+from kurt2rt.channel.simulation import Measure, RunControl, TeacherNow
 from kurt2rt.channel.simulation_view import SIMULATION
 from kurt2rt.channel.upload import Upload
 from kurt2rt.file_part import FilePart
@@ -95,7 +95,7 @@ class OffTickRequests:
         copies: Copies,
         ground: SimulatedWorld | None,
         exam: Callable[[], ExamStanding] | None,
-        simulation: Simulation | None,
+        simulation: RunControl | None,
         speed: Speed | None,
         measure: Measure | None,
     ) -> None:

@@ -31,7 +31,7 @@ from kurt2rt.channel.requests import (
     TakeRequest,
     WhyRequest,
 )
-from kurt2rt.channel.simulation import Measure, Simulation
+from kurt2rt.channel.simulation import Measure, RunControl
 from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.plain import plain_of_facts
 from kurt2rt.health.plain import plain_of
@@ -85,7 +85,7 @@ class Reception:
         health: Callable[[], HealthReport | None] = lambda: None,
         why: Callable[[], DecisionFacts | None] = lambda: None,
         exam: Callable[[], ExamStanding] | None = None,
-        simulation: Simulation | None = None,
+        simulation: RunControl | None = None,
         speed: Speed | None = None,
         measure: Measure | None = None,
     ) -> None:

@@ -27,7 +27,7 @@ class Measure(Protocol):
         ...
 
 
-class Simulation(Protocol):
+class RunControl(Protocol):
     """The runs of a robot that is simulated in its own program. Each has one world, one task, one knowledge file."""
 
     async def view(self) -> SimulationView:

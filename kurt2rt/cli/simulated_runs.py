@@ -69,7 +69,7 @@ class SimulatedRun:
 
 
 class SimulatedRuns:
-    """The present run, and the next one once a teacher wants one (kurt2rt.channel.simulation.Simulation)."""
+    """The present run, and the next one once a teacher wants one (kurt2rt.channel.simulation.RunControl)."""
 
     def __init__(
         self,

@@ -109,7 +109,7 @@ class Shelf:
 
 
 class Runs:
-    """Runs of a simulated robot that are only noted (kurt2rt.channel.simulation.Simulation)."""
+    """Runs of a simulated robot that are only noted (kurt2rt.channel.simulation.RunControl)."""
 
     def __init__(self) -> None:
         self.prepared: list[tuple[object, ...]] = []

@@ -107,4 +107,4 @@ class CourseSettings(KindSettings):
 
     @abstractmethod
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
-        """The course in an simulation. Raises hal.settings.SettingsError as `require` does."""
+        """The course in a simulation. Raises hal.settings.SettingsError as `require` does."""
