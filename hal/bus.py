@@ -1,4 +1,4 @@
-"""The CAN bus: opening, draining without waiting, and the two ports through which frames go out."""
+"""CAN bus: opening, draining without waiting, and the two ports through which frames are sent."""
 
 import contextlib
 from collections.abc import Callable, Iterable
@@ -17,8 +17,7 @@ CONTROL_ID = 0x01
 """Identifier of the only frame that moves the robot (docs/the-robot.md#messages)."""
 
 _DRAIN_FRAMES = 4096
-"""The most that one drain takes: a bus that is full for 10 ms carries about 200, so whatever waited when it began is
-taken by it."""
+"""Most frames of one drain. A full bus carries about 200 in 10 ms, so one drain takes all that waited at its start."""
 
 _CAN_INTERFACE = "280"
 """ARPHRD_CAN, the kind of network interface that Linux shows for CAN."""
@@ -26,7 +25,7 @@ _INTERFACE_UP = 0x1
 _LONGEST_FRAME = 8
 
 _CONTROLLER_RESET = 0x040 | 0x100
-"""Error frames (linux/can/error.h): bus-off, restarted. What waited in the controller then is never confirmed."""
+"""Error frames (linux/can/error.h): bus-off, restarted. Frames in the controller are then never confirmed."""
 
 _KINDS = "virtual:NAME, shared:NAME or a SocketCAN interface such as can0"
 
@@ -38,47 +37,47 @@ class BusError(UserError, OSError):
 class CanBus:
     """One end of a CAN bus. CONTROL goes out through a port that exists once, all else through telemetry ports."""
 
-    def __init__(self, name: str, open_end: Callable[[str], CanInterface]) -> None:
-        """`open_end` opens the bus of that name, now and whenever it was lost. Raises what that raises: BusError."""
+    def __init__(self, name: str, open_interface: Callable[[str], CanInterface]) -> None:
+        """Open the bus by `open_interface`, which opens it again after it was lost. Raises BusError."""
         self.name = name
         self.tap: Tap | None = None
-        """Looks on, also after `reopen`; None: nobody."""
-        self._open_bus_end = open_end
-        self._bus_end: CanInterface | None = open_end(name)
-        self._heard: frozenset[int] | None = None
+        """Observer of all frames, also after `reopen`; None for no observer."""
+        self._open_can_interface = open_interface
+        self._can_interface: CanInterface | None = open_interface(name)
+        self._filter_ids: frozenset[int] | None = None
         self._control_taken = False
-        # Two counters, for each has one writer: the watchdog's thread may send while the loop drains.
+        # Two counters, because each has one writer: the watchdog's thread may send while the loop drains.
         self._sent_controls = self._carried_controls = 0
-        # While frames that nobody waits for any more may still be carried: the first one that was sent after them.
+        # True while forgotten frames may still be carried; then the payload of the first frame sent after them.
         self._forgotten = False
         self._first_since: bytes | None = None
         self._overruns = 0
 
     @property
     def overruns(self) -> int:
-        """Frames since the bus was opened that were gone before the last drain, which came too late for them."""
+        """Frames lost since the bus was opened because they were not drained in time."""
         return self._overruns
 
     def set_id_filter(self, frame_ids: Iterable[int]) -> None:
-        """From now on hear only frames with these standard identifiers, also after `reopen`. Raises BusError.
+        """Receive only frames with these standard identifiers, also after `reopen`. Raises BusError.
 
-        CONTROL and error frames are always heard: whoever is on this bus has to know of them.
+        CONTROL and error frames always pass: another sender of CONTROL must not go unnoticed.
         """
-        heard = frozenset(frame_ids) | {CONTROL_ID}
-        self._filter(self._usable(), heard)
-        self._heard = heard
+        ids = frozenset(frame_ids) | {CONTROL_ID}
+        self._filter(self._usable(), ids)
+        self._filter_ids = ids
 
     def now_s(self) -> float | None:
-        """The present on the clock of the frames' time stamps; None where they count as just arrived. BusError."""
+        """Return the present on the clock of the time stamps; None if frames count as just arrived. Raises BusError."""
         return self._usable().now_s()
 
     def drain(self) -> list[can.Message]:
-        """Every frame of others that waits, oldest first, without blocking. Raises BusError when the bus is gone."""
-        end = self._usable()
+        """Return the waiting frames of other senders, oldest first, without blocking. Raises BusError."""
+        interface = self._usable()
         messages: list[can.Message] = []
         try:
             for _ in range(_DRAIN_FRAMES):
-                message = end.recv(0)
+                message = interface.recv(0)
                 if message is None:
                     break
                 if message.is_rx:
@@ -88,8 +87,8 @@ class CanBus:
                         self._forgotten = False
                 elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
                     self._note_carried(message)
-            if end.overruns != self._overruns:
-                self._overruns = end.overruns
+            if interface.overruns != self._overruns:
+                self._overruns = interface.overruns
                 self._carried_controls = self._sent_controls  # their confirmations may be among the lost
                 self._forgotten = False
         except (can.CanError, OSError, ValueError) as error:
@@ -97,51 +96,51 @@ class CanBus:
                 f"receiving failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power"
             ) from error
         if self.tap is not None and messages:
-            now_s = end.now_s()
+            now_s = interface.now_s()
             for message in messages:
                 self.tap.on_rx(message, 0.0 if now_s is None else max(0.0, now_s - message.timestamp))
         return messages
 
     def telemetry_port(self) -> "FramePort":
-        """A port for every frame except CONTROL."""
+        """Return a port for every frame except CONTROL."""
         return FramePort(self, is_control=False)
 
     def control_port(self) -> "FramePort":
-        """The port for CONTROL, for the guard alone. Raises BusError when it was taken before."""
+        """Return the port for CONTROL, for the guard alone. Raises BusError if it was taken before."""
         if self._control_taken:
             raise BusError("the CONTROL port is taken", where=f"bus {self.name}", do="one guard drives one robot")
         self._control_taken = True
         return FramePort(self, is_control=True)
 
     def reopen(self) -> None:
-        """Open the same bus anew after it was lost; ports stay valid. Raises BusError while it is still gone."""
+        """Open the bus again after it was lost; ports stay valid. Raises BusError while it is still lost."""
         self.shutdown()
-        end = self._open_bus_end(self.name)
+        interface = self._open_can_interface(self.name)
         try:
-            if self._heard is not None:
-                self._filter(end, self._heard)
+            if self._filter_ids is not None:
+                self._filter(interface, self._filter_ids)
         except BusError:
-            _close(end)
+            _close(interface)
             raise
-        self._bus_end = end
+        self._can_interface = interface
 
     def shutdown(self) -> None:
-        """Give the bus back; may be called twice."""
-        end, self._bus_end = self._bus_end, None
+        """Close the bus; may be called twice."""
+        interface, self._can_interface = self._can_interface, None
         self._carried_controls = self._sent_controls
         self._forgotten = False
         self._overruns = 0
-        if end is not None:
-            _close(end)
+        if interface is not None:
+            _close(interface)
 
     def _usable(self) -> CanInterface:
-        if self._bus_end is None:
+        if self._can_interface is None:
             raise BusError("is shut down", where=f"bus {self.name}", do="open it again")
-        return self._bus_end
+        return self._can_interface
 
-    def _filter(self, end: CanInterface, heard: frozenset[int]) -> None:
+    def _filter(self, interface: CanInterface, frame_ids: frozenset[int]) -> None:
         try:
-            end.set_id_filter(heard)
+            interface.set_id_filter(frame_ids)
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(f"takes no receive filter ({error})", where=f"bus {self.name}") from error
 
@@ -151,7 +150,7 @@ class CanBus:
         self._carried_controls = self._sent_controls
 
     def _note_carried(self, confirmed: can.Message) -> None:
-        """One own CONTROL has been carried; one that was forgotten confirms none of those that were sent since."""
+        """Count one own CONTROL as carried; a forgotten frame does not confirm a later one."""
         if self._forgotten:
             if bytes(confirmed.data) != self._first_since:
                 return
@@ -159,15 +158,15 @@ class CanBus:
         self._carried_controls = min(self._carried_controls + 1, self._sent_controls)
 
     def _send(self, frame: can.Message, *, is_control: bool) -> None:
-        end = self._usable()
-        awaited = is_control and end.receives_own_frames
+        interface = self._usable()
+        awaited = is_control and interface.receives_own_frames
         first_since = awaited and self._forgotten and self._first_since is None
         if first_since:
             self._first_since = bytes(frame.data)
         if awaited:
             self._sent_controls += 1  # before it is out, for it may be back at once
         try:
-            end.send(frame, timeout=0)
+            interface.send(frame, timeout=0)
         except (can.CanError, OSError, ValueError) as error:
             if awaited:
                 self._sent_controls -= 1
@@ -181,7 +180,7 @@ class CanBus:
 
 
 class FramePort:
-    """A way out to the bus that lets through either CONTROL alone or everything else."""
+    """Sender that carries either CONTROL alone or all other frames."""
 
     def __init__(self, bus: CanBus, *, is_control: bool) -> None:
         self._bus = bus
@@ -189,21 +188,21 @@ class FramePort:
 
     @property
     def unconfirmed(self) -> int:
-        """CONTROL frames that were sent and that the bus has not carried yet, as far as the last drain knows.
+        """Own CONTROL frames that the bus had not carried at the last drain.
 
-        Always 0 on a bus that does not confirm.
+        Always 0 on a bus whose ends do not receive their own frames.
         """
         return self._bus._sent_controls - self._bus._carried_controls
 
     def forget_unconfirmed(self) -> None:
-        """Count from none again: what was sent may have been lost without a word, and is then never confirmed.
+        """Count unconfirmed frames from 0 again, because frames that were lost silently are never confirmed.
 
-        It may as well be late. Then it must not pass for what is sent from now on, as far as their payloads differ.
+        A late frame must not confirm a newer one; their payloads tell them apart.
         """
         self._bus._forget_unconfirmed()
 
     def send(self, frame: can.Message) -> None:
-        """Send without waiting. Raises BusError when it cannot, ValueError for a frame this port does not carry."""
+        """Send without waiting. Raises BusError if it fails, ValueError for a frame that this port does not carry."""
         frame_id = frame.arbitration_id
         # Wider identifiers would lose their upper bits on the way out and could come out as CONTROL.
         if not 0 <= frame_id < (0x2000_0000 if frame.is_extended_id else 0x800):
@@ -222,10 +221,10 @@ def open_bus(spec: str) -> CanBus:
     `virtual:NAME` is within this process, `shared:NAME` among processes of this user on this machine, any other word is
     a SocketCAN interface such as can0.
     """
-    return CanBus(spec, _end_of)
+    return CanBus(spec, _interface_of)
 
 
-def _end_of(spec: str) -> CanInterface:
+def _interface_of(spec: str) -> CanInterface:
     kind, colon, name = spec.partition(":")
     if not colon:
         return _socketcan(spec)
@@ -265,6 +264,6 @@ def _socketcan(interface: str) -> SocketCanBus:
         ) from error
 
 
-def _close(end: CanInterface) -> None:
+def _close(interface: CanInterface) -> None:
     with contextlib.suppress(can.CanError, OSError):  # a bus that is gone cannot be closed any further
-        end.shutdown()
+        interface.shutdown()

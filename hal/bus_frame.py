@@ -1,4 +1,4 @@
-"""A classic CAN frame in the 16 bytes of Linux's `struct can_frame`: how buses outside this process carry it."""
+"""Classic CAN frames as the 16 bytes of Linux's `struct can_frame`, for buses outside this process."""
 
 import struct
 
@@ -16,7 +16,7 @@ _LONGEST = 8
 
 
 def pack_bus_frame(frame: can.Message) -> bytes:
-    """The 16 bytes of a frame. Raises ValueError for one that classic CAN does not have."""
+    """Return the 16 bytes of a frame. Raises ValueError for a frame that is not classic CAN."""
     length = frame.dlc if frame.is_remote_frame else len(frame.data)
     if length > _LONGEST or frame.is_fd:
         raise ValueError(f"frame 0x{frame.arbitration_id:X} is not of classic CAN: {length} bytes, FD {frame.is_fd}")
@@ -31,7 +31,7 @@ def pack_bus_frame(frame: can.Message) -> bytes:
 
 
 def frame_of(flagged_id: int, length: int, payload: bytes) -> can.Message:
-    """The frame of a record that BUS_FRAME unpacked, without time stamp and channel."""
+    """Return the frame of a record that BUS_FRAME unpacked, without time stamp and channel."""
     if not flagged_id & _FLAGS:
         return Frame(flagged_id & _STANDARD_ID, payload[:length])
     is_extended = bool(flagged_id & _EXTENDED)
@@ -47,7 +47,7 @@ def frame_of(flagged_id: int, length: int, payload: bytes) -> can.Message:
 
 
 def is_heard(frame: can.Message, heard: frozenset[int] | None) -> bool:
-    """Whether an end that listens to these standard identifiers (None: to all) gets a frame; error frames always."""
+    """Return whether a filter of standard identifiers (None: no filter) passes a frame; error frames always pass."""
     if heard is None or frame.is_error_frame:
         return True
     return frame.arbitration_id in heard and not frame.is_extended_id

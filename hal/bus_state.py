@@ -1,4 +1,4 @@
-"""What this machine's CAN controller says of itself: Linux's error frames (linux/can/error.h), read and counted."""
+"""State of this machine's CAN controller, from Linux's error frames (linux/can/error.h)."""
 
 from enum import StrEnum
 
@@ -6,7 +6,7 @@ import can
 
 
 class ControllerState(StrEnum):
-    """How far the controller still takes part in the bus, by the errors that it counted."""
+    """Error state of the controller, by the errors that it counted (ISO 11898-1)."""
 
     ACTIVE = "error-active"
     WARNING = "error-warning"
@@ -26,19 +26,19 @@ _KINDS = (
     (0x001, "not sent in time"),
     (0x002, "lost arbitration"),
 )
-_OVERFLOWS = "overflow"  # frames that the controller lost because nobody fetched them in time
+_OVERFLOWS = "overflow"  # frames that the controller lost because they were not fetched in time
 # Status of the controller, data[1] of class CONTROLLER: a bit for receiving and one for sending, ACTIVE for both.
 _OVERFLOW = 0x03
 _STATES = ((0x30, ControllerState.PASSIVE), (0x0C, ControllerState.WARNING), (0x40, ControllerState.ACTIVE))
 
 
 class BusState:
-    """The state of one bus, kept by its error frames. Junk in them changes nothing but the count."""
+    """State of one bus, from its error frames. An invalid error frame changes only the count."""
 
     def __init__(self, bus: str) -> None:
-        """`bus`: its name, for what is said about it."""
+        """Start error-active; `bus` is the name in messages."""
         self._bus = bus
-        # All kinds from the start: whoever shows them may do so from another thread.
+        # All kinds from the start, because another thread may iterate over them.
         self._kinds = {word: 0 for _, word in _KINDS} | {_OVERFLOWS: 0}
         self.error_frames = 0
         """Error frames so far."""
@@ -48,7 +48,7 @@ class BusState:
         self.receiving_errors = 0
 
     def note(self, frame: can.Message) -> None:
-        """Read one error frame; cheap, for a broken cable makes thousands in a second."""
+        """Read one error frame. Cheap, because a broken cable makes thousands a second."""
         classes = frame.arbitration_id
         self.error_frames += 1
         for bits, kind in _KINDS:
@@ -67,7 +67,7 @@ class BusState:
             self.controller = ControllerState.OFF
 
     def note_traffic(self) -> None:
-        """Frames flow: whatever was said before, the controller takes part in the bus."""
+        """Leave bus-off: received frames prove that the controller takes part in the bus."""
         if self.off:
             self.controller = ControllerState.ACTIVE
 
@@ -78,12 +78,12 @@ class BusState:
 
     @property
     def kinds(self) -> dict[str, int]:
-        """How many of the error frames were about what, in words; those that never came are left out."""
+        """Number of error frames by kind, without the kinds that never came."""
         return {kind: count for kind, count in self._kinds.items() if count}
 
     @property
     def trouble(self) -> str:
-        """What is wrong and what to do, in a line; empty while the controller is error-active."""
+        """Fault and remedy in one line; empty while the controller is error-active."""
         if self.controller is ControllerState.ACTIVE:
             return ""
         if self.off:

@@ -1,4 +1,4 @@
-"""What every kind of bus offers: one end of it, as python-can would, with a clock and a word about its own frames."""
+"""Interface of every kind of bus: one end, as in python-can, with a clock and confirmations of own frames."""
 
 from typing import Protocol
 
@@ -13,30 +13,30 @@ class CanInterface(Protocol):
     """
 
     receives_own_frames: bool
-    """True when an end hears its own frames, too (`is_rx` False), as soon as the bus has carried them."""
+    """True if an end also receives its own frames (`is_rx` False), as soon as the bus has carried them."""
 
     overruns: int
-    """Frames since it was opened that were gone before this end took them, for it was behind."""
+    """Frames lost since the end was opened because it read too late."""
 
     def now_s(self) -> float | None:
-        """The present on the clock that stamps the frames; None where they count as just arrived."""
+        """Return the present on the clock that stamps the frames; None if frames count as just arrived."""
         ...
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
-        """From now on deliver only frames with these standard identifiers, and error frames."""
+        """Deliver only frames with these standard identifiers, and error frames."""
         ...
 
     def recv(self, timeout: float | None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. It is called with 0.
+        """Return the oldest waiting frame, or None; called with `timeout` 0 seconds.
 
-        An end whose bus went away fails each time from then on, so that its silence is not taken for a quiet bus.
+        After the bus is lost every call raises, so silence is never taken for a quiet bus.
         """
         ...
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Put a frame on its way, whatever happened before. It is called with 0."""
+        """Send a frame, also after failures; called with `timeout` 0 seconds."""
         ...
 
     def shutdown(self) -> None:
-        """Give the bus back; may be called twice."""
+        """Close this end; may be called twice."""
         ...

@@ -1,4 +1,4 @@
-"""From the DBC file to frames and back: cantools reads the file once, then each message is packed by plain integers."""
+"""Codec between integers and frames, compiled from a DBC file that cantools reads once."""
 
 import struct
 from collections.abc import Mapping
@@ -18,18 +18,18 @@ _STRUCT_LETTERS = {8: "b", 16: "h", 32: "i", 64: "q"}
 
 
 class CodecError(ValueError):
-    """A CAN database cannot be used. The message is one line: file, message, what is wrong."""
+    """Unusable CAN database. The text is one line: file, message, what is wrong."""
 
 
 class InvalidFrameError(ValueError):
-    """A received frame cannot be what its identifier says."""
+    """Received frame that does not fit its identifier."""
 
 
 class MessageCodec:
-    """One plain (not multiplexed) message: raw integers in the order of `signals` to a frame and back."""
+    """Codec of one message without multiplexing: raw integers in the order of `signals` to a frame and back."""
 
     def __init__(self, message: Message) -> None:
-        """Compile a message of the database. Raises CodecError for what this bus does not have."""
+        """Compile a message of the database. Raises CodecError for little-endian and floating point signals."""
         signals = sorted(message.signals, key=_first_bit)
         for signal in signals:
             if signal.byte_order != "big_endian" or signal.conversion.is_float:
@@ -48,7 +48,7 @@ class MessageCodec:
         self._struct = _byte_aligned_struct(signals, message.length)
 
     def pack(self, *raw: int) -> Frame:
-        """Frame of the raw values. Raises ValueError that names message, signal, value and range."""
+        """Return the frame of raw values. Raises ValueError that names message, signal, value and range."""
         if self._struct is None:
             return Frame(self.frame_id, self._pack_bits(raw))
         try:
@@ -103,24 +103,24 @@ class Codec:
         self.by_id: Mapping[int, MessageCodec] = MappingProxyType({message.frame_id: message for message in messages})
 
     def message(self, name: str) -> MessageCodec:
-        """One message by its name in the database. Raises CodecError that lists the names."""
+        """Return a message by name. Raises CodecError that lists the names."""
         if name not in self._by_name:
             raise CodecError(f"{self._source}: no plain message {name}; there are: {', '.join(self._by_name)}")
         return self._by_name[name]
 
 
 def load_database(database: str = "kurt2.dbc") -> Database:
-    """A CAN database as cantools knows it: a file of config/can by name, or any file by path. Raises CodecError."""
+    """Load a CAN database of config/can by name, or a DBC file by path. Raises CodecError."""
     return _database_of(*_read(database))
 
 
 def load_codec(database: str = "kurt2.dbc") -> Codec:
-    """Codec of a database in config/can by name, or of any DBC file by path. Raises CodecError."""
+    """Load the codec of a database in config/can by name, or of a DBC file by path. Raises CodecError."""
     return _codec_of(database, *_read(database))
 
 
 def _read(database: str) -> tuple[Path, str]:
-    """The file and what is in it. Raises CodecError."""
+    """Return the path and the text of a database. Raises CodecError."""
     path = Path(database)
     if not path.is_file():
         path = CONFIG_DIR / "can" / database
@@ -139,13 +139,13 @@ def _database_of(path: Path, text: str) -> Database:
 
 @lru_cache(maxsize=4)
 def _codec_of(database: str, path: Path, text: str) -> Codec:
-    """Remembered by what is in the file, and never changed: each simulated robot needs it three times."""
+    """Compile a database, cached by its content: each simulated robot loads it three times."""
     messages = _database_of(path, text).messages
     return Codec(database, tuple(MessageCodec(message) for message in messages if not message.is_multiplexed()))
 
 
 def _first_bit(signal: Signal) -> int:
-    """Place of the most significant bit, counted from the front of the payload (DBC counts each byte from its end)."""
+    """Return the most significant bit, counted from the front of the payload (DBC counts each byte from its end)."""
     return 8 * (signal.start // 8) + 7 - signal.start % 8
 
 
@@ -156,7 +156,7 @@ def _raw_range(signal: Signal) -> tuple[int, int]:
 
 
 def _byte_aligned_struct(signals: list[Signal], length: int) -> struct.Struct | None:
-    """One struct for the whole payload, or None where a signal (24 bits, single bits) does not fit one."""
+    """Return one struct for the whole payload, or None if a signal (24 bits, single bits) does not fit one."""
     layout, at_bit = ">", 0
     for signal in signals:
         first = _first_bit(signal)

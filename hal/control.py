@@ -44,7 +44,7 @@ class Mode(IntEnum):
 
 
 class RawSide(NamedTuple):
-    """One side in RAW mode: drive from 0 to 1024 of 1024, its direction, and the brake."""
+    """One side in RAW mode: drive from 0 to 1024, direction and brake."""
 
     drive: int
     backward: bool = False
@@ -52,19 +52,19 @@ class RawSide(NamedTuple):
 
 
 class RawControl(NamedTuple):
-    """Open loop: what each motor gets."""
+    """Open-loop command of both motors."""
 
     left: RawSide
     right: RawSide
     mode: Mode = Mode.RAW
 
     def wheel_speeds(self, motors: MotorSettings) -> WheelSpeeds:
-        """No-load speeds in m/s of these drives by the robot's curve; 0 with the brake on."""
+        """Return the no-load speeds in m/s by the robot's curve; 0 with the brake on."""
         return WheelSpeeds(_raw_speed_m_s(self.left, motors), _raw_speed_m_s(self.right, motors))
 
 
 class SpeedControl(NamedTuple):
-    """Set points for the controller's speed loops: cm/s in SPEED_CM, per cent of full_speed_m_s in SPEED."""
+    """Set points of the controller's speed loops: cm/s in SPEED_CM, percent of full_speed_m_s in SPEED."""
 
     mode: Mode
     left: int
@@ -73,14 +73,14 @@ class SpeedControl(NamedTuple):
     keep: bool = True
 
     def wheel_speeds(self, motors: MotorSettings) -> WheelSpeeds:
-        """Set points in m/s."""
+        """Return the set points in m/s."""
         if self.mode == Mode.SPEED_CM:
             return WheelSpeeds(self.left / 100.0, self.right / 100.0)
         return WheelSpeeds(self.left * motors.full_speed_m_s / 100.0, self.right * motors.full_speed_m_s / 100.0)
 
 
 class SystemControl(NamedTuple):
-    """A system command; `angle_urad` belongs to UPDATE_ANGLE."""
+    """System command; `angle_urad` belongs to UPDATE_ANGLE."""
 
     mode: Mode
     angle_urad: int = 0
@@ -92,7 +92,7 @@ _BRAKE_BOTH = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
 
 def set_point(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings) -> RawControl | SpeedControl:
-    """What the frame can say of finite wheel speeds: truncated toward zero, per cent and drive at most full."""
+    """Return the set point of finite wheel speeds, truncated toward zero and limited to full percent or drive."""
     left_m_s, right_m_s = wheel_speeds
     if mode is SpeedMode.SPEED_CM:
         return SpeedControl(Mode.SPEED_CM, _truncated(left_m_s * 100.0), _truncated(right_m_s * 100.0))
@@ -104,7 +104,7 @@ def set_point(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings)
 
 
 def control_frame(control: Control) -> Frame:
-    """CONTROL frame of a control value. Raises ValueError when a number does not fit its field."""
+    """Return the CONTROL frame of a control value. Raises ValueError if a number does not fit its field."""
     try:
         return Frame(CONTROL_ID, _payload(control))
     except struct.error as error:
@@ -173,7 +173,7 @@ def _raw_side_of(flags: int, pwm: int) -> RawSide:
 
 
 def _raw_side(speed_m_s: float, motors: MotorSettings) -> RawSide:
-    """Inverse of the no-load curve: the least drive that gives the speed, interpolated, at most the curve's end."""
+    """Invert the no-load curve: return the least drive that gives the speed, interpolated, at most the curve's end."""
     speeds, drives = motors.raw_speed_m_s, motors.raw_drive
     wanted_m_s = min(abs(speed_m_s), speeds[-1])
     upper = bisect_left(speeds, wanted_m_s)

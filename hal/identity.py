@@ -1,9 +1,9 @@
-"""Which kind of robot is at the other end, as its first controller says in INFO_1 and its second in INFO_2."""
+"""Hardware ids, which the controllers send in INFO_1 and INFO_2."""
 
 SIMULATED_HARDWARE_ID = 0x5349
-"""Hardware id of simulated controllers, "SI" in ASCII: what the real ones say is not known, this they hardly do."""
+"""Hardware id of simulated controllers, "SI" in ASCII. The ids of real controllers are not published."""
 
 
 def hardware(hardware_id: int) -> str:
-    """A hardware id as a person reads it."""
+    """Return the text of a hardware id."""
     return f"hardware {hardware_id}" + (" (the simulated robot)" if hardware_id == SIMULATED_HARDWARE_ID else "")

@@ -1,4 +1,4 @@
-"""The bus within this process: `virtual:NAME`."""
+"""CAN bus within this process: `virtual:NAME`."""
 
 import time
 from queue import Empty, Full, SimpleQueue
@@ -19,7 +19,7 @@ class InProcessBus(VirtualBus):
 
     receives_own_frames = False
     overruns = 0
-    """None ever: the sender fails instead."""
+    """Always 0: the sender fails instead."""
 
     def __init__(self, name: str) -> None:
         """Join the bus of that name in this process."""
@@ -31,7 +31,7 @@ class InProcessBus(VirtualBus):
             self.queue = waiting  # type: ignore[assignment]
 
     def now_s(self) -> float | None:
-        """None: whatever waits has just arrived, so that a simulated run does not hang on the time of day."""
+        """Return None: waiting frames have just arrived, so a simulated run does not depend on the time of day."""
         return None
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -39,7 +39,7 @@ class InProcessBus(VirtualBus):
         self._heard = frame_ids
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. Raises can.CanOperationError after shutdown."""
+        """Return the oldest frame, or None after `timeout` seconds. Raises can.CanOperationError after shutdown."""
         if timeout != 0:
             return super().recv(timeout)
         self._check_if_open()
@@ -56,7 +56,7 @@ class InProcessBus(VirtualBus):
             return None
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Give all others a copy. Raises can.CanOperationError when one has too many waiting, and after shutdown."""
+        """Copy a frame to all others; `timeout` (s) is unused. Raises can.CanOperationError if one is full."""
         self._check_if_open()
         all_took_it = True
         sent_at_s = time.time()

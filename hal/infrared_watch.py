@@ -1,4 +1,4 @@
-"""Are the infra-red readings alive? A board that hangs may repeat itself, bit for bit, in frames that look fresh."""
+"""Detection of frozen infra-red readings: a board that hangs may repeat them bit for bit in fresh frames."""
 
 import math
 
@@ -6,40 +6,39 @@ _NAMES = {"ADC": "first", "BDC": "second"}
 
 
 class Board:
-    """One controller's distance channels, known by the first letters of their names (docs/the-robot.md#messages)."""
+    """Distance channels of one controller, by the first letters of their names (docs/the-robot.md#messages)."""
 
     __slots__ = ("letters", "still_s")
 
     def __init__(self, letters: str) -> None:
         self.letters = letters
         self.still_s = 0.0
-        """For how long the robot has driven since a distance channel changed."""
+        """Time in s that the robot has driven since a distance channel changed."""
 
     def __str__(self) -> str:
         return f"distance sensors of the {_NAMES[self.letters]} controller ({self.letters}*)"
 
 
 class InfraredWatch:
-    """Notices a board whose distance channels all stay the same for `frozen_infrared_s` in which the robot drives.
+    """Detector of a board whose distance channels all stay the same for `frozen_infrared_s` while the robot drives.
 
     Each real sensor measures about 26 times a second and flickers, also with nothing in view: eight of them do not
     repeat themselves for a second (docs/the-robot.md#noise-and-timing). A robot that stands may have a board that
-    hangs; but only a reading that changes shows that it lives, so that neither a stop in between nor a resume makes it
-    good for another second.
+    hangs. Only a changed reading shows that the board works: neither a stop nor a resume clears the time.
     """
 
     def __init__(self, channels: tuple[str, ...], frozen_infrared_s: float) -> None:
-        """`channels`: ADC00 and so on, those with a distance sensor."""
+        """Watch `channels`, such as ADC00, that have a distance sensor."""
         self._frozen_s = frozen_infrared_s
         self._looked_at_s = math.inf
         self._boards = {letters: Board(letters) for letters in sorted({channel[:3] for channel in channels})}
 
     def board_of(self, channel: str) -> Board:
-        """The board that a channel with a distance sensor belongs to; who reads it notes there that it changed."""
+        """Return the board of a channel; the reader of the channel resets `still_s` there after a change."""
         return self._boards[channel[:3]]
 
     def check_frozen(self, now_s: float, *, driving: bool) -> str:
-        """Which board is frozen, in a line; empty while all are alive."""
+        """Return one line about a frozen board; empty while all boards work. Time in s."""
         looked_at_s, self._looked_at_s = self._looked_at_s, now_s
         if not driving:
             return ""

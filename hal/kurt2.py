@@ -1,4 +1,4 @@
-"""The KURT2 on its CAN bus: frames become SensorReadings, and every set point goes through the guard."""
+"""KURT2 on its CAN bus: frames become SensorReadings, and every set point passes the guard."""
 
 import math
 import time
@@ -30,7 +30,7 @@ class _AnalogFrame:
     __slots__ = ("board", "codec", "last_payload", "places", "received_at_s")
 
     def __init__(self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board) -> None:
-        """`places`: of each distance channel its place in the frame and in SensorReadings.infrared_counts."""
+        """Set `places`: (place in the frame, place in SensorReadings.infrared_counts) of each distance channel."""
         self.codec = codec
         self.places = places
         self.board = board
@@ -49,7 +49,7 @@ class Kurt2:
         self._bus_state: Final = BusState(bus.name)
         self._guard: Final = Guard(settings, bus)
         self.watchdog: Final = Watchdog(self._guard, settings.guard.ticks_ceased_s, watchdog_clock)
-        """The second guard; whoever runs the robot in real time starts it. `drive` is its beat."""
+        """Watchdog, which the real-time loop starts. `drive` is its beat."""
         channels = tuple(sensor.channel for sensor in settings.infrared.sensors)
         self._infrared_watch: Final = InfraredWatch(channels, settings.guard.frozen_infrared_s)
         self._wheel_watch: Final = WheelWatch(settings)
@@ -189,8 +189,8 @@ class Kurt2:
     def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool, paused: bool) -> None:
         """Stop for what the newest senses show.
 
-        `bus_off`: it was off since the last ones, if only for a moment; `paused`: nobody looked for long, and nobody
-        drove, so what came meanwhile came all at once.
+        `bus_off`: the bus was off since the last ones, if only for a moment. `paused`: the loop neither sensed nor
+        drove for long, so the frames of the pause came at once.
         """
         senses = self._senses
         if bus_off or self._bus_state.off:
@@ -217,7 +217,7 @@ class Kurt2:
             self._guard.emergency_stop(reason)
 
     def _drain(self, now_s: float) -> tuple[list[can.Message], float | None]:
-        """What waits on the bus, and the present on the clock of its time stamps."""
+        """Return the waiting frames, and the present on the clock of their time stamps."""
         messages: list[can.Message] = []
         bus_now_s: float | None = None
         try:
@@ -236,7 +236,7 @@ class Kurt2:
         return messages, bus_now_s
 
     def _reopen(self, now_s: float) -> None:
-        """Only opening it anew shows that an adapter is back which was unplugged."""
+        """Open the bus again: only this shows that an unplugged adapter is back."""
         self._reopen_at_s = now_s + REOPEN_PERIOD_S
         try:
             self._bus.reopen()
@@ -247,13 +247,13 @@ class Kurt2:
             self._receive_trouble = ""
 
     def _forget_ages(self) -> None:
-        """The runtime's clock ran backwards: times kept from before would make old frames look new."""
+        """Forget arrival times after the clock ran backwards, because they would make old frames look new."""
         self._encoder_at_s = self._bumpers_at_s = -math.inf
         for analog in self._analog.values():
             analog.received_at_s = -math.inf
 
     def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> bool:
-        """Take over the frame's distance channels; True when one of them changed. Raises InvalidFrameError."""
+        """Store the frame's distance channels; return whether one changed. Raises InvalidFrameError."""
         raw = analog.codec.unpack(data)
         for at, _ in analog.places:
             # The C167 keeps the channel number in the upper bits (docs/the-robot.md#range-of-a-channel).
@@ -269,7 +269,7 @@ class Kurt2:
 
 
 def _analog_frames(channels: tuple[str, ...], codec: Codec, watch: InfraredWatch) -> dict[int, _AnalogFrame]:
-    """The frames that carry channels of the sensor table, by identifier; channel names are signal names."""
+    """Return the frames that carry channels of the sensor table, by identifier; channel names are signal names."""
     frames = {}
     for frame_id, message in codec.by_id.items():
         places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)

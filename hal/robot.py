@@ -1,4 +1,4 @@
-"""What the runtime knows of any robot: what it senses, what it can be told, and who answers for it."""
+"""Robot protocol: sensor readings, wheel speeds and the result of the guard."""
 
 from typing import NamedTuple, Protocol
 
@@ -6,7 +6,7 @@ from hal.guard_reason import GuardReason
 
 
 class WheelSpeeds(NamedTuple):
-    """Set points of the two sides in metres per second, forward positive.
+    """Set points of both sides in metres per second, forward positive.
 
     A named tuple, not a dataclass: several are made in every tick, and a frozen dataclass costs four times as much.
     """
@@ -22,7 +22,7 @@ STANDSTILL = WheelSpeeds(0.0, 0.0)
 
 
 class SensorReadings(NamedTuple):
-    """What the robot sensed, newest value of each channel, as seen at `time_s`."""
+    """Newest value of each sensor channel, as of `time_s`."""
 
     time_s: float
     """Time of the tick on the runtime's clock."""
@@ -42,7 +42,7 @@ class SensorReadings(NamedTuple):
 
 
 class GuardResult(NamedTuple):
-    """What the guard let through."""
+    """Set points that the guard applied, and its reasons."""
 
     wheel_speeds: WheelSpeeds
     """Set points that stand in the CONTROL frame of this tick."""
@@ -60,7 +60,7 @@ class Robot(Protocol):
         ...
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Ask for wheel speeds; what is safe goes out in this tick's CONTROL frame."""
+        """Request wheel speeds; the guard sends the safe part of them in this tick's CONTROL frame. Times in s."""
         ...
 
     def emergency_stop(self, reason: GuardReason) -> None:
@@ -72,5 +72,5 @@ class Robot(Protocol):
         ...
 
     def close(self) -> None:
-        """Stop the wheels and give the bus back."""
+        """Stop the wheels and close the bus."""
         ...

@@ -1,31 +1,31 @@
-"""What stands between a runtime and its robot, to look on or to change one thing."""
+"""Proxy between a runtime and its robot, to observe it or to change one method."""
 
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, Robot, SensorReadings, WheelSpeeds
 
 
 class RobotProxy:
-    """Passes all on to another robot (hal.robot.Robot), and is one itself. A subclass says what it does otherwise."""
+    """Robot that forwards all calls to another robot (hal.robot.Robot); a subclass overrides some."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
 
     def sense(self, now_s: float) -> SensorReadings:
-        """As the robot does."""
+        """Return the readings of the robot."""
         return self._robot.sense(now_s)
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """As the robot does."""
+        """Forward a request; speeds in m/s, times in s."""
         return self._robot.drive(wanted, decided_at_s, now_s)
 
     def emergency_stop(self, reason: GuardReason) -> None:
-        """As the robot does."""
+        """Stop the robot."""
         self._robot.emergency_stop(reason)
 
     def release(self) -> None:
-        """As the robot does."""
+        """Release the robot."""
         self._robot.release()
 
     def close(self) -> None:
-        """As the robot does."""
+        """Close the robot."""
         self._robot.close()

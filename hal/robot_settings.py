@@ -18,7 +18,7 @@ Coordinate = Annotated[float, Field(ge=-1, le=1)]
 
 
 class SpeedMode(StrEnum):
-    """How a set point is written into CONTROL; the numbers are those of the firmware."""
+    """Mode in which CONTROL carries set points; the numbers are the firmware's."""
 
     RAW = "RAW"
     SPEED = "SPEED"
@@ -26,7 +26,7 @@ class SpeedMode(StrEnum):
 
 
 class CanSettings(Settings):
-    """The bus that the robot's controller speaks."""
+    """Bus of the robot's controller."""
 
     database: str
     bit_rate_bit_s: Annotated[int, Field(gt=0, le=1_000_000)]
@@ -70,7 +70,7 @@ class MotorSettings(Settings):
 
 
 class GuardSettings(Settings):
-    """Limits that hold whatever was decided."""
+    """Limits of the guard, for every decision."""
 
     maximum_speed_m_s: MetresPerSecond
     acceleration_m_s2: MetresPerSecondSquared
@@ -153,7 +153,7 @@ class InfraredSettings(Settings):
         return self.plateau_counts - (self.fold_back_from_m - near) * self.fold_back_counts_per_m
 
     def distance_m(self, counts: float) -> float:
-        """Distance that a reading stands for, between near and far; a reading at the floor or below gives far_m."""
+        """Return the distance of a reading in counts, between near_m and far_m; far_m at the floor or below."""
         if counts <= self.floor_counts:
             return self.far_m
         return min(self.far_m, max(self.near_m, self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m))
@@ -174,7 +174,7 @@ class BumperSettings(Settings):
 
 
 class RobotSettings(Settings):
-    """One robot, whole."""
+    """All settings of one robot."""
 
     name: str
     can: CanSettings
@@ -195,5 +195,5 @@ class RobotSettings(Settings):
 
 
 def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
-    """Settings of a shipped robot by name, or of a file by path. Raises hal.settings.SettingsError."""
+    """Load the settings of a shipped robot by name, or of a file by path. Raises hal.settings.SettingsError."""
     return load_settings(Path(find_config("robots", name_or_path)), RobotSettings)

@@ -1,4 +1,4 @@
-"""The one loader of settings: a YAML file becomes a checked, frozen model, or one clear line says why not."""
+"""Loader of settings: a YAML file becomes a validated, frozen model, or an error of one line."""
 
 import hashlib
 import json
@@ -23,7 +23,7 @@ SHIPPED_DIR: Final = CONFIG_DIR
 
 
 class SettingsError(UserError, ValueError):
-    """A settings file cannot be used."""
+    """Unusable settings file."""
 
 
 class Settings(BaseModel):
@@ -36,10 +36,10 @@ SettingsT = TypeVar("SettingsT", bound=Settings)
 
 
 class _Strict(yaml.constructor.SafeConstructor):
-    """YAML keeps the last of two equal keys without a word; a settings file with two is a mistake."""
+    """Constructor that refuses two equal keys, of which YAML silently keeps the last."""
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
-        """As YAML does it, but a date of month 99 is named with its line."""
+        """Construct an object; name the line of an invalid date such as month 99."""
         try:
             return super().construct_object(node, deep)
         except ValueError as error:
@@ -62,11 +62,11 @@ _Strict.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _constru
 
 
 class _Loader(_Strict, yaml.SafeLoader):
-    """In Python."""
+    """Loader in Python."""
 
 
 class _QuickLoader(_Strict, getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
-    """By libyaml, where PyYAML has it, in a sixth of the time."""
+    """Loader of libyaml if PyYAML has it: takes a sixth of the time."""
 
 
 _MARKS, _MARKS_AT_MOST = "[{-?:", 5000
@@ -110,24 +110,24 @@ def _values_in(content: Any, known: dict[int, int]) -> int:
 
 @lru_cache(maxsize=64)
 def _as_json(text: str) -> str:
-    """What YAML says, remembered by its text: the same worlds, tasks and robots are read again and again.
+    """Return YAML as JSON, cached by its text, because the same worlds, tasks and robots are read often.
 
-    As JSON, which nobody who reads it can change for the next one.
+    Callers cannot change a cached text, as they could change a cached object.
     """
     return json.dumps(_loaded(text), default=str)
 
 
 FILES = "files"
-"""Where files are kept that are no settings."""
+"""Folder of the stored files that are no settings."""
 
-# Whoever builds a runtime anew as it once was does so in one call, and all loaders below it look here; passing a
-# folder through each of them would put it into fifty signatures for the sake of a replay.
+# A replay builds its runtime in one call, and all loaders below look here. A parameter would appear in fifty
+# signatures for the replay alone.
 _KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
 
 
 @contextmanager
 def settings_override(folder: Path) -> Iterator[None]:
-    """While it lasts, what was kept in `folder` is found, and nothing else.
+    """Find only the settings stored in `folder` while the context lasts.
 
     `find_config` finds it as `<kind>/<kept_name>`, `find_beside` as `files/<kept_name>`.
     """
@@ -139,9 +139,9 @@ def settings_override(folder: Path) -> Iterator[None]:
 
 
 def kept_name(name_or_path: str) -> str:
-    """File name under which a file is kept: the shipped one for settings, or one of its own for each path.
+    """Return the name of a stored file: the shipped one for settings, or a unique one for each path.
 
-    It leads out of no folder, whatever it is made of: who wrote a recorded run may have meant ill.
+    The name never leads out of a folder, because the author of a recorded run may be hostile.
     """
     path = Path(name_or_path)
     if not path.suffix and path.name == name_or_path:
@@ -150,13 +150,13 @@ def kept_name(name_or_path: str) -> str:
 
 
 def find_beside(settings: Path, name: str) -> Path:
-    """Path of another file that settings name, from their own folder; it need not be there."""
+    """Return the path of a file that settings name, relative to their folder; it need not exist."""
     kept = _KEPT.get()
     return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
 
 
 def find_config(kind: str, name_or_path: str) -> Path:
-    """Path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
+    """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
     Raises SettingsError that lists the shipped names when there is no such file.
     """
@@ -187,7 +187,7 @@ def shipped_names(kind: str) -> list[str]:
 
 
 def content_of(path: Path) -> Any:
-    """What a YAML file holds, as JSON would tell it, before anybody has checked it.
+    """Return the unvalidated content of a YAML file, in the types of JSON.
 
     Raises SettingsError with one line that names the file.
     """
@@ -253,7 +253,7 @@ def _value_of(key: str, value: str, path: Path) -> Any:
 
 
 def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
-    """Which change a problem comes from: the file itself may be well."""
+    """Return the change that causes a problem, because the file itself may be valid."""
     place = [str(part) for part in problem["loc"]]
     for key in changes:
         levels = key.split(".")
@@ -263,7 +263,7 @@ def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
 
 
 def _change(content: Any, key: str, value: Any, path: Path) -> None:
-    """Put a value at a key; a level that is not there is made, and refused by the schema if it should not be."""
+    """Set the value of a key; create missing levels, which the schema refuses if they are unknown."""
     *levels, last = key.split(".")
     for level in levels:
         content = content.setdefault(level, {}) if isinstance(content, dict) else None
@@ -286,7 +286,7 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
 
 
 def keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:
-    """Names of the keys that a nested place allows, as far as the schema's annotations tell."""
+    """Return the keys that a nested place allows, as far as the schema's annotations tell."""
     here: list[type[BaseModel]] = [schema]
     for part in location:
         within = [model.model_fields[part].annotation for model in here if part in model.model_fields]

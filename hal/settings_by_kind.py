@@ -1,4 +1,4 @@
-"""Settings of which a file says the kind: each kind has a module of its own, found by its name.
+"""Settings with a `kind` key: each kind has its own module, found by name.
 
 The module `<package>/<kind>.py` holds the class that is named after it: `wall_following` holds `WallFollowingSettings`.
 """
@@ -26,7 +26,7 @@ KindT = TypeVar("KindT", bound=KindSettings)
 
 
 def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
-    """The settings of a kind. Raises ValueError that lists the kinds there are."""
+    """Return the settings class of a kind. Raises ValueError that lists the kinds."""
     found = _settings_in(package, kind, base) if kind in _modules(package) else None
     if found is None:
         # Read, not imported: a kind that is broken or being written is no reason to hide that another was misspelled.
@@ -36,9 +36,9 @@ def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
 
 
 def as_its_kind(given: object, package: str, base: type[KindT]) -> KindT:
-    """Check what stands in a file against the settings of the kind that it names.
+    """Validate the content of a file by the settings class of the kind that it names.
 
-    Raises ValueError that names key and what is allowed, which a pydantic validator passes on with the key's place.
+    Raises PydanticCustomError or ValidationError, both ValueErrors, that name the key and what is allowed.
     """
     if isinstance(given, base):
         return given
@@ -85,7 +85,7 @@ def _refusal(schema: type[Settings], problems: list[InitErrorDetails]) -> Valida
 
 
 def _with_allowed_keys(error: ValidationError, schema: type[Settings]) -> list[InitErrorDetails]:
-    """The same problems; those with unknown keys tell the known ones, which the file's own schema does not know."""
+    """Return the problems; those with unknown keys list the known ones, which the file's own schema does not know."""
     problems = []
     for each in error.errors(include_url=False):
         told = PydanticCustomError(each["type"], "{told}", {"told": each["msg"]})

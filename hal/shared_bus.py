@@ -1,4 +1,4 @@
-"""The bus across processes of this machine without the kernel's CAN: `shared:NAME`."""
+"""CAN bus across processes of this machine without the kernel's CAN: `shared:NAME`."""
 
 import contextlib
 import fcntl
@@ -48,7 +48,7 @@ class SharedBus(can.BusABC):
     than KEPT_FRAMES is given back to the system as a hole in the file; a reader that is further behind goes on
     after the hole and counts what it lost. Time stamps are those of the sender, on the monotonic clock of the machine.
 
-    The file is there while somebody is on the bus; who leaves last removes it, and any that was left behind.
+    The file exists while a process has the bus open. The last one removes it, and files of killed processes.
     """
 
     receives_own_frames = False
@@ -60,9 +60,9 @@ class SharedBus(can.BusABC):
         self.channel = name
         self.channel_info = f"shared CAN bus {name}"
         self.overruns = 0
-        """Frames that were gone before this end came to read them, own and filtered ones too."""
+        """Frames lost before this end read them, own and filtered ones included."""
         self.damaged = 0
-        """Records that no end of this program has written."""
+        """Records that are no frames of this program."""
         self._path = _folder() / name
         self._sender = secrets.randbits(32)
         self._heard: frozenset[int] | None = None
@@ -78,7 +78,7 @@ class SharedBus(can.BusABC):
         super().__init__(channel=name)
 
     def now_s(self) -> float | None:
-        """The monotonic clock, which all processes of a machine share."""
+        """Return the monotonic clock, which all processes of a machine share."""
         return time.monotonic()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -86,14 +86,14 @@ class SharedBus(can.BusABC):
         self._heard = frame_ids
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. Raises can.CanOperationError when the bus is gone."""
+        """Return the oldest frame, or None after `timeout` seconds. Raises can.CanOperationError if the bus is lost."""
         return self._next() if timeout == 0 else super().recv(timeout)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Put a frame behind all others. Raises can.CanOperationError, ValueError for what is not classic CAN."""
+        """Append a frame; `timeout` (s) is unused. Raises can.CanOperationError, ValueError if not classic CAN."""
         record = pack_bus_frame(msg) + _STAMP_AND_SENDER.pack(time.monotonic(), self._sender)
         record += _CHECKSUM.pack(zlib.crc32(record))
-        with self._lock:  # nobody of this process closes the file meanwhile
+        with self._lock:  # no other thread closes the file meanwhile
             file = self._opened()
             try:
                 if os.write(file, record) != _RECORD_BYTES:
@@ -114,7 +114,7 @@ class SharedBus(can.BusABC):
                 _remove_unused(self._path.parent)
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
-        """Wait as python-can's tools want to; nothing wakes a reader, so it looks again and again."""
+        """Wait up to `timeout` seconds for python-can's tools, by polling."""
         until_s = None if timeout is None else time.monotonic() + timeout
         while True:
             frame = self._next()
@@ -152,7 +152,7 @@ class SharedBus(can.BusABC):
         return None
 
     def _read_on(self) -> bool:
-        """Read what follows; False when there is nothing."""
+        """Read the following records; return False if there are none."""
         file = self._opened()
         block = os.pread(file, _BLOCK_BYTES, self._position)
         self._block = block[: len(block) // _RECORD_BYTES * _RECORD_BYTES]
@@ -167,7 +167,7 @@ class SharedBus(can.BusABC):
         return False
 
     def _pass_over(self, record: bytes) -> bool:
-        """Go on after something that is not a frame; False when that may still become one."""
+        """Skip a record that is no frame; return False if it may still become one."""
         file = self._opened()
         self._block, self._at = b"", 0
         if record == _HOLE:
@@ -194,7 +194,7 @@ def _folder() -> Path:
 
 
 def _join(path: Path) -> int:
-    """Open or make the file of a bus, with a lock that says that somebody is there."""
+    """Open or create the file of a bus, with a shared lock that marks it as in use."""
     with contextlib.suppress(FileExistsError):
         path.parent.mkdir(mode=0o700)
     folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC)
@@ -210,7 +210,7 @@ def _join(path: Path) -> int:
                     _require_head(file, path)
                     return file
             except BlockingIOError:
-                time.sleep(_POLL_S)  # who left last is about to remove it
+                time.sleep(_POLL_S)  # the last process is about to remove it
             except BaseException:
                 os.close(file)
                 raise
@@ -221,7 +221,7 @@ def _join(path: Path) -> int:
 
 
 def _require(opened: int, path: Path, *, is_folder: bool) -> None:
-    """Nobody else may read or write here."""
+    """Check that no other user may read or write here. Raises OSError."""
     status = os.fstat(opened)
     right_kind = stat.S_ISDIR(status.st_mode) if is_folder else stat.S_ISREG(status.st_mode)
     if not right_kind or status.st_uid != os.geteuid() or status.st_mode & 0o077:
@@ -233,13 +233,13 @@ def _require_head(file: int, path: Path) -> None:
     if size == 0:
         os.write(file, _HEAD * (_HEAD_BYTES // _RECORD_BYTES))
     if size % _RECORD_BYTES or os.pread(file, _RECORD_BYTES, 0) != _HEAD:
-        raise can.CanInitializationError(f"{path} is not a bus of this version; remove it when nobody uses it")
+        raise can.CanInitializationError(f"{path} is not a bus of this version; remove it when no program uses it")
 
 
 def _remove_unused(folder: Path) -> None:
-    """Remove every bus that nobody is on: the one just left, and what killed processes left behind."""
+    """Remove the files of all buses without a process, also those of killed processes."""
     for path in folder.iterdir():
-        # Somebody is there, or came first, or it is not a bus.
+        # In use by a process, or opened meanwhile, or not a bus.
         with contextlib.suppress(OSError):
             file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC | os.O_NONBLOCK)
             try:
@@ -251,7 +251,7 @@ def _remove_unused(folder: Path) -> None:
 
 
 def _give_back(file: int, until: int) -> None:
-    """Make a hole of all records before `until`; what another writer failed to give back, too."""
+    """Free the memory of all records before `until`, also those that another writer failed to free."""
     until = until // mmap.ALLOCATIONGRANULARITY * mmap.ALLOCATIONGRANULARITY
     if until <= _HEAD_BYTES:
         return

@@ -118,7 +118,7 @@ class Simulation(Protocol):
 
     @property
     def touching(self) -> bool:
-        """Whether the robot touches something now."""
+        """True while the robot touches something."""
         ...
 
     @property

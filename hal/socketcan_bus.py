@@ -1,4 +1,4 @@
-"""SocketCAN: the kernel's CAN, on the robot `can0`, in tests `vcan0`."""
+"""CAN bus of the kernel (SocketCAN): on the robot `can0`, in tests `vcan0`."""
 
 import contextlib
 import errno
@@ -30,11 +30,11 @@ _NS = 1e-9
 
 
 class SocketCanBus(SocketcanBus):
-    """One end of a bus that the kernel carries.
+    """One end of a SocketCAN bus.
 
     The kernel filters, and stamps each frame on the wall clock when it came. Own frames come back when the bus has
-    carried them. An end whose interface went down or away stays lost, so that nobody takes its silence for a bus:
-    open it anew. Sending is tried all the same.
+    carried them. An end whose interface went down or away stays lost until it is opened again, so that its silence is
+    not taken for a quiet bus. Sending is still tried.
     """
 
     receives_own_frames = True
@@ -43,7 +43,7 @@ class SocketCanBus(SocketcanBus):
         """Open a socket on an interface. Raises OSError, can.CanError, AttributeError (a Python without CAN)."""
         super().__init__(channel=interface, receive_own_messages=True)
         self.overruns = 0
-        """Frames for which the receive buffer had no room."""
+        """Frames that did not fit into the receive buffer."""
         self._heard: frozenset[int] | None = None
         self._gone: OSError | None = None
         # More than the system's limit only with privileges.
@@ -53,7 +53,7 @@ class SocketCanBus(SocketcanBus):
         self.socket.setsockopt(socket.SOL_SOCKET, _SO_RXQ_OVFL, 1)
 
     def now_s(self) -> float | None:
-        """The wall clock, on which the kernel stamps frames."""
+        """Return the wall clock, on which the kernel stamps frames."""
         return time.time()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -63,11 +63,11 @@ class SocketCanBus(SocketcanBus):
         self._heard = frame_ids  # for what waits already
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """The frame that waits longest; None when there is none. Raises can.CanOperationError when the bus is lost."""
+        """Return the oldest frame, or None after `timeout` seconds. Raises can.CanOperationError if the bus is lost."""
         return self._take() if timeout == 0 else super().recv(timeout)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Give a frame to the kernel's queue. Raises can.CanOperationError, ValueError for what is not classic CAN."""
+        """Queue a frame in the kernel; `timeout` (s) is unused. Raises can.CanOperationError, ValueError."""
         try:
             self.socket.send(pack_bus_frame(msg), socket.MSG_DONTWAIT)
         except OSError as error:
@@ -79,7 +79,7 @@ class SocketCanBus(SocketcanBus):
         return self._take(), False
 
     def _take(self) -> can.Message | None:
-        """One system call where python-can makes two, and knows its own frames from those of other programs here."""
+        """Receive with one system call (python-can makes two), and tell own frames from those of other programs."""
         if self._gone is not None:
             raise self._failure(self._gone) from self._gone
         try:
@@ -103,7 +103,7 @@ class SocketCanBus(SocketcanBus):
             raise self._failure(error) from error
 
     def _failure(self, error: OSError) -> can.CanOperationError:
-        """The error as one to tell; the end is lost with its interface."""
+        """Return the error with its remedy; the socket is lost with its interface."""
         if error.errno in _QUEUE_FULL:
             return can.CanOperationError("the transmit queue is full", error.errno)
         if error.errno in _DOWN:

@@ -1,4 +1,4 @@
-"""Whoever looks on at one end of a bus: a log, for instance."""
+"""Observer of the frames at one end of a bus, such as a log."""
 
 from typing import Protocol
 
@@ -6,12 +6,12 @@ import can
 
 
 class Tap(Protocol):
-    """Sees each frame that passes an end. It neither waits nor raises, and changes no frame; from any thread."""
+    """Observer of each frame that passes an end. Methods never wait, raise or change a frame. Any thread calls them."""
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
-        """A frame of another end was taken from the bus, which carried it `age_s` ago, never less than 0."""
+        """Note a frame of another end that the bus carried `age_s` seconds ago, at least 0."""
         ...
 
     def on_tx(self, frame: can.Message) -> None:
-        """The bus took a frame of this end just now. The object may be sent again: its payload never changes."""
+        """Note a frame of this end that the bus accepted. The object may be sent again; its payload never changes."""
         ...

@@ -1,4 +1,4 @@
-"""The second guard: a thread with a clock of its own that brakes when ticks cease."""
+"""Watchdog: a thread with its own clock that brakes when ticks cease."""
 
 import threading
 import time
@@ -13,9 +13,9 @@ POLL_S = 0.01
 
 
 class Watchdog:
-    """Stops the wheels when `beat` is not called for `ticks_ceased_s`; it watches from the first beat on.
+    """Thread that stops the wheels if `beat` is not called for `ticks_ceased_s`, from the first beat on.
 
-    It cannot help against a stuck interpreter; there the controller's own watchdog stops the motors.
+    It cannot run in a stuck interpreter; there the controller's own watchdog stops the motors.
     """
 
     def __init__(self, guard: Guard, ticks_ceased_s: float, clock: Callable[[], float] = time.monotonic) -> None:
@@ -27,11 +27,11 @@ class Watchdog:
         self._thread: threading.Thread | None = None
 
     def beat(self) -> None:
-        """A tick has been done."""
+        """Note the end of a tick."""
         self._beat_s = self._clock()
 
     def check(self, now_s: float) -> bool:
-        """True when ticks have ceased at `now_s` of the watchdog's clock; False before the first beat."""
+        """Return whether ticks have ceased at `now_s` of the watchdog's clock; False before the first beat."""
         beat_s = self._beat_s
         return beat_s is not None and not now_s - beat_s <= self._ticks_ceased_s
 
@@ -47,11 +47,11 @@ class Watchdog:
 
     @property
     def thread(self) -> threading.Thread | None:
-        """Who watches; None before the start and after the end."""
+        """Thread of the watchdog; None before the start and after the end."""
         return self._thread
 
     def start(self) -> None:
-        """Start the thread; it waits for the first beat. Raises RuntimeError when it runs already."""
+        """Start the thread, which waits for the first beat. Raises RuntimeError if it runs already."""
         if self.running:
             raise RuntimeError("the watchdog runs already; start it once")
         self._beat_s = None
@@ -60,7 +60,7 @@ class Watchdog:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the thread and wait for it; may be called twice."""
+        """Stop the thread and wait for its end; may be called twice."""
         self._stopping.set()
         if self._thread is not None:
             self._thread.join()
@@ -78,5 +78,5 @@ class Watchdog:
     def _watch(self) -> None:
         while not self._stopping.wait(POLL_S):
             if self.check(self._clock()):
-                # At every poll anew: one brake frame may meet a full queue, and the controller forgets after 200 ms.
+                # At every poll: a full queue may refuse one brake frame, and the controller forgets after 200 ms.
                 self._guard.emergency_stop(GuardReason.TICKS_CEASED)

@@ -1,4 +1,4 @@
-"""Do the wheels do what they are told? What the encoders count, held against all that obedient wheels could do."""
+"""Detection of wheels that do not follow their set points, from the encoders and a band of possible speeds."""
 
 import math
 
@@ -9,24 +9,23 @@ SLOWEST = 2.0
 """An obedient side answers a set point at most this many times slower than the settings say. Acceleration, braking and
 the time of the speed loop are our choice (docs/the-robot.md#motors-and-speed)."""
 REVERSAL_SPEED_M_S = 0.02
-"""Faster than this a side that is told to turn back slows down first (firmware's SLOW_SPEED)."""
+"""Speed above which a side slows down before it reverses (firmware's SLOW_SPEED)."""
 
 
 class WheelWatch:
-    """Knows how fast each side may be turning, and notices when it does not.
+    """Detector of a side whose speed leaves the band of possible speeds.
 
-    Whatever its motor is like, an obedient side is between its set point and the slowest answer to all set points so
-    far: a band that is as wide as needed while speeds change, and closes when they do not. A side disobeys when it has
-    been off the band by more than `wheel_error_m_s` and `wheel_error_share` for `wheel_error_s`; time on the band
-    counts against time off it.
+    An obedient side is between its set point and the slowest response to all set points so far. This band is wide while
+    speeds change, and closes when they are constant. A side disobeys if it has been off the band by more than
+    `wheel_error_m_s` and `wheel_error_share` for `wheel_error_s`. Time on the band counts against time off the band.
     """
 
     def __init__(self, robot: RobotSettings) -> None:
         limits = robot.guard
         self._cycle_s = robot.can.cycle_s
         self._metres_per_tick = robot.geometry.metres_per_tick
-        # After a longer pause, of the runtime or of the encoders, nobody knows what became of the set points: others
-        # have stopped the robot meanwhile, and the wheels are taken as they are found.
+        # After a longer pause of runtime or encoders the set points are unknown: the watchdog or the controller has
+        # stopped the robot, and the measured speeds are the start.
         self._pause_s = limits.ticks_ceased_s
         self._error_s = limits.wheel_error_s
         self._left, self._right = _Side(robot), _Side(robot)
@@ -34,11 +33,11 @@ class WheelWatch:
         self._counted_at_s = -math.inf
 
     def set_command(self, command: WheelSpeeds) -> None:
-        """Set points in m/s that this tick's CONTROL carries."""
+        """Set the set points in m/s that this tick's CONTROL carries."""
         self._command = command
 
     def check(self, left_ticks: int, right_ticks: int, frames: int, now_s: float) -> str:
-        """What a side does that disobeys, in a line; empty while both obey.
+        """Return one line about a side that disobeys; empty while both obey. Time in s.
 
         The ticks are those of all `frames` ENCODER frames of this tick of the runtime, none or several.
         """
@@ -66,7 +65,7 @@ class WheelWatch:
 
 
 class _Side:
-    """The band of one side's speeds in m/s, and for how long the side has been off it."""
+    """Band of one side's speeds in m/s, and the time that the side has been off the band."""
 
     def __init__(self, robot: RobotSettings) -> None:
         motors, limits = robot.motors, robot.guard
@@ -79,17 +78,17 @@ class _Side:
         self._low_m_s = self._high_m_s = self._off_s = 0.0
 
     def start(self, speed_m_s: float) -> None:
-        """Nothing is known but this speed."""
+        """Start the band from one measured speed."""
         self._low_m_s = self._high_m_s = speed_m_s
 
     def follow(self, told_m_s: float, elapsed_s: float) -> None:
-        """Go on for a while with this set point."""
+        """Widen or close the band for `elapsed_s` with this set point."""
         low_m_s, high_m_s = self._low_m_s, self._high_m_s
         self._low_m_s = told_m_s if told_m_s <= low_m_s else self._slowest(low_m_s, told_m_s, elapsed_s)
         self._high_m_s = told_m_s if told_m_s >= high_m_s else self._slowest(high_m_s, told_m_s, elapsed_s)
 
     def off_s(self, speed_m_s: float, elapsed_s: float) -> float:
-        """For how long it has been off the band, with this speed since the last; at most `wheel_error_s`."""
+        """Return the time off the band, after `elapsed_s` at this speed; at most `wheel_error_s`."""
         low_m_s, high_m_s = self._low_m_s, self._high_m_s
         below_m_s = low_m_s - speed_m_s - self._error_share * abs(low_m_s)
         above_m_s = speed_m_s - high_m_s - self._error_share * abs(high_m_s)
@@ -100,7 +99,7 @@ class _Side:
         return self._off_s
 
     def _slowest(self, speed_m_s: float, told_m_s: float, elapsed_s: float) -> float:
-        """The speed after a while of the slowest side that still obeys."""
+        """Return the speed of the slowest obedient side after `elapsed_s`."""
         if speed_m_s * told_m_s < 0.0 and abs(speed_m_s) > REVERSAL_SPEED_M_S:
             told_m_s = 0.0
         change_m_s = (told_m_s - speed_m_s) * elapsed_s / (self._loop_s + elapsed_s)

@@ -76,5 +76,5 @@ def robot_with(**limits: float) -> RobotSettings:
 
 def pull_the_plug(bus: CanBus) -> None:
     """The adapter goes away: python-can's bus fails from now on, and CanBus has not been told."""
-    assert bus._bus_end is not None
-    bus._bus_end.shutdown()
+    assert bus._can_interface is not None
+    bus._can_interface.shutdown()

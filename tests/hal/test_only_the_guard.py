@@ -26,7 +26,7 @@ WAYS_OUT = {
     "CAN_RAW": {"kurt2rt/doctor/can_bus.py"},  # which closes it at once
     "CAN_BCM": set(),
 }
-INSIDES = {"_bus_end", "_open_bus_end"}
+INSIDES = {"_can_interface", "_open_can_interface"}
 ALLOWED = {
     "control_port": {"hal/bus.py", "hal/guard.py"},
     "encode_control": {"hal/control.py"},

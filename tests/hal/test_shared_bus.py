@@ -343,7 +343,7 @@ class TestNobodyElseGetsIn:
         folder.mkdir(mode=0o700)
         (folder / "x").touch(mode=0o600)
         (folder / "x").write_bytes(content)
-        self.refused("is not a bus of this version; remove it when nobody uses it")
+        self.refused("is not a bus of this version; remove it when no program uses it")
         assert (folder / "x").read_bytes() == content
 
     def test_a_machine_without_shared_memory_is_told(self, tmp_path: Path) -> None:

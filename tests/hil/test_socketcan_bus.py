@@ -43,7 +43,7 @@ def take(bus: CanBus, count: int) -> list[can.Message]:
 
 
 def await_something(bus: CanBus) -> None:
-    end = bus._bus_end
+    end = bus._can_interface
     assert isinstance(end, can.BusABC)
     assert select.select([end], [], [], 20.0)[0]
 
@@ -113,7 +113,7 @@ def test_python_can_hears_and_says_the_same_frames(ends: Ends, vcan0: str, sent:
 
 def test_tools_of_python_can_listen_and_wait_at_our_end(ends: Ends) -> None:
     robot_end, far_end = ends
-    end = robot_end._bus_end
+    end = robot_end._can_interface
     assert isinstance(end, can.BusABC)
     reader = can.BufferedReader()
     with can.Notifier(end, [reader], timeout=0.01):
