@@ -1,4 +1,4 @@
-"""The guard: the only sender of CONTROL. It knows nothing of why somebody wants to drive, only what is safe."""
+"""Guard: the only sender of CONTROL. It applies what is safe of each request, from any source."""
 
 import math
 from threading import RLock
@@ -12,13 +12,13 @@ from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings
 
 _UNCONFIRMED = 2
-"""Own CONTROL frames that the bus has not carried yet: with so many waiting a set point would come to the motors older
-than 20 ms. A brake is never too old."""
+"""Own CONTROL frames not yet carried by the bus. A set point behind two of them reaches the motors after 20 ms or more.
+A brake is never too old."""
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
 
 
 class _CachedCommand(NamedTuple):
-    """Set points in m/s, the CONTROL frame that says them, and what stands in it; kept, for most ticks repeat it."""
+    """Set points in m/s, their CONTROL frame, and the speeds in it; cached because most ticks repeat it."""
 
     left_m_s: float
     right_m_s: float
@@ -27,13 +27,13 @@ class _CachedCommand(NamedTuple):
 
 
 class Guard:
-    """Lets through what is safe of the wanted wheel speeds, and brakes on request. Thread safe.
+    """Filter that applies what is safe of the wanted wheel speeds, and brakes on request. Thread safe.
 
-    Every rule asks for proof that driving is safe, so a NaN in any input stands still.
+    Every rule demands proof that driving is safe, so a NaN in any input stops the robot.
     """
 
     def __init__(self, robot: RobotSettings, bus: CanBus) -> None:
-        """Take the bus's CONTROL port. Raises hal.bus.BusError when another guard has it."""
+        """Take the bus's CONTROL port. Raises hal.bus.BusError if another guard has it."""
         limits = robot.guard
         self._port = bus.control_port()
         self._bus_name = bus.name
@@ -51,7 +51,7 @@ class Guard:
         self._front_bits = _bumper_bits(robot, BumperEnd.FRONT)
         self._rear_bits = _bumper_bits(robot, BumperEnd.REAR)
         self._brake = encode_brake()
-        # Reentrant, for a signal handler may stop the robot in the middle of the same thread's drive().
+        # Reentrant, because a signal handler may stop the robot during the same thread's drive().
         self._lock = RLock()
         self._latched: GuardReason | None = None
         self._left_m_s = self._right_m_s = 0.0
@@ -72,14 +72,14 @@ class Guard:
 
     @property
     def bus_trouble(self) -> str:
-        """Text of the newest sending error; empty when there was none since the last release."""
+        """Text of the newest sending error; empty if there was none since the last release."""
         return self._bus_trouble
 
     def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
-        The applied speeds are those in the frame: truncated to its resolution, which is no reason of its own. No set
-        point is put behind frames that the bus has not carried yet; a brake is.
+        The applied speeds are those in the frame: truncated to its resolution, which needs no reason. No set
+        point is queued after frames that the bus has not carried yet; a brake is.
         """
         with self._lock:
             if self._latched is None and self._port.unconfirmed >= _UNCONFIRMED:
@@ -146,7 +146,7 @@ class Guard:
         return None
 
     def _limit(self, left_m_s: float, right_m_s: float, bumpers: int, now_s: float) -> tuple[GuardReason, ...]:
-        """Move the set points toward the wanted speeds as far as the limits allow; returns why not further."""
+        """Move the set points toward the wanted speeds within the limits; return the limits that were met."""
         reasons: tuple[GuardReason, ...] = ()
         fastest_m_s = max(abs(left_m_s), abs(right_m_s))
         if fastest_m_s > self._maximum_speed_m_s:

@@ -39,7 +39,7 @@ class GuardReason(StrEnum):
 
     @property
     def routine(self) -> bool:
-        """Whether ordinary driving meets this limit: each turn begins at the slew limit."""
+        """True if ordinary driving meets this limit: each turn begins at the slew limit."""
         return self is GuardReason.SLEW_LIMIT
 
 

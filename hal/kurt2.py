@@ -197,7 +197,7 @@ class Kurt2:
             self._stop(GuardReason.BUS_OFF)
         if foreign_control:
             self._stop(
-                GuardReason.FOREIGN_CONTROL, f"bus {self._bus.name}: somebody else sends CONTROL; find and end it"
+                GuardReason.FOREIGN_CONTROL, f"bus {self._bus.name}: another node sends CONTROL; find and end it"
             )
         disobedience = self._wheel_watch.check(
             senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s

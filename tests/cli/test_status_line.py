@@ -75,9 +75,9 @@ def test_a_lost_bus_is_told_until_somebody_says_resume(status: Status) -> None:
 
 
 def test_what_stopped_the_robot_is_told_with_it(status: Status) -> None:
-    stopped = replace(WELL, alarm="somebody else sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
+    stopped = replace(WELL, alarm="another node sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
     line = status_line(status, stopped)
-    assert line.endswith(" | somebody else sends CONTROL | 2 CONTROL frames of another sender so far")
+    assert line.endswith(" | another node sends CONTROL | 2 CONTROL frames of another sender so far")
 
 
 def test_the_controllers_own_trouble_comes_before_what_follows_from_it() -> None:

@@ -82,7 +82,7 @@ class Onlooker:
                 continue
             frame_id, data = frame.arbitration_id, bytes(frame.data)
             if frame_id == CONTROL_ID:
-                alarm = "somebody else sends CONTROL"
+                alarm = "another node sends CONTROL"
             elif frame_id in self._infrared:
                 good = len(data) >= 8 and all(data[2 * at] < 4 for at in self._infrared[frame_id])
                 self._heard_at_s[frame_id] = now_s - age_s if good else self._heard_at_s[frame_id]

@@ -33,7 +33,7 @@ def test_another_sender_of_control_stops_the_robot_in_the_same_tick(ride: Ride, 
     assert ride.tick() == stopped(GuardReason.FOREIGN_CONTROL)
     health = ride.kurt2.health
     assert (health.foreign_control, health.latched) == (1, GuardReason.FOREIGN_CONTROL)
-    assert health.trouble == "bus can0: somebody else sends CONTROL; find and end it"
+    assert health.trouble == "bus can0: another node sends CONTROL; find and end it"
 
 
 def test_it_stops_again_after_a_resume_while_the_other_goes_on(ride: Ride) -> None:

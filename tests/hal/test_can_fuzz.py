@@ -43,7 +43,7 @@ async def test_no_frame_reaches_the_tick_as_an_exception(kind: str, seed: int, f
     assert robot.bad_frames >= frames
     assert robot.onlooker.moved > 300
     assert min(health.junk, health.error_frames, health.foreign_control) > 100
-    assert set(robot.onlooker.stands_for) >= {"the bus is off", "somebody else sends CONTROL"}
+    assert set(robot.onlooker.stands_for) >= {"the bus is off", "another node sends CONTROL"}
 
 
 @pytest.mark.deep

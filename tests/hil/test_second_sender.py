@@ -19,7 +19,7 @@ def test_any_control_of_somebody_else_stops_the_robot_in_the_same_tick(drive: Dr
     cansend(frame)
     assert drive.tick() == STOPPED
     assert drive.health.foreign_control == 1
-    assert "somebody else sends CONTROL" in drive.health.trouble
+    assert "another node sends CONTROL" in drive.health.trouble
 
 
 def test_the_robot_obeys_a_stop_that_a_person_sends(drive: Drive) -> None:
