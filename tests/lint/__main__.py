@@ -20,12 +20,12 @@ def main() -> int:
         ]
         print(*listed, sep="\n")
         return 0
+    if arguments.update:  # without reading the table, which may hold the marks of a merge conflict
+        write_allowed(counted(found))
+        return 0
     lines = list(differences(counted(found), load_allowed()))
     if lines:
         print(*lines, sep="\n")
-    if arguments.update:
-        write_allowed(counted(found))
-        return 0
     return 1 if lines else 0
 
 
