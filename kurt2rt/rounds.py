@@ -7,6 +7,7 @@ from kurt2rt.channel.channel import Channel
 from kurt2rt.health.watch import HealthWatch
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from kurt2rt.layers.decision import blamed_in
+from kurt2rt.outcome_text import text_of
 from kurt2rt.perception.sensor_words import words_for
 from kurt2rt.recording.run_files import budget_of
 from kurt2rt.recording.run_recorder import RunRecorder
@@ -95,7 +96,7 @@ class Rounds:
                 runtime.inbox.put(command)
         for result in record.results:
             if result.lesson:
-                self._unsettled[result.command_id] = result.text
+                self._unsettled[result.command_id] = text_of(result.outcome)
         if self._channel is not None:
             self._channel.after_tick(record)
         if self._health is not None:

@@ -12,6 +12,7 @@ from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision, MidDecision, standing
 from kurt2rt.layers.level import Level
 from kurt2rt.layers.mid_uses import MidUses
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.perception.circumstances import CircumstancesPerception
 from kurt2rt.perception.perception import Perception, Situation
 from kurt2rt.rla.rla import BASIC, Phase, Rla, TeachingEvent
@@ -23,7 +24,6 @@ from kurt2rt.teaching.inbox import TeacherInbox
 from kurt2rt.teaching.school import School
 from kurt2rt.timing.ledger import Ledger, Stage
 
-_BLIND = "the infra-red sensors are silent, so there is no situation to teach; wait until the robot sends its readings"
 _TELL_KNOWLEDGE_TICKS = 100
 """How often a record holds all that is known, at least."""
 
@@ -182,7 +182,7 @@ class Tick:
                 continue
             new = not self._school.has_taken(command.command_id)
             if new and blind and _is_about_what_is_seen_now(command):
-                results.append(CommandResult(command.command_id, False, _BLIND))
+                results.append(CommandResult(command.command_id, Outcome(RefusalCode.BLIND)))
                 continue
             result, event = self._school.attend(command, situation, tick)
             results.append(result)

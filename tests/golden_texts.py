@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, standing, verdicts
+from tests.texts import complaints, outcomes, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -24,10 +24,12 @@ Listing = Callable[[], Iterable[tuple[str, str]]]
 
 SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "page": {
+        "outcomes of commands": outcomes.on_page,
         "standing": standing.on_page,
         "stops": standing.stops,
     },
     "terminal": {
+        "outcomes of commands": outcomes.in_terminal,
         "standing": standing.in_terminal,
         "stops": standing.stops,
     },
@@ -40,6 +42,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "results": verdicts.results,
     },
     "log": {
+        "outcomes of commands": outcomes.in_log,
         "standing": standing.in_log,
         "stops": standing.stops,
     },

@@ -13,6 +13,7 @@ from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeed
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Cause, Decision
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.perception.perception import Perception
 from kurt2rt.rla.rla import Phase, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -274,7 +275,7 @@ def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving:
     driving.run(100, resume("again"))
     driving.robot.emergency_stop(GuardReason.OTHER)
     record = driving.run(100, resume("again"))
-    assert record.results[0].text == "had been taken already; counted once"
+    assert record.results[0].outcome == Outcome(ResultCode.REPEATED)
     assert record.grant.latched
     assert not driving.run(100, resume("after a look")).grant.latched
 
@@ -284,7 +285,7 @@ def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving
     driving.robot.emergency_stop(GuardReason.OTHER)
     stopped_on = driving.run(100).tick
     late = driving.run(100, Resume("on its way", "Ann", said_on))
-    assert late.results[0].text == "the robot was stopped after this was said; look at it, then say it again"
+    assert late.results[0].outcome == Outcome(RefusalCode.STOPPED_SINCE)
     assert late.grant.latched
     assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).grant.latched
 
@@ -378,7 +379,7 @@ def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(drivin
     assert record.grant.wheel_speeds == STANDSTILL
     (result,) = record.results
     assert not result.accepted
-    assert "infra-red sensors are silent" in result.text
+    assert result.outcome == Outcome(RefusalCode.BLIND)
     assert len(driving.system) == known
 
     driving.robot.infrared_age_s = 0.0

@@ -9,6 +9,7 @@ import pytest
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.simulation import Pose
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.replay.comparing import compare
 from kurt2rt.replay.reading import read_run
 from kurt2rt.replay.replay import Replay
@@ -77,7 +78,7 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
 ) -> None:
     held(corridor)
     record = corridor.run(None, say("back", "answer"))
-    assert record.results[0].text == "RLA 1 corrected: back instead of forward"
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
     assert (record.decision.cause, record.decision.action) == (Cause.RLA, "back")
     assert record.grant.wheel_speeds == BACK
     assert record.standing == DRIVES
@@ -96,7 +97,7 @@ def test_an_answer_far_from_the_condition_inserts_an_rla_that_wins(corridor: Cor
 def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) -> None:
     held(corridor)
     record = corridor.run(None, teach("forward", "answer"))
-    assert record.results[0].text == "RLA 1 says forward already"
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
     assert record.decision.cause is Cause.TOUCHES
 
 
@@ -105,7 +106,7 @@ def test_an_answer_about_a_question_of_before_is_a_correction_too(corridor: Corr
     corridor.robot.touches_in_front = False
     corridor.run()
     record = corridor.run(None, Teach("answer", "Ann", "back", decision_tick=asked))
-    assert record.results[0].text == "RLA 1 corrected: back instead of forward"
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
 
 
 def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import CRITIC, ActionWithdrawn, Appraised, Origin, Phase, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.runtime import build_runtime
@@ -59,7 +60,7 @@ class Drive:
             record = self.run(ticks=200)
             assert record.decision.driving
             result = self.run(Reward(f"r-{number}", "Ann", -1, record.tick)).results[0]
-            assert result.accepted, result.text
+            assert result.accepted, result.outcome
 
 
 @pytest.fixture
@@ -87,7 +88,7 @@ def test_its_answer_acts_in_the_tick_that_takes_it(driving: Drive) -> None:
     driving.blame_until_it_sinks()
     asked = driving.run()
     record = driving.run(Teach("anew", "Ann", "spin_right", asked.tick))
-    assert record.results[0].text == "RLA 1 answered anew: spin_right"
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_ANSWERED, rla=1, action="spin_right")
     assert (record.decision.action, record.decision.rla_id) == ("spin_right", 1)
     assert len(driving.runtime.level.system) == 2
 

@@ -7,6 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.planning.step import Course, PlanStep
 from kurt2rt.rla.rla import MID, SituationNamed, TeachingEvent
@@ -63,8 +64,8 @@ class Block(Town):
         return self.run(command(f"ann-{self.said}", "Ann", *what))
 
     def teach(self, action: str, *, beside: bool = False) -> None:
-        accepted, text = told(self.say(Teach, action, None, MID, beside))
-        assert accepted, text
+        outcome = told(self.say(Teach, action, None, MID, beside))
+        assert outcome.accepted, outcome
 
     def seek(self, goal: Goal = DOOR) -> TickRecord:
         return self.say(Seek, goal)
@@ -103,7 +104,7 @@ def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Bloc
 
 def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     record = block.seek()
-    assert told(record) == (True, "planning the way to door")
+    assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, says="planning the way to door")
     step = block.plan()
     assert step.says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
     assert step.behaviours == ("turn_left", "turn_left")
@@ -161,7 +162,7 @@ def test_where_no_way_leads_it_stands_and_says_so() -> None:
     town.teach("straight_on")
     town.go()
     town.teach("straight_on")
-    assert told(town.seek(NamedGoal("home"))) == (True, "planning the way to home")
+    assert told(town.seek(NamedGoal("home"))) == Outcome.of(ResultCode.GOAL_SOUGHT, says="planning the way to home")
     assert town.plan().says == "no way from here to home: nothing taught leads there"
     record = town.run()
     assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
@@ -247,7 +248,7 @@ def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> Non
     block.go()
     block.say(NameSituation, "door")
     assert block.plan().course is Course.ARRIVED
-    assert told(block.say(StopSeeking))[0]
+    assert told(block.say(StopSeeking)).accepted
     assert block.run().decision.driving
 
 
@@ -263,8 +264,8 @@ def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) 
     known = [*block.taught_before, *block.notebook.events]
     again = Block(known)
     assert again.run().decision.asks_at == MID
-    assert told(again.say(Teach, "turn_left", None, MID))[1].startswith("the robot does not know where it is")
-    assert told(again.say(BeAt, "door"))[0]
+    assert told(again.say(Teach, "turn_left", None, MID)) == Outcome(RefusalCode.PLACE_UNKNOWN)
+    assert told(again.say(BeAt, "door")).accepted
     assert again.run().behaviour == "turn_left"
     assert not again.run().decision.asking
 
@@ -273,11 +274,8 @@ def test_where_no_place_has_a_name_the_rla_that_knows_it_names_it() -> None:
     town = Block()
     town.teach("turn_left")
     again = Block([*town.taught_before, *town.notebook.events])
-    assert told(again.say(BeAt, "door")) == (
-        False,
-        "nothing was named 'door'; named were: nothing; where an RLA knows is a place, too, such as RLA 12",
-    )
-    assert told(again.say(BeAt, "RLA 4")) == (True, "the robot is at RLA 4")
+    assert told(again.say(BeAt, "door")) == Outcome.of(RefusalCode.NO_PLACE, name="door", known=())
+    assert told(again.say(BeAt, "RLA 4")) == Outcome.of(ResultCode.LOCATED, name="RLA 4")
     assert not again.run().decision.asking
 
 
@@ -302,7 +300,7 @@ def test_a_stop_goes_before_all(block: Block) -> None:
     block.seek()
     assert block.say(Stop).decision.cause is Cause.STOPPED
     late = block.run(Seek("late", "Ann", DOOR, block.tick - 1))
-    assert not told(late)[0]
+    assert not told(late).accepted
     assert late.decision.cause is Cause.STOPPED
 
 
@@ -312,48 +310,44 @@ def test_a_goal_given_far_behind_a_junction_changes_nothing_in_the_next_one(bloc
     block.street(0.5)
     record = block.seek()
     assert record.behaviour == "straight_on"
-    assert told(record)[1] == "on the way to door: the plan begins behind the next junction"
+    assert told(record).fields["says"] == "on the way to door: the plan begins behind the next junction"
 
 
 def test_a_goal_may_be_what_stood_beside_the_robot(block: Block) -> None:
     goal = PartialGoal((("x_m", 0.0), ("wall_left", 0.0)), tolerance=0.8)
     record = block.seek(goal)
-    assert told(record)[0]
-    assert "x_m 0 and wall_left 0" in told(record)[1]
+    assert told(record).accepted
+    assert "x_m 0 and wall_left 0" in str(told(record).fields["says"])
 
 
 def test_names_are_lessons(block: Block) -> None:
     named = [event for event in block.notebook.events if isinstance(event, SituationNamed)]
     assert [(event.name, event.level, len(event.situation)) for event in named] == [("door", MID, 6)]
-    accepted, text = told(block.say(Undo, named[0].origin.command_id))
-    assert (accepted, text) == (True, "undone: situation named: door")
-    assert told(block.seek()) == (False, "nothing was named 'door'; named were: nothing")
+    undone = told(block.say(Undo, named[0].origin.command_id))
+    assert undone == Outcome.of(ResultCode.LESSON_UNDONE, says="situation named: door")
+    assert told(block.seek()) == Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
 
 
 @pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
 def test_what_is_no_name_is_refused(block: Block, name: str) -> None:
-    accepted, text = told(block.say(NameSituation, name))
-    assert not accepted
-    assert "is no name for a situation" in text
+    assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
 
 
 def test_nobody_can_be_at_a_place_without_a_name(block: Block) -> None:
-    assert told(block.say(BeAt, "attic")) == (False, "nothing was named 'attic'; named were: door")
+    assert told(block.say(BeAt, "attic")) == Outcome.of(RefusalCode.NO_PLACE, name="attic", known=("door",))
 
 
 def test_without_places_nobody_can_say_where_it_is() -> None:
     town = Town()
     town.street()
-    assert told(town.run(BeAt("1", "Ann", "door"))) == (False, "this robot's mid level does not know places")
+    assert told(town.run(BeAt("1", "Ann", "door"))) == Outcome(RefusalCode.NO_PLACES)
 
 
 def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
     block.runtime.set_down()
     assert block.run().decision.asks_at == MID
     for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
-        accepted, text = told(nowhere)
-        assert not accepted
-        assert text.startswith("the robot does not know where it is")
+        assert told(nowhere) == Outcome(RefusalCode.PLACE_UNKNOWN)
     block.say(BeAt, "door")
     assert not block.run().decision.asking
     assert block.run().behaviour == "turn_left"
@@ -363,14 +357,11 @@ def test_a_goal_that_was_held_up_on_its_way_does_not_go_before_a_newer_one(block
     block.seek()
     seen = block.tick
     block.run()
-    assert told(block.run(StopSeeking("new", "Ann", block.tick)))[0]
+    assert told(block.run(StopSeeking("new", "Ann", block.tick))).accepted
     late = block.run(Seek("late", "Ann", DOOR, seen))
-    assert told(late) == (
-        False,
-        "another goal was given after this was said; look at the robot, then say it again",
-    )
+    assert told(late) == Outcome(RefusalCode.GOAL_SINCE)
     assert late.decision.plan is None
-    assert told(block.run(Seek("again", "Ann", DOOR, block.tick)))[0]
+    assert told(block.run(Seek("again", "Ann", DOOR, block.tick))).accepted
 
 
 def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind_it(block: Block) -> None:
@@ -379,16 +370,16 @@ def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind
     assert block.runtime.mid is not None
     here = block.runtime.mid.vector
     late = block.run(BeAt("late", "Ann", "door", seen))
-    assert told(late) == (False, "a junction was passed after this was said; look at the robot, then say it again")
+    assert told(late) == Outcome(RefusalCode.JUNCTION_PASSED)
     assert block.runtime.mid.vector is here
-    assert told(block.run(BeAt("again", "Ann", "door", block.tick)))[0]
+    assert told(block.run(BeAt("again", "Ann", "door", block.tick))).accepted
 
 
 def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -> None:
     record = block.run(*(Seek(f"seek-{number}", "Ann", DOOR) for number in range(200)))
     assert [result.accepted for result in record.results] == [True] + [False] * 199
-    assert record.results[-1].text == "another goal was given in the same moment; say it again"
-    assert told(block.seek())[0]
+    assert record.results[-1].outcome == Outcome(RefusalCode.GOAL_IN_SAME_TICK)
+    assert told(block.seek()).accepted
 
 
 def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place(block: Block) -> None:
@@ -397,7 +388,7 @@ def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place
     assert known is not None
     assert tuple(block.runtime.mid.vector) != known.condition  # not quite where it was the first time
     record = block.say(Teach, "straight_on", None, MID)
-    assert told(record) == (True, "mid-level RLA 8 taught beside mid-level RLA 4: straight_on")
+    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=8, level=MID, action="straight_on", next_to=4)
     added = block.runtime.level.system.get(8)
     assert added is not None
     assert added.condition == known.condition
@@ -412,16 +403,16 @@ def test_a_correction_to_what_is_taught_there_already_teaches_it_no_second_time_
     block.teach("straight_on", beside=True)
     assert block.run().behaviour == "turn_left"
     record = block.say(Correct, "straight_on", None, MID)
-    assert told(record) == (True, "mid-level RLA 8 says straight_on there already; nothing was changed")
+    assert told(record) == Outcome.of(ResultCode.RLA_CONFLICTS, rla=8, level=MID, action="straight_on")
     assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left", 8: "straight_on"}
     assert record.mid is not None
     assert (record.behaviour, record.mid.rla_id) == ("straight_on", 8)
     refused = block.say(ReplaceAction, 4, "straight_on")
-    assert told(refused) == (False, "mid-level RLA 8 says straight_on there already; delete mid-level RLA 4 instead")
+    assert told(refused) == Outcome.of(RefusalCode.SAYS_SO, rla=8, level=MID, action="straight_on", delete=4)
 
 
 def test_a_correction_to_another_way_changes_the_one_that_was_gone(block: Block) -> None:
     block.teach("straight_on", beside=True)
     record = block.say(Correct, "turn_right", None, MID)
-    assert told(record) == (True, "mid-level RLA 4 corrected: turn_right instead of turn_left")
+    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_right", was="turn_left")
     assert record.behaviour == "turn_right"

@@ -7,6 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.layers.decision import Cause, Decision
+from kurt2rt.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.rla import (
     BASIC,
     CRITIC,
@@ -134,9 +135,9 @@ class Town:
         return tuple(word for word in words if word)
 
 
-def told(record: TickRecord) -> tuple[bool, str]:
+def told(record: TickRecord) -> Outcome:
     (result,) = record.results
-    return result.accepted, result.text
+    return result.outcome
 
 
 def the_way(action: str, command_id: str = "way", of: int | None = None, *, beside: bool = False) -> Teach:
@@ -164,7 +165,7 @@ def test_where_the_mid_level_asks_the_wheels_stand_in_that_very_tick_and_its_ans
     assert town.robot.driven[-1] == STANDSTILL
 
     record = town.run(the_way("turn_left"))
-    assert told(record) == (True, "mid-level RLA 4 taught: turn_left")
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left")
     assert (record.behaviour, record.decision.rla_id, record.decision.action) == ("turn_left", 2, "forward")
     assert record.mid is not None
     assert (record.mid.behaviour, record.mid.rla_id) == ("turn_left", 4)
@@ -179,7 +180,7 @@ def test_the_first_of_three_differing_questions_is_the_mid_level_s() -> None:
     record = town.run(the_way("turn_left"))
     assert (record.decision.cause, record.decision.asks_at) == (Cause.UNKNOWN, BASIC)
     record = town.run(Teach("t", "Ann", "forward"))
-    assert told(record) == (True, "RLA 2 of turn_left taught: forward")
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="forward")
     assert record.decision.driving
 
 
@@ -199,16 +200,17 @@ def test_what_was_taught_counts_while_the_histories_are_alike(town: Town) -> Non
 def test_a_correction_is_inserted_where_the_history_is_another_one_and_replaces_where_it_is_the_same(
     town: Town,
 ) -> None:
-    assert told(town.run(another_way("turn_left", "c-1"))) == (
-        True,
-        "mid-level RLA 4 corrected: turn_left instead of straight_on",
+    assert told(town.run(another_way("turn_left", "c-1"))) == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on"
     )
     town.junction(1)
     record = town.run(another_way("turn_right", "c-2"))
-    assert told(record) == (True, "mid-level RLA 5 taught: turn_right")
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=5, level=MID, action="turn_right")
     assert record.behaviour == "turn_right"
     record = town.run(another_way("straight_on", "c-3"))
-    assert told(record) == (True, "mid-level RLA 5 corrected: straight_on instead of turn_right")
+    assert told(record) == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=5, level=MID, action="straight_on", was="turn_right"
+    )
     assert record.behaviour == "straight_on"
     assert town.ways == {4: "turn_left", 5: "straight_on"}
     assert isinstance(town.notebook.events[-1], ActionReplaced)
@@ -216,8 +218,10 @@ def test_a_correction_is_inserted_where_the_history_is_another_one_and_replaces_
 
 
 def test_a_lesson_on_the_very_history_of_an_rla_changes_that_one(town: Town) -> None:
-    assert told(town.run(the_way("straight_on", "twice"))) == (True, "mid-level RLA 4 says straight_on already")
-    assert told(town.run(the_way("turn_right", "again")))[0]
+    assert told(town.run(the_way("straight_on", "twice"))) == Outcome.of(
+        ResultCode.RLA_AGREES, rla=4, level=MID, action="straight_on"
+    )
+    assert told(town.run(the_way("turn_right", "again"))).accepted
     assert town.ways == {4: "turn_right"}
 
 
@@ -229,16 +233,15 @@ def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) ->
         town.run()
     assert not town.runtime.school.recent.knows(meant)
     record = town.run(another_way("turn_left", of=meant))
-    assert told(record) == (True, "mid-level RLA 4 corrected: turn_left instead of straight_on")
-    assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == (
-        False,
-        f"the decision of tick {town.tick + 99} is not remembered any more",
+    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on")
+    assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == Outcome.of(
+        RefusalCode.TICK_FORGOTTEN, tick=town.tick + 99
     )
 
 
 def test_the_teacher_goes_before_the_mid_level_until_the_next_junction_has_been_passed(town: Town) -> None:
     record = town.run(Pursue("p", "Ann", "turn_left"))
-    assert told(record) == (True, "turn_left is wanted until the next junction is passed")
+    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_left")
     assert record.mid is not None
     assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("turn_left", True, None)
     record = town.street(1.0)
@@ -262,7 +265,7 @@ def test_what_was_said_before_a_junction_does_not_decide_about_the_next_one(town
     seen = town.tick
     town.junction()
     record = town.run(Pursue("late", "Ann", "turn_left", seen))
-    assert told(record) == (False, "a junction was passed after this was said; look at the robot, then say it again")
+    assert told(record) == Outcome(RefusalCode.JUNCTION_PASSED)
     assert record.behaviour == "straight_on"
 
 
@@ -284,28 +287,30 @@ def test_beside_what_is_known_another_way_is_possible_at_the_same_place(town: To
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
     record = town.run(the_way("turn_left", beside=True))
-    assert told(record) == (True, "mid-level RLA 5 taught beside mid-level RLA 4: turn_left")
+    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=5, level=MID, action="turn_left", next_to=4)
     assert record.behaviour == "turn_left"  # as was commanded; what is possible is no command
     system = town.runtime.level.system
     first, second = system.rlas_at(MID)
     assert first.condition == second.condition
     again = town.run(the_way("turn_left", "again", beside=True))
-    assert told(again) == (True, "mid-level RLA 5 says turn_left already")
+    assert told(again) == Outcome.of(ResultCode.RLA_AGREES, rla=5, level=MID, action="turn_left")
 
 
 def test_beside_nothing_the_first_way_is_taught() -> None:
     town = Town()
-    assert told(town.run(the_way("turn_left", beside=True))) == (True, "mid-level RLA 4 taught: turn_left")
+    assert told(town.run(the_way("turn_left", beside=True))) == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left"
+    )
     assert town.run().behaviour == "turn_left"
 
 
 def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: Town) -> None:
-    assert told(town.run(ReplaceAction("r", "Ann", 4, "turn_right")))[0]
+    assert told(town.run(ReplaceAction("r", "Ann", 4, "turn_right"))).accepted
     assert town.run().behaviour == "turn_right"
     record = town.run(DeleteRla("d", "Ann", 4))
-    assert told(record) == (True, "mid-level RLA 4 deleted")
+    assert told(record) == Outcome.of(ResultCode.RLA_DELETED, rla=4, level=MID)
     assert (record.decision.wheel_speeds, record.decision.asks_at) == (STANDSTILL, MID)
-    assert told(town.run(Undo("u-1", "Ann"))) == (True, "undone: mid-level RLA 4 deleted")
+    assert told(town.run(Undo("u-1", "Ann"))) == Outcome.of(ResultCode.LESSON_UNDONE, says="mid-level RLA 4 deleted")
     assert town.run().behaviour == "turn_right"
     town.run(Undo("u-2", "Ann"))
     assert town.run().behaviour == "straight_on"
@@ -316,22 +321,22 @@ def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: T
 
 
 @pytest.mark.parametrize(
-    ("command", "why"),
+    ("command", "code"),
     [
-        (the_way("forward"), "there is no taught behaviour 'forward'; this task has: " + ", ".join(BEHAVIOURS)),
-        (ReplaceAction("x", "Ann", 4, "forward"), "there is no taught behaviour 'forward'; this task has: "),
-        (Teach("x", "Ann", "turn_left"), "there is no action 'turn_left'; the repertoire has: "),
-        (Teach("x", "Ann", "forward", None, "top"), "nothing is taught at a level 'top'; there are basic and mid"),
-        (Correct("x", "Ann", "bad", None, CRITIC), "nothing is taught at a level 'critic'; there are basic and mid"),
-        (Teach("x", "Ann", "forward", beside=True), "what is possible beside it is taught at the mid level; "),
-        (Pursue("x", "Ann", "turn_back"), "there is no taught behaviour 'turn_back'; this task has: "),
+        (the_way("forward"), RefusalCode.NO_BEHAVIOUR),
+        (ReplaceAction("x", "Ann", 4, "forward"), RefusalCode.NO_BEHAVIOUR),
+        (Teach("x", "Ann", "turn_left"), RefusalCode.NO_ACTION),
+        (Teach("x", "Ann", "forward", None, "top"), RefusalCode.NO_LEVEL),
+        (Correct("x", "Ann", "bad", None, CRITIC), RefusalCode.NO_LEVEL),
+        (Teach("x", "Ann", "forward", beside=True), RefusalCode.NO_OTHER_WAY),
+        (Pursue("x", "Ann", "turn_back"), RefusalCode.NO_BEHAVIOUR),
     ],
 )
-def test_what_a_level_does_not_have_is_refused_and_changes_nothing(town: Town, command: Command, why: str) -> None:
+def test_what_a_level_does_not_have_is_refused_and_changes_nothing(
+    town: Town, command: Command, code: RefusalCode
+) -> None:
     before = town.runtime.level.system.knowledge_hash()
-    accepted, text = told(town.run(command))
-    assert not accepted
-    assert text.startswith(why)
+    assert told(town.run(command)).code is code
     assert town.runtime.level.system.knowledge_hash() == before
     assert town.run().behaviour == "straight_on"
 
@@ -343,7 +348,7 @@ def test_where_the_robot_has_no_mid_level_there_is_none_to_teach() -> None:
     runtime.inbox.put(the_way("turn_left"))
     runtime.ledger.begin(0.0)
     record = runtime.tick.run(1, 0.01)
-    assert told(record) == (False, "this robot has no mid level to teach")
+    assert told(record) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert (record.mid, record.decision.asks_at) == (None, BASIC)
 
 
@@ -357,7 +362,7 @@ def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
 def test_stop_is_stop_whatever_the_mid_level_knows_and_a_new_teacher_finds_the_same_way(town: Town) -> None:
     record = town.run(Stop("s", "Ann"))
     assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, Cause.STOPPED)
-    assert told(town.run(another_way("turn_left")))[0]
+    assert told(town.run(another_way("turn_left"))).accepted
     assert town.run().decision.cause is Cause.STOPPED
     town.run(HandOver("h", "Ann"))
     town.run(Take("take", "Bob"))
@@ -453,30 +458,37 @@ def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
     again.way_to_the_first_junction()
     assert again.run().behaviour == "straight_on"
     assert again.junction(1).behaviour == "turn_right"
-    assert told(again.run(the_way("turn_left", "way", beside=True)))[0]
+    assert told(again.run(the_way("turn_left", "way", beside=True))).accepted
     assert max(again.ways) == 6  # ids run through
 
 
 @pytest.mark.parametrize(
-    ("of_an_older_task", "lesson", "who"),
+    ("of_an_older_task", "lesson", "fields"),
     [
-        ((created(9, (0.0,) * LENGTH, "fly", level=MID), deleted(9)), "deletion-9", "mid-level RLA 9"),
+        ((created(9, (0.0,) * LENGTH, "fly", level=MID), deleted(9)), "deletion-9", {"rla": 9, "level": MID}),
         (
             (created(9, (0.0,) * LENGTH, "fly", level=MID), replaced(9, "turn_left", "fly")),
             "correction-9",
-            "mid-level RLA 9",
+            {"rla": 9, "level": MID},
         ),
-        ((created(9, (0.0,) * 72, "fly", behaviour="turn_left"), deleted(9)), "deletion-9", "RLA 9 of turn_left"),
-        ((created(9, (0.0,) * 72, "fly", behaviour="soaring"), deleted(9)), "deletion-9", "RLA 9 of soaring"),
+        (
+            (created(9, (0.0,) * 72, "fly", behaviour="turn_left"), deleted(9)),
+            "deletion-9",
+            {"rla": 9, "behaviour": "turn_left"},
+        ),
+        (
+            (created(9, (0.0,) * 72, "fly", behaviour="soaring"), deleted(9)),
+            "deletion-9",
+            {"rla": 9, "behaviour": "soaring"},
+        ),
     ],
 )
 def test_an_undo_brings_nothing_back_that_this_task_cannot_follow(
-    of_an_older_task: tuple[TeachingEvent, ...], lesson: str, who: str
+    of_an_older_task: tuple[TeachingEvent, ...], lesson: str, fields: dict[str, Field]
 ) -> None:
     town = Town([*basic_knowledge(), *of_an_older_task])
-    accepted, text = told(town.run(Undo("u", "Ann", lesson)))
-    assert not accepted
-    assert text.startswith(f"{who} would say fly again, which this task does not have")
+    outcome = told(town.run(Undo("u", "Ann", lesson)))
+    assert outcome == Outcome(RefusalCode.ACTION_NOT_IN_TASK, {**fields, "action": "fly"})
     assert not town.notebook.events
     town.run()
 
@@ -487,7 +499,7 @@ def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
     runtime.inbox.put(Pursue("p", "Ann", "turn_left"))
     runtime.ledger.begin(0.0)
     record = runtime.tick.run(1, 0.01)
-    assert told(record) == (True, "turn_left is wanted")
+    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
     assert (record.decision.rla_id, record.mid) == (2, None)
     assert [rla.action for rla in runtime.level.system.rlas_at(MID)] == ["straight_on"]
 

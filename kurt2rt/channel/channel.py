@@ -23,6 +23,7 @@ from kurt2rt.channel.wire import encode_state
 from kurt2rt.explain.live import Explaining
 from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.perception.sensor_words import law_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.runtime import Runtime
@@ -78,7 +79,7 @@ class Channel:
         self._telling = telling
         self._pairing_trouble = pairing_trouble
         self._explaining = explaining
-        self._texts: dict[str, str] = {}
+        self._outcomes: dict[str, Outcome] = {}
         self._every_ticks = max(1, round(1 / (PICTURES_PER_S * runtime.robot.can.cycle_s)))
         self._speed = speed
         self._ticks = 0
@@ -114,11 +115,11 @@ class Channel:
         reception.tick = tick
         for result in record.results:
             if not result.accepted:
-                reception.settle(result.command_id, refusal("refused", result.text, tick))
+                reception.settle(result.command_id, refusal("refused", result.outcome, tick))
             elif result.lesson:
-                self._texts[result.command_id] = result.text
+                self._outcomes[result.command_id] = result.outcome
             else:
-                reception.settle(result.command_id, done(tick, result.text))
+                reception.settle(result.command_id, done(tick, result.outcome))
         self._telling.follow(record)
         self._explaining.follow(record)
         self._ticks += 1
@@ -130,11 +131,13 @@ class Channel:
     def settled(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never can be."""
         command_id, tick = acknowledgement.command_id, self._reception.tick
-        text = self._texts.pop(command_id, "")
+        outcome = self._outcomes.pop(command_id, None)
         if acknowledgement.error is None:
-            self._reception.settle(command_id, done(tick, text, row=acknowledgement.sequence))
+            self._reception.settle(command_id, done(tick, outcome, row=acknowledgement.sequence))
         else:
-            self._reception.settle(command_id, unsaved(acknowledgement.error, tick))
+            self._reception.settle(
+                command_id, unsaved(Outcome.of(RefusalCode.NOT_SAVED, says=acknowledgement.error), tick)
+            )
 
 
 @asynccontextmanager

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.outcomes import Outcomes
-from kurt2rt.channel.reply import Reply, Verdict, done, refusal, restarted, unsaved
+from kurt2rt.channel.reply import Reply, Verdict, done, plain_outcome, refusal, restarted, unsaved
 from kurt2rt.channel.requests import (
     PACKAGE,
     PART_BYTES,
@@ -35,6 +35,7 @@ from kurt2rt.channel.upload import Upload
 from kurt2rt.file_part import FilePart
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.happenings import SpeedChanged
 from kurt2rt.timing.simulated_clock import Speed
@@ -142,7 +143,9 @@ class OffTickRequests:
             case SpeedRequest(times=times):
                 refused = self._change_speed(device, times)
                 if refused is None:
-                    self._outcomes.begin(command_id).set_result(done(self._tick(), f"speed {times}"))
+                    self._outcomes.begin(command_id).set_result(
+                        done(self._tick(), Outcome.of(ResultCode.SPEED_SET, times=times))
+                    )
                 return refused
             case NextRunRequest() | LoadRequest():
                 return self._begin_next_run(device, command_id, request)
@@ -177,7 +180,7 @@ class OffTickRequests:
         if refused is not None:
             return refused
         if self._exam().running:
-            return refusal("refused", "an exam is under way; wait for its end", self._tick())
+            return refusal("refused", Outcome(RefusalCode.EXAM_UNDER_WAY), self._tick())
         self._outcomes.begin(command_id)
         self._do_outside(self._examine(command_id))
         return None
@@ -187,9 +190,10 @@ class OffTickRequests:
             await self._copies.examine()
         except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
             text = str(error) if isinstance(error, KnowledgeError) else f"the exam failed: {error!r}"
-            self._outcomes.settle(command_id, refusal("refused", text, self._tick()))
+            failed = Outcome.of(RefusalCode.EXAM_FAILED, says=text)
+            self._outcomes.settle(command_id, refusal("refused", failed, self._tick()))
         else:
-            self._outcomes.settle(command_id, done(self._tick(), "the exam has begun; the robot goes on meanwhile"))
+            self._outcomes.settle(command_id, done(self._tick(), Outcome(ResultCode.EXAM_BEGUN)))
 
     def _add_part(self, device: str, request: UploadRequest) -> Reply:
         if self._simulation is None:
@@ -201,8 +205,8 @@ class OffTickRequests:
             return refused
         try:
             size = self._upload.add(device, request.upload, request.offset, request.part)
-        except ValueError as error:
-            return refusal("refused", str(error), self._tick())
+        except CommandRefusedError as error:
+            return refusal("refused", error.outcome, self._tick())
         return done(self._tick(), size=size)
 
     def _change_speed(self, device: str, times: int) -> Reply | None:
@@ -210,9 +214,7 @@ class OffTickRequests:
         if self._simulation is None:
             return _not_simulated()
         if self._speed is None:
-            return refusal(
-                "refused", "a simulated wire has a time of its own; start kurt2rt run without --wire", self._tick()
-            )
+            return refusal("refused", Outcome(RefusalCode.OWN_TIME), self._tick())
         refused = self._not_in_charge(device)
         if refused is None:
             self._speed.set(times)
@@ -226,14 +228,14 @@ class OffTickRequests:
         if refused is not None:
             return refused
         if self._changing:
-            return refusal("refused", "the next run is being prepared; wait for it", self._tick())
+            return refusal("refused", Outcome(RefusalCode.NEXT_RUN_UNDER_WAY), self._tick())
         school = self._runtime.school
         teacher = TeacherNow(device, int(school.phase), school.session)
         if isinstance(request, LoadRequest):
             try:
                 content = self._upload.take(device, request.upload, request.sha256)
-            except ValueError as error:
-                return refusal("refused", str(error), self._tick())
+            except CommandRefusedError as error:
+                return refusal("refused", error.outcome, self._tick())
             prepare = partial(self._simulation.load, content, teacher)
         else:
             prepare = partial(self._simulation.prepare, request.world, request.task, request.fresh, teacher)
@@ -249,10 +251,11 @@ class OffTickRequests:
         except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
             told = isinstance(error, ValueError | KnowledgeError)
             text = str(error) if told else f"the next run cannot begin: {error!r}"
-            self._outcomes.settle(command_id, refusal("refused", " ".join(text.split()), self._tick()))
+            failed = Outcome.of(RefusalCode.NEXT_RUN_FAILED, says=" ".join(text.split()))
+            self._outcomes.settle(command_id, refusal("refused", failed, self._tick()))
             self._changing = False
             return
-        self._outcomes.settle(command_id, done(self._tick(), text))
+        self._outcomes.settle(command_id, done(self._tick(), Outcome.of(ResultCode.NEXT_RUN, says=text)))
         # The answer, and copies of it that a bad link needs, go out before the channel of this run closes.
         await asyncio.sleep(LAST_ANSWER_S)
         self._runtime.scheduler.end()
@@ -262,7 +265,7 @@ class OffTickRequests:
         authority = self._runtime.school.authority
         held = authority.held_by_another(device)
         if held is None and authority.teacher is None:
-            held = "nobody teaches the robot; take it first"
+            held = Outcome(RefusalCode.NO_TEACHER)
         return None if held is None else refusal("held", held, self._tick())
 
     def _do_outside(self, work: Coroutine[Any, Any, None]) -> None:
@@ -280,7 +283,7 @@ class OffTickRequests:
         try:
             part = await self._copies.read(name, offset, PART_BYTES)
         except KnowledgeError as error:
-            return refusal("refused", str(error), self._tick())
+            return refusal("refused", Outcome.of(RefusalCode.NO_FILE, says=str(error)), self._tick())
         return Reply(Verdict.DONE, {"size": part.size_bytes, "part": part.content})
 
     async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
@@ -288,10 +291,10 @@ class OffTickRequests:
             copy = await copying
         except Exception as error:  # noqa: BLE001 - whatever it is, the teacher is told, and the robot goes on
             text = str(error) if isinstance(error, KnowledgeError) else f"the copy failed: {error!r}"
-            self._outcomes.settle(command_id, unsaved(text, self._tick()))
+            self._outcomes.settle(command_id, unsaved(Outcome.of(RefusalCode.COPY_FAILED, says=text), self._tick()))
         else:
-            text = f"{copy.name}, {copy.size_bytes} bytes"
-            reply = done(self._tick(), text, name=copy.name, sha256=copy.sha256, size=copy.size_bytes)
+            copied = Outcome.of(ResultCode.COPIED, name=copy.name, size=copy.size_bytes)
+            reply = done(self._tick(), copied, name=copy.name, sha256=copy.sha256, size=copy.size_bytes)
             self._outcomes.settle(command_id, reply)
 
     def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest | BackToStartRequest) -> Reply:
@@ -303,7 +306,7 @@ class OffTickRequests:
         try:
             if isinstance(request, MoveWallRequest):
                 self._ground.move_wall(request.name, request.dx_m, request.dy_m)
-                return done(self._tick(), f"{request.name} moved")
+                return done(self._tick(), Outcome.of(ResultCode.WALL_MOVED, name=request.name))
             # The teacher who stopped it looks at it where it stands.
             stopped = self._runtime.school.stopped_since(request.seen)
             if stopped is not None:
@@ -314,8 +317,8 @@ class OffTickRequests:
                 self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
             self._runtime.set_down()
         except ValueError as error:
-            return refusal("refused", str(error), self._tick())
-        return done(self._tick(), "the robot stands elsewhere")
+            return refusal("refused", Outcome.of(RefusalCode.WORLD_REFUSES, says=str(error)), self._tick())
+        return done(self._tick(), Outcome(ResultCode.ROBOT_PLACED))
 
     def _world(self) -> Reply:
         if self._ground is None:
@@ -333,4 +336,4 @@ class OffTickRequests:
 
 
 def _not_simulated() -> Reply:
-    return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+    return Reply(Verdict.NOT_HERE, {"why": "refused", **plain_outcome(Outcome(RefusalCode.NOT_SIMULATED))})

@@ -36,6 +36,7 @@ from kurt2rt.explain.facts import DecisionFacts
 from kurt2rt.explain.plain import plain_of_facts
 from kurt2rt.health.plain import plain_of
 from kurt2rt.health.report import HealthReport
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.rla import MID
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.commands import (
@@ -141,7 +142,7 @@ class Reception:
                 return Reply(Verdict.DONE, {"health": None if health is None else plain_of(health)})
             case WhyRequest():
                 if not self._whys.take(sender.device, self.tick):
-                    return refusal("refused", "asked too often; ten times a second is enough", self.tick)
+                    return refusal("refused", Outcome(RefusalCode.TOO_OFTEN), self.tick)
                 facts = self._why()
                 return Reply(Verdict.DONE, {"why": None if facts is None else plain_of_facts(facts)})
         return await self._off_tick.answer(device, request)
@@ -152,7 +153,7 @@ class Reception:
         if stale is not None:
             return stale
         if not self._is_newest(sender):
-            return refusal("old", "a newer message came before this one", tick)
+            return refusal("old", Outcome(RefusalCode.OVERTAKEN), tick)
         command: Watch | Drive = Watch(device, request.seen)
         if isinstance(request, DriveRequest):
             command = Drive(device, request.seen, request.hold, request.left_m_s, request.right_m_s)
@@ -178,7 +179,7 @@ class Reception:
         waiting = self._outcomes.get(command_id)
         if waiting is None:
             if self._runtime.school.has_taken(command_id):  # before this start of the program, or long ago
-                return done(self.tick, "had been taken already; counted once")
+                return done(self.tick, Outcome(ResultCode.REPEATED))
             longest = MOVING_TICKS if isinstance(request, _MOVING) else COMMAND_TICKS
             stale = self._stale(request.boot, request.seen, longest)
             if stale is not None:
@@ -191,7 +192,7 @@ class Reception:
         try:
             return await asyncio.wait_for(asyncio.shield(waiting), self._longest_wait_s)
         except TimeoutError:
-            return unsaved("not saved yet; it may still count: look at the lessons", self.tick)
+            return unsaved(Outcome(RefusalCode.NOT_SAVED_YET), self.tick)
 
     def _begin(self, device: str, command_id: str, request: CommandRequest) -> Reply | None:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
@@ -219,7 +220,7 @@ class Reception:
             return restarted(self.tick)
         # So long in real time, which is the teacher's, at any speed of a simulation.
         if not 0 <= self.tick - seen <= longest * self._runtime.school.authority.speed:
-            return refusal("stale", "given on an old picture; look at the robot, then say it again", self.tick)
+            return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), self.tick)
         return None
 
     def _hand_in(self, command: Command) -> bool:
@@ -230,7 +231,7 @@ class Reception:
         return True
 
     def _too_many(self) -> Reply:
-        return refusal("refused", "too many commands wait; say it again", self.tick)
+        return refusal("refused", Outcome(RefusalCode.TOO_MANY), self.tick)
 
     def _lessons(self, count: int) -> list[list[object]]:
         rows: list[list[object]] = []

@@ -5,6 +5,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.outcome_text import text_of
+
 
 class Verdict(Enum):
     """How a request ended; each is one CoAP code."""
@@ -26,14 +29,14 @@ class Reply:
     body: Mapping[str, Any] = field(default_factory=dict)
 
 
-def refusal(why: str, text: str, tick: int) -> Reply:
-    """Understood and not done. `why` is a word for the program at the other end, `text` a sentence for the teacher."""
-    return Reply(Verdict.CONFLICT, {"t": tick, "why": why, "text": text})
+def refusal(why: str, outcome: Outcome, tick: int) -> Reply:
+    """Return the reply to a request that is understood and not done; `why` is a kind of the wire contract."""
+    return Reply(Verdict.CONFLICT, {"t": tick, "why": why, **plain_outcome(outcome)})
 
 
 def restarted(tick: int) -> Reply:
     """Refuse a request that was made for an earlier start of the robot program."""
-    return refusal("boot", "the robot program was started anew; look at the robot, then say it again", tick)
+    return refusal("boot", Outcome(RefusalCode.RESTARTED), tick)
 
 
 def malformed(text: str) -> Reply:
@@ -41,11 +44,18 @@ def malformed(text: str) -> Reply:
     return Reply(Verdict.MALFORMED, {"why": "malformed", "text": text})
 
 
-def unsaved(text: str, tick: int) -> Reply:
-    """Not durable, or not known to be."""
-    return Reply(Verdict.UNSAVED, {"t": tick, "why": "unsaved", "text": text})
+def unsaved(outcome: Outcome, tick: int) -> Reply:
+    """Return the reply to a lesson or a copy that is not durable, or not known to be."""
+    return Reply(Verdict.UNSAVED, {"t": tick, "why": "unsaved", **plain_outcome(outcome)})
 
 
-def done(tick: int, text: str = "", **more: Any) -> Reply:
-    """Carried out, and durable where it has to be."""
-    return Reply(Verdict.DONE, {"t": tick, "ok": True, "text": text, **more})
+def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
+    """Return the reply to a request that was carried out, and is durable if it has to be."""
+    told = {"text": ""} if outcome is None else plain_outcome(outcome)
+    return Reply(Verdict.DONE, {"t": tick, "ok": True, **told, **more})
+
+
+def plain_outcome(outcome: Outcome) -> dict[str, Any]:
+    """Return an outcome as the keys of a reply: a sentence for devices that know no codes, code and fields."""
+    fields = {key: list(each) if isinstance(each, tuple) else each for key, each in outcome.fields.items()}
+    return {"text": text_of(outcome), "code": outcome.code.value, "fields": fields}

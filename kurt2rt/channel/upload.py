@@ -3,6 +3,7 @@
 import hashlib
 
 from kurt2rt.channel.requests import MOST_UPLOAD_BYTES
+from kurt2rt.outcome import CommandRefusedError, RefusalCode
 
 
 class Upload:
@@ -16,25 +17,25 @@ class Upload:
     def add(self, device: str, upload: bytes, offset: int, part: bytes) -> int:
         """Add a part that begins where the parts so far end; return how many bytes are there.
 
-        A part that is there already, as a copy of a request brings it, changes nothing. Raises ValueError.
+        A part that is there already, as a copy of a request brings it, changes nothing. Raises CommandRefusedError.
         """
         if self._of != (device, upload):
             if offset != 0:
-                raise ValueError("this upload was not begun here, or another one has taken its place; begin again at 0")
+                raise CommandRefusedError(RefusalCode.UPLOAD_UNKNOWN)
             self._of, self._content = (device, upload), bytearray()
         if offset > len(self._content):
-            raise ValueError(f"a part is missing: got the one at {offset}, the next byte is {len(self._content)}")
+            raise CommandRefusedError(RefusalCode.UPLOAD_GAP, offset=offset, size=len(self._content))
         if offset + len(part) > self._most_bytes:
-            raise ValueError(f"the file is too large (at most {self._most_bytes} bytes); give it to kurt2rt run")
+            raise CommandRefusedError(RefusalCode.UPLOAD_TOO_LARGE, most_bytes=self._most_bytes)
         if self._content[offset : offset + len(part)] not in (b"", part):
-            raise ValueError(f"the part at {offset} is another one than before; begin again with another id")
+            raise CommandRefusedError(RefusalCode.UPLOAD_DIFFERS, offset=offset)
         self._content[offset : offset + len(part)] = part
         return len(self._content)
 
     def take(self, device: str, upload: bytes, sha256: bytes) -> bytes:
-        """Return the whole file and forget it. Raises ValueError where it is not this one, whole."""
+        """Return the whole file and forget it. Raises CommandRefusedError if it is not this one, or not whole."""
         if self._of != (device, upload) or hashlib.sha256(self._content).digest() != sha256:
-            raise ValueError("the file did not arrive whole (SHA-256); upload it again")
+            raise CommandRefusedError(RefusalCode.UPLOAD_INCOMPLETE)
         content = bytes(self._content)
         self._of, self._content = None, bytearray()
         return content

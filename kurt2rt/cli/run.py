@@ -170,6 +170,8 @@ def run(
         from kurt2rt.cli.scripted_file import own_file, require_agreement
         from kurt2rt.cli.terminal_screen import TerminalScreen
         from kurt2rt.layers.wanted import Wanted
+        from kurt2rt.outcome import CommandRefusedError
+        from kurt2rt.outcome_text import text_of
         from kurt2rt.recording.live_view import parse_address
         from kurt2rt.service_settings import load_service
         from kurt2rt.tasks.settings import load_task
@@ -212,8 +214,8 @@ def run(
     if behaviour is not None:
         try:
             Wanted(taught.behaviours).pursue(behaviour)
-        except ValueError as error:
-            raise typer.BadParameter(str(error), param_hint="--behaviour") from error
+        except CommandRefusedError as error:
+            raise typer.BadParameter(text_of(error.outcome), param_hint="--behaviour") from error
     orders = Orders(
         bus=robot,
         settings=settings,

@@ -28,6 +28,7 @@ from kurt2rt.cli.terminal_words import (
     way_in,
 )
 from kurt2rt.health.words import lines_of
+from kurt2rt.outcome_text import Surface
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -301,7 +302,8 @@ class TerminalTeacher:
 
     async def _tell(self, answer: Awaitable[Answer]) -> None:
         got = await answer
-        self._say(got.text if got.accepted else f"refused: {got.text}")
+        text = got.text_on(Surface.TERMINAL)
+        self._say(text if got.accepted else f"refused: {text}")
 
     async def _anyhow(self, saying: Awaitable[None]) -> bool:
         """Say something to the robot, which may be gone; whether it answered."""

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from kurt2rt.experiments.lesson_keeping import LessonLostError
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome_text import text_of
 from kurt2rt.tasks.settings import TaskSettings
 from kurt2rt.tick import TickRecord
 
@@ -25,7 +26,7 @@ def require_carried_out(
             late += 1
             continue
         raise LessonLostError(
-            f"task {task.name}, tick {record.tick}: the robot refused {result.command_id}: {result.text}",
+            f"task {task.name}, tick {record.tick}: the robot refused {result.command_id}: {text_of(result.outcome)}",
             do=(
                 f"make policy {task.policy.kind}, course {task.course.kind} and repertoire {task.repertoire} "
                 "fit together"

@@ -12,6 +12,8 @@ from kurt2rt.knowledge.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.outcome import Outcome
+from kurt2rt.outcome_text import text_of
 from kurt2rt.rla.lesson_book import LessonRecord
 from kurt2rt.rla.rla import LessonRedone, LessonUndone, TeachingEvent
 from kurt2rt.rla.rla_system import RlaSystem
@@ -69,7 +71,7 @@ def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     for command_id in command_ids:
         problem = system.why_not_redo(command_id)
         if problem is not None:
-            reasons.append(problem)
+            reasons.append(text_of(problem))
             continue
         changes.append(LessonRedone(command_id, new_origin("redo", teacher)))
         system.apply(changes[-1])
@@ -116,7 +118,7 @@ def _read(path: Path) -> _Reading:
 
 
 def _lesson_meant(
-    path: Path, lesson: str | None, last: str | None, why_not: Callable[[str], str | None], nothing: str
+    path: Path, lesson: str | None, last: str | None, why_not: Callable[[str], Outcome | None], nothing: str
 ) -> str:
     """The command id that was given, else the `last` one. Raises KnowledgeError where it cannot be done with that."""
     command_id = lesson if lesson is not None else last
@@ -124,7 +126,7 @@ def _lesson_meant(
         raise KnowledgeError(f"holds no lesson that {nothing}", where=path)
     problem = why_not(command_id)
     if problem is not None:
-        raise KnowledgeError(str(problem), where=path, do="kurt2rt knowledge lessons shows their ids")
+        raise KnowledgeError(text_of(problem), where=path, do="kurt2rt knowledge lessons shows their ids")
     return command_id
 
 
@@ -160,7 +162,7 @@ def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], re
         undoes = isinstance(change, LessonUndone)
         problem = system.why_not_undo(change.lesson) if undoes else system.why_not_redo(change.lesson)
         if problem is not None:
-            raise KnowledgeError(f"{problem}", where=refusal)
+            raise KnowledgeError(text_of(problem), where=refusal)
         system.apply(change)
 
 

@@ -70,7 +70,7 @@ class MidLevel:
         return self._overridden
 
     def override(self, behaviour: str) -> None:
-        """A teacher commands a behaviour until the next junction has been passed. Raises ValueError as `Wanted`.
+        """A teacher commands a behaviour until the next junction has been passed. Raises CommandRefusedError.
 
         Where one of the RLAs that know this very situation says so, too, it commands: what comes of it is its doing.
         """

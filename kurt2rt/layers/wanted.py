@@ -1,4 +1,6 @@
-"""Which taught behaviour the robot is to follow now."""
+"""The taught behaviour that the robot is to follow now."""
+
+from kurt2rt.outcome import CommandRefusedError, RefusalCode
 
 
 class Wanted:
@@ -11,8 +13,8 @@ class Wanted:
         """The one that is wanted now."""
 
     def pursue(self, name: str) -> None:
-        """Want another one from now on. Raises ValueError that lists them."""
+        """Follow another behaviour from now on. Raises CommandRefusedError that lists them."""
         if name not in self.behaviours:
-            known = ", ".join(self.behaviours) or "one, without a name"
-            raise ValueError(f"there is no taught behaviour {name!r}; this task has: {known}")
+            known = tuple(filter(None, self.behaviours))
+            raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=known)
         self.behaviour = name

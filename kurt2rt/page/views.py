@@ -11,6 +11,7 @@ from kurt2rt.channel.simulation_view import SIMULATION, SimulationView
 from kurt2rt.channel.state import State
 from kurt2rt.health.report import HealthReport
 from kurt2rt.health.words import headline, name_of, rows_of, trouble_in
+from kurt2rt.outcome_text import Surface
 from kurt2rt.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.standing_text import GO_ON_PAGE, headline_of
 from kurt2rt.teaching.answer import Answer
@@ -107,7 +108,7 @@ def answer_view(number: int, answer: Answer) -> dict[str, Any]:
         "number": number,
         "accepted": answer.accepted,
         "why": answer.why,
-        "text": answer.text,
+        "text": answer.text_on(Surface.PAGE),
         "tick": answer.tick,
         "extra": plain(answer.extra),
     }

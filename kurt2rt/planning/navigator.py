@@ -7,12 +7,14 @@ import numpy as np
 
 from kurt2rt.layers.mid_level import MidLevel
 from kurt2rt.mid.place import Place
+from kurt2rt.outcome import CommandRefusedError, RefusalCode
+from kurt2rt.outcome_text import text_of
 from kurt2rt.planning.chart import Charting, Forecast, charting
 from kurt2rt.planning.distances import distance_in
 from kurt2rt.planning.goal import Goal, NamedGoal, RlaGoal
 from kurt2rt.planning.seeking import Seeking
 from kurt2rt.planning.step import Course, PlanStep
-from kurt2rt.planning.target import NoSuchGoalError, Target, Vector, target_of
+from kurt2rt.planning.target import Target, Vector, target_of
 from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.rla import MID, Rla
 
@@ -83,7 +85,7 @@ class Navigator:
         return self._system.named_at(MID)
 
     def seek(self, goal: Goal) -> str:
-        """Go there from now on; how it stands. Raises NoSuchGoalError."""
+        """Go there from now on; how it stands. Raises CommandRefusedError."""
         target = self._target_of(goal)
         self._changes, self._rlas = self._system.changes, self._system.rlas_at(MID)
         self._begin(goal, target)
@@ -98,11 +100,11 @@ class Navigator:
     def be_at(self, name: str) -> None:
         """The robot is at a place that has a name, or at that of an RLA, such as RLA 12.
 
-        Raises ValueError where it is none, or places are not known.
+        Raises CommandRefusedError where it is none, or places are not known.
         """
         situation = self._mid.situation
         if not isinstance(situation, Place):
-            raise ValueError("this robot's mid level does not know places")  # noqa: TRY004 - of words, not of types
+            raise CommandRefusedError(RefusalCode.NO_PLACES)
         situation.be_at(self._place_called(name))
         self._seeking.plan = None
 
@@ -154,9 +156,9 @@ class Navigator:
             return
         try:
             target = self._target_of(seeking.goal)
-        except NoSuchGoalError as error:
+        except CommandRefusedError as error:
             self._meant, self._outdated = None, False
-            seeking.give_up(str(error))
+            seeking.give_up(text_of(error.outcome))
             return
         if self._meaning_of(seeking.goal) != self._meant:
             self._begin(seeking.goal, target)
@@ -202,8 +204,7 @@ class Navigator:
         rla = None if number is None else self._system.get(int(number[1]))
         if rla is not None and rla.level == MID:
             return rla.condition
-        known = ", ".join(sorted(self.named)) or "nothing; where an RLA knows is a place, too, such as RLA 12"
-        raise ValueError(f"nothing was named {name!r}; named were: {known}")
+        raise CommandRefusedError(RefusalCode.NO_PLACE, name=name, known=tuple(sorted(self.named)))
 
     def _still_possible(self) -> bool:
         """Whether the way that is being gone still is what it was when it was planned."""

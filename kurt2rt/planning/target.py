@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.planning.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.rla import Rla
@@ -17,10 +18,6 @@ Distance = Callable[[Vector, Vector], float]
 
 GroupAt = Callable[[Vector], tuple[Rla, ...]]
 """The RLAs on the place that a situation of the mid level is at, oldest first; none where it is at no known one."""
-
-
-class NoSuchGoalError(ValueError):
-    """What the teacher wants the robot to go to is nothing that it knows of."""
 
 
 class Target(Protocol):
@@ -79,24 +76,24 @@ def target_of(
     distance: Distance,
     group_at: GroupAt,
 ) -> Target:
-    """What a goal means now. Raises NoSuchGoalError, which says what there is.
+    """Return what a goal means now. Raises CommandRefusedError, which lists the goals that there are.
 
     `named`: situations of that level by name; `rla`: the living RLA of an id; `radius`: what counts as near.
     """
     match goal:
         case NamedGoal(name):
             if name not in named:
-                known = ", ".join(sorted(named)) or "nothing"
-                raise NoSuchGoalError(f"nothing was named {name!r}; named were: {known}")
+                raise CommandRefusedError(RefusalCode.NOT_NAMED, name=name, known=tuple(sorted(named)))
             return Near(named[name], radius, distance, group_at)
         case RlaGoal(rla_id):
             meant = rla(rla_id)
             if meant is None or meant.level != level:
-                raise NoSuchGoalError(f"there is no RLA {rla_id} of level {level}; it may have been deleted")
+                raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
             return Near(meant.condition, radius if meant.radius is None else meant.radius, distance, group_at)
         case PartialGoal(wanted, tolerance):
             unknown = sorted(name for name, _ in wanted if name not in features)
             if unknown or not wanted:
-                what = ", ".join(map(repr, unknown)) or "no feature at all"
-                raise NoSuchGoalError(f"{what} cannot be gone to; level {level} knows: {', '.join(features)}")
+                raise CommandRefusedError(
+                    RefusalCode.NO_FEATURE, features=tuple(unknown), level=level, known=tuple(features)
+                )
             return Having({features.index(name): value for name, value in wanted}, tolerance)

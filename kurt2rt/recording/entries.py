@@ -8,6 +8,7 @@ from kurt2rt.critic.critic import Opinion
 from kurt2rt.expectations.surprise import Surprise
 from kurt2rt.layers.decision import Cause, Decision, MidDecision
 from kurt2rt.mid.junction_event import JunctionEvent
+from kurt2rt.outcome_text import text_of
 from kurt2rt.planning.step import PlanStep
 from kurt2rt.rla.match import Match
 from kurt2rt.rla.rla import TeachingEvent
@@ -64,6 +65,18 @@ class OpinionEntry(NamedTuple):
     known: bool
 
 
+class ResultEntry(NamedTuple):
+    """What became of a command."""
+
+    command_id: str
+    accepted: bool
+    text: str
+    """For readers only: a replay compares the code."""
+    lesson: bool
+    code: str | None = None
+    """Code of the outcome; None in recordings of before 2026-11-22."""
+
+
 class TickEntry(NamedTuple):
     """One tick: what a replay feeds in, and what has to come out again, bit for bit."""
 
@@ -85,7 +98,7 @@ class TickEntry(NamedTuple):
     behaviour: str
     opinion: OpinionEntry | None
     surprise: Surprise | None
-    results: tuple[CommandResult, ...]
+    results: tuple[ResultEntry, ...]
     events: tuple[TeachingEvent, ...]
     """What was taught in this tick, by teachers and by the robot itself."""
     situation_crc32: int
@@ -109,11 +122,16 @@ def tick_entry_of(record: TickRecord, *, saved: bool, knowledge: str | None) -> 
         record.behaviour,
         None if record.opinion is None else _opinion_entry_of(record.opinion),
         record.surprise,
-        record.results,
+        tuple(_result_entry_of(each) for each in record.results),
         record.events,
         zlib.crc32(record.situation.vector.astype("<f8", copy=False).tobytes()),
         knowledge,
     )
+
+
+def _result_entry_of(result: CommandResult) -> ResultEntry:
+    text = text_of(result.outcome)
+    return ResultEntry(result.command_id, result.accepted, text, result.lesson, result.code.value)
 
 
 def decision_entry_of(decision: Decision) -> DecisionEntry:

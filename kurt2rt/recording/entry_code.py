@@ -15,9 +15,8 @@ from kurt2rt.mid.junction_event import JunctionEvent
 from kurt2rt.planning.step import Course, PlanStep
 from kurt2rt.recording.checked import RecordingError
 from kurt2rt.recording.command_code import decode_command, encode_command
-from kurt2rt.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, TickEntry
+from kurt2rt.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.rla.rla import BASIC
-from kurt2rt.teaching.commands import CommandResult
 
 _Value = TypeVar("_Value")
 
@@ -74,7 +73,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             "behaviour": entry.behaviour,
             "opinion": None if entry.opinion is None else _tuple(entry.opinion),
             "surprise": None if entry.surprise is None else _tuple(entry.surprise),
-            "results": [_result(each) for each in entry.results] or None,
+            "results": [_tuple(each) for each in entry.results] or None,
             "events": [json.loads(encode_event(each)) for each in entry.events] or None,
             "situation_crc32": entry.situation_crc32,
             "knowledge": entry.knowledge,
@@ -84,15 +83,6 @@ def _content(entry: TickEntry) -> dict[str, Any]:
 
 def _wheels(speeds: WheelSpeeds) -> dict[str, Any]:
     return {"left_m_s": _number(speeds.left_m_s), "right_m_s": _number(speeds.right_m_s)}
-
-
-def _result(result: CommandResult) -> dict[str, Any]:
-    return {
-        "command_id": result.command_id,
-        "accepted": result.accepted,
-        "text": result.text,
-        "lesson": result.lesson,
-    }
 
 
 def _tuple(value: Any) -> dict[str, Any]:
@@ -161,7 +151,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
             opinion["known"],
         ),
         None if surprise is None else _surprise_of(surprise),
-        tuple(CommandResult(**each) for each in content.get("results", ())),
+        tuple(ResultEntry(**each) for each in content.get("results", ())),
         _all(lambda each: decode_event(json.dumps(each), f"tick {content['tick']}"), content.get("events", ())),
         content["situation_crc32"],
         content.get("knowledge"),

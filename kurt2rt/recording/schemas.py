@@ -55,7 +55,7 @@ TICK_SCHEMA: JsonSchema = {
         ),
         behaviour=_TEXT,
         opinion=_map(value=_COUNT, appraisal=_TEXT, distance=_NUMBER),
-        results=_many(_map(command_id=_TEXT, accepted=_FLAG, text=_TEXT)),
+        results=_many(_map(command_id=_TEXT, accepted=_FLAG, text=_TEXT, lesson=_FLAG, code=_TEXT)),
         events=_many(_EVENT),
         situation_crc32=_COUNT,
         knowledge=_TEXT,

@@ -23,6 +23,7 @@ from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.knowledge.events import encode_event
 from kurt2rt.knowledge.politely import politely
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.outcome_text import text_of
 from kurt2rt.recording.entries import tick_entry_of
 from kurt2rt.recording.entry_code import encode_tick
 from kurt2rt.recording.pictures import (
@@ -146,7 +147,7 @@ class Topics:
         """What a reader of the log wants to know of a tick, where it is new."""
         for result in record.results:
             level = LogLevel.Info if result.accepted else LogLevel.Warning
-            self.say(f"{result.command_id}: {result.text}" if result.text else result.command_id, level, time_ns)
+            self.say(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
         doing = words_of(record.decision, record.behaviour)
         if doing != self._doing:
             self._doing = doing

@@ -3,6 +3,7 @@
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.rla.rla import (
     ASK,
     BASIC,
@@ -129,17 +130,17 @@ class LessonBook:
         self._records.append(LessonRecord(lesson, behaviour=behaviour, level=level))
         self.standing += 1
 
-    def why_not_undo(self, command_id: str) -> str | None:
-        """Why the lesson of that command cannot be taken back now, in a sentence; None where it can."""
+    def why_not_undo(self, command_id: str) -> Outcome | None:
+        """Return why the lesson of that command cannot be taken back now; None if it can."""
         record = self.get(command_id)
         if record is None:
-            return f"there is no lesson {command_id!r}"
+            return Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson=command_id)
         if record.undone:
-            return f"lesson {command_id!r} was undone already"
+            return Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=command_id)
         newest = self._records[self._standing_of[pile_of(record.event)][-1]]
         if newest is not record:
             later = newest.event.origin.command_id
-            return f"lesson {later!r} came after {command_id!r} ({newest.text}); undo that one first"
+            return Outcome.of(RefusalCode.TAUGHT_AFTER, later=later, lesson=command_id, says=newest.text)
         return None
 
     def strike(self, command_id: str) -> Lesson:
@@ -158,16 +159,16 @@ class LessonBook:
             self._newest.pop()
         return lesson
 
-    def why_not_redo(self, command_id: str) -> str | None:
-        """Why the lesson of that command cannot stand again, in a sentence; None where it can.
+    def why_not_redo(self, command_id: str) -> Outcome | None:
+        """Return why the lesson of that command cannot stand again; None if it can.
 
         It can where its RLA, or its name, is again as the lesson found it.
         """
         record = self.get(command_id)
         if record is None:
-            return f"there is no lesson {command_id!r}"
+            return Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson=command_id)
         if not record.undone:
-            return f"lesson {command_id!r} stands; there is nothing to redo"
+            return Outcome.of(RefusalCode.STANDS_ALREADY, lesson=command_id)
         below = self._below[self._place[command_id]]
         pile = self._standing_of.get(pile_of(record.event))
         top = pile[-1] if pile else None
@@ -175,11 +176,12 @@ class LessonBook:
             return None
         if below is not None and self._records[below].undone:
             was = self._records[below]
-            return f"{command_id!r} was taught after {was.event.origin.command_id!r} ({was.text}); redo that one first"
+            earlier = was.event.origin.command_id
+            return Outcome.of(RefusalCode.STANDS_ON_UNDONE, lesson=command_id, earlier=earlier, says=was.text)
         assert top is not None  # nothing below it is undone, so it is something above that is in the way
         newest = self._records[top]
         later = newest.event.origin.command_id
-        return f"lesson {later!r} came in the place of {command_id!r} ({newest.text}); undo that one first"
+        return Outcome.of(RefusalCode.TAUGHT_INSTEAD, later=later, lesson=command_id, says=newest.text)
 
     def put_back(self, command_id: str) -> Lesson:
         """Mark a lesson as standing, for which `why_not_redo` has no reason against it; returns it."""

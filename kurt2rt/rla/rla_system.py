@@ -11,6 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.outcome import Outcome
+from kurt2rt.outcome_text import text_of
 from kurt2rt.rla.appraisals import Appraisal, Appraisals
 from kurt2rt.rla.condition import Condition
 from kurt2rt.rla.fingerprint import knowledge_hash_of
@@ -137,8 +139,8 @@ class RlaSystem:
         """The lesson of that command."""
         return self._book.get(command_id)
 
-    def why_not_undo(self, command_id: str) -> str | None:
-        """Why the lesson of that command cannot be undone now, in a sentence; None where it can."""
+    def why_not_undo(self, command_id: str) -> Outcome | None:
+        """Return why the lesson of that command cannot be undone now; None if it can."""
         return self._book.why_not_undo(command_id)
 
     @property
@@ -146,8 +148,8 @@ class RlaSystem:
         """Command id of the lesson that was undone last and does not stand again."""
         return self._book.last_undone
 
-    def why_not_redo(self, command_id: str) -> str | None:
-        """Why the lesson of that command, taken back, cannot stand again now, in a sentence; None where it can."""
+    def why_not_redo(self, command_id: str) -> Outcome | None:
+        """Return why the undone lesson of that command cannot stand again now; None if it can."""
         return self._book.why_not_redo(command_id)
 
     def comes_back(self, command_id: str) -> Rla | None:
@@ -195,12 +197,12 @@ class RlaSystem:
             case LessonUndone(lesson, _):
                 problem = self._book.why_not_undo(lesson)
                 if problem is not None:
-                    raise InvalidEventError(problem)
+                    raise InvalidEventError(text_of(problem))
                 self._take_back(self._book.strike(lesson))
             case LessonRedone(lesson, _):
                 problem = self._book.why_not_redo(lesson)
                 if problem is not None:
-                    raise InvalidEventError(problem)
+                    raise InvalidEventError(text_of(problem))
                 self._learn(self._book.put_back(lesson), again=True)
             case SessionBegun() | Appraised() | KnowledgeMerged():
                 pass

@@ -11,7 +11,8 @@ import anyio.lowlevel
 from kurt2rt.channel.requests import COMMAND_ID_BYTES, CommandRequest, Request, StopRequest
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError, decode_answer, encode_request
-from kurt2rt.teaching.answer import Answer, NoAnswerError, answer_of
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.teaching.answer import Answer, NoAnswerError, answer_of, local_refusal
 from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response
 from kurt2rt.teaching.pictures import Pictures
 
@@ -72,7 +73,7 @@ class Asking:
         try:
             payload = encode_request(request)
         except WireError as error:
-            return Answer(False, "malformed", str(error), -1)
+            return local_refusal("malformed", Outcome.of(RefusalCode.MALFORMED, says=str(error)))
         # A stop names no start of the robot: the one that was seen when it was said, or a later one, took it.
         newest = self._pictures.newest
         boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot

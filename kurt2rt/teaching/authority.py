@@ -3,6 +3,7 @@
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.commands import Drive
 
@@ -35,21 +36,21 @@ class Authority:
         self._behaviour_name = ""
         self._behaviour_until = -1
 
-    def held_by_another(self, teacher: str) -> str | None:
-        """Why this one may not teach now; None when he may."""
+    def held_by_another(self, teacher: str) -> Outcome | None:
+        """Return why this teacher may not teach now; None if they may."""
         if self.teacher is None or self.teacher == teacher:
             return None
-        return f"{self.teacher} teaches now; ask to be handed over to, or take the robot"
+        return Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher=self.teacher)
 
     def claim(self, teacher: str) -> None:
         """Become the teacher where nobody is; call it for every command that is carried out."""
         if self.teacher is None:
             self._become(teacher)
 
-    def take(self, teacher: str, tick: int) -> str | None:
-        """Become the teacher also in place of another one; a refusal while that one drives by hand."""
+    def take(self, teacher: str, tick: int) -> Outcome | None:
+        """Become the teacher also in place of another one; return a refusal while that one drives by hand."""
         if self.teacher not in (None, teacher) and self.is_manual(tick):
-            return f"{self.teacher} drives by hand just now; stop the robot first"
+            return Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher=self.teacher)
         if self.teacher != teacher:
             self._become(teacher)
         return None

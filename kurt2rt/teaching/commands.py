@@ -6,6 +6,7 @@ Four kinds, as in the paper: motor commands, behaviours, reinforcements, and org
 
 from dataclasses import dataclass
 
+from kurt2rt.outcome import Code, Outcome
 from kurt2rt.planning.goal import Goal
 from kurt2rt.rla.rla import BASIC, Phase
 
@@ -301,8 +302,16 @@ class CommandResult:
     """What became of a command in the tick that took it. A lesson is safe only once the journal says so as well."""
 
     command_id: str
-    accepted: bool
-    text: str
-    """What was done, or why not and what to do."""
+    outcome: Outcome
     lesson: bool = False
     """Whether it became an event that has to reach the journal."""
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the command was carried out."""
+        return self.outcome.accepted
+
+    @property
+    def code(self) -> Code:
+        """Code of the outcome."""
+        return self.outcome.code

@@ -1,11 +1,10 @@
 """What a teacher says of places and goals: names for situations, where the robot is, where it is to go."""
 
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.planning.navigator import Navigator
-from kurt2rt.planning.target import NoSuchGoalError
 from kurt2rt.rla.rla import MID, Origin, SituationNamed, TeachingEvent
 from kurt2rt.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
 from kurt2rt.teaching.mid_lessons import MidLessons
-from kurt2rt.teaching.refused import RefusedError
 
 ErrandCommand = NameSituation | Seek | StopSeeking | BeAt
 
@@ -22,43 +21,37 @@ class Errands:
         """What the teacher had seen when he said what is sought now."""
         self._planned_tick = -1
 
-    def name(self, command: NameSituation, origin: Origin) -> tuple[str, TeachingEvent]:
-        """The event that gives a situation its name. Raises RefusedError."""
+    def name(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+        """Return what was done and the event that names a situation. Raises CommandRefusedError."""
         name = command.name
         if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
-            raise RefusedError(f"{name!r} is no name for a situation; give 1 to {LONGEST_NAME} letters on one line")
+            raise CommandRefusedError(RefusalCode.BAD_NAME, name=name, longest=LONGEST_NAME)
         situation = tuple(self._lessons.meant(command.decision_tick).vector.tolist())
-        return f"situation named: {name}", SituationNamed(name, situation, MID, origin)
+        return Outcome.of(ResultCode.SITUATION_NAMED, name=name), SituationNamed(name, situation, MID, origin)
 
-    def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> str:
-        """What was done, in words. Raises RefusedError, also for what comes so late that it is not meant any more."""
+    def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> Outcome:
+        """Return what was done. Raises CommandRefusedError, also for a command that a later one has replaced."""
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if isinstance(command, BeAt):
             return self._be_at(command.name, seen_tick)
         if seen_tick < self._seen_tick:
-            raise RefusedError("another goal was given after this was said; look at the robot, then say it again")
+            raise CommandRefusedError(RefusalCode.GOAL_SINCE)
         said = self._seek(command, tick)
         self._seen_tick = seen_tick
         return said
 
-    def _seek(self, command: Seek | StopSeeking, tick: int) -> str:
+    def _seek(self, command: Seek | StopSeeking, tick: int) -> Outcome:
         if isinstance(command, StopSeeking):
             self._navigator.stop()
-            return "no goal is sought"
-        if tick == self._planned_tick:  # a tick has no time for as many plans as somebody may send
-            raise RefusedError("another goal was given in the same moment; say it again")
-        try:
-            said = self._navigator.seek(command.goal)
-        except NoSuchGoalError as error:
-            raise RefusedError(str(error)) from error
+            return Outcome(ResultCode.GOAL_DROPPED)
+        if tick == self._planned_tick:  # a plan takes a good part of a tick
+            raise CommandRefusedError(RefusalCode.GOAL_IN_SAME_TICK)
+        says = self._navigator.seek(command.goal)
         self._planned_tick = tick
-        return said
+        return Outcome.of(ResultCode.GOAL_SOUGHT, says=says)
 
-    def _be_at(self, name: str, seen_tick: int) -> str:
+    def _be_at(self, name: str, seen_tick: int) -> Outcome:
         if seen_tick < self._lessons.passed_at_tick:
-            raise RefusedError("a junction was passed after this was said; look at the robot, then say it again")
-        try:
-            self._navigator.be_at(name)
-        except ValueError as error:
-            raise RefusedError(str(error)) from error
-        return f"the robot is at {name}"
+            raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
+        self._navigator.be_at(name)
+        return Outcome.of(ResultCode.LOCATED, name=name)

@@ -4,11 +4,11 @@ import numpy as np
 
 from kurt2rt.layers.decision import Decision
 from kurt2rt.layers.mid_level import MidLevel
+from kurt2rt.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.rla.rla import MID
 from kurt2rt.teaching.commands import Correct, Teach
 from kurt2rt.teaching.meant import Meant
 from kurt2rt.teaching.recent_mid import RecentMid
-from kurt2rt.teaching.refused import RefusedError
 
 
 class MidLessons:
@@ -32,7 +32,7 @@ class MidLessons:
     def meant(self, decision_tick: int | None) -> Meant:
         """The situation of a tick; None: the present one.
 
-        Raises RefusedError for one that is not remembered, or in which the robot did not know where it was.
+        Raises CommandRefusedError for one that is not remembered, or in which the robot did not know where it was.
         """
         share = self.mid.settings.learning.insert_beyond_share
         if decision_tick is None:
@@ -40,7 +40,7 @@ class MidLessons:
             return _known(Meant(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share))
         moment = self._recent.at(decision_tick)
         if moment is None:
-            raise RefusedError(f"the decision of tick {decision_tick} is not remembered any more")
+            raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=decision_tick)
         return _known(Meant(moment.vector, "", MID, moment.rla_id, share))
 
     def taught(self, command: Teach | Correct) -> None:
@@ -63,5 +63,5 @@ class MidLessons:
 def _known(meant: Meant) -> Meant:
     """Places are matched by distances, and there are none from nowhere."""
     if np.isnan(meant.vector).any():
-        raise RefusedError("the robot does not know where it is, so nothing can be taught there; say where it is first")
+        raise CommandRefusedError(RefusalCode.PLACE_UNKNOWN)
     return meant

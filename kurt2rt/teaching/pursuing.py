@@ -1,9 +1,9 @@
 """The teacher says which taught behaviour is to be followed: for good, or before a mid level until a junction."""
 
 from kurt2rt.layers.wanted import Wanted
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.teaching.commands import Pursue
 from kurt2rt.teaching.mid_lessons import MidLessons
-from kurt2rt.teaching.refused import RefusedError
 
 
 class Pursuing:
@@ -16,24 +16,18 @@ class Pursuing:
         self._seen_tick = -1
         """What the teacher had seen when he said what is wanted now."""
 
-    def take(self, command: Pursue, tick: int) -> str:
-        """Want what he says, in this tick; what was done, in words. Raises RefusedError."""
+    def take(self, command: Pursue, tick: int) -> Outcome:
+        """Follow the behaviour from this tick on; return what was done. Raises CommandRefusedError."""
         wanted, mid = self._wanted, self._mid
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if seen_tick < self._seen_tick:
-            raise RefusedError(
-                f"{wanted.behaviour or 'the only behaviour'} was asked for after this was said; "
-                "look at the robot, then say it again"
-            )
+            raise CommandRefusedError(RefusalCode.BEHAVIOUR_SINCE, behaviour=wanted.behaviour)
         if mid is not None and seen_tick < mid.passed_at_tick:
-            raise RefusedError("a junction was passed after this was said; look at the robot, then say it again")
-        try:
-            if mid is None:
-                wanted.pursue(command.behaviour)
-            else:
-                mid.mid.override(command.behaviour)
-        except ValueError as error:
-            raise RefusedError(str(error)) from error
+            raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
+        if mid is None:
+            wanted.pursue(command.behaviour)
+        else:
+            mid.mid.override(command.behaviour)
         self._seen_tick = seen_tick
-        so_long = "" if mid is None else " until the next junction is passed"
-        return f"{command.behaviour or 'the only behaviour'} is wanted{so_long}"
+        code = ResultCode.BEHAVIOUR_WANTED if mid is None else ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION
+        return Outcome.of(code, behaviour=command.behaviour)

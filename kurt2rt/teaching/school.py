@@ -7,6 +7,7 @@ from kurt2rt.critic.agreement import Agreement
 from kurt2rt.critic.critic import Critic, Opinion
 from kurt2rt.layers.basic_level import BasicLevel
 from kurt2rt.layers.decision import Decision
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.reinforcement.self_teaching import SelfTeaching
@@ -36,12 +37,12 @@ from kurt2rt.teaching.commands import (
     Teach,
     Watch,
 )
-from kurt2rt.teaching.errands import ErrandCommand, Errands
+from kurt2rt.teaching.errands import Errands
 from kurt2rt.teaching.learning import Learning
 from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.pursuing import Pursuing
 from kurt2rt.teaching.recent import RecentDecisions
-from kurt2rt.teaching.refused import RefusedError, refuse
+from kurt2rt.teaching.taught import Taught
 from kurt2rt.teaching.teaching_clock import TeachingClock
 from kurt2rt.teaching.tuition import Tuition, require_action
 
@@ -166,8 +167,8 @@ class School:
         """Whether the robot may drive by its RLAs only while a teacher is there."""
         return self.authority.attended and self.phase is not Phase.AUTONOMOUS
 
-    def follow(self, command: Watch | Drive, tick: int) -> str | None:
-        """Take in a message of a stream, of which only the newest counts; a refusal in words."""
+    def follow(self, command: Watch | Drive, tick: int) -> Outcome | None:
+        """Apply a message of a stream, of which only the newest counts; return a refusal."""
         authority = self.authority
         refusal = (
             _no_person(command.teacher) or authority.held_by_another(command.teacher) or self.why_not_by_hand(command)
@@ -184,21 +185,19 @@ class School:
         self._stopped_by = {command.teacher}
         return None
 
-    def why_not_by_hand(self, command: Watch | Drive) -> str | None:
-        """Why this press does not drive the robot, in a sentence; None when it does. Being there is always allowed."""
+    def why_not_by_hand(self, command: Watch | Drive) -> Outcome | None:
+        """Return why this press does not drive the robot; None if it does. Being there is always allowed."""
         if isinstance(command, Watch):
             return None
         if self.authority.is_over(command):
-            return "this press is over; let go and press anew"
+            return Outcome(RefusalCode.PRESS_OVER)
         return self._stopped_by_another(command.teacher)
 
-    def stopped_since(self, seen_tick: int | None) -> str | None:
-        """Why what was said on the picture of this tick, and comes after a stop, must neither lift that nor change what
-        comes after it; None where no stop came between.
-        """
+    def stopped_since(self, seen_tick: int | None) -> Outcome | None:
+        """Return why a command given on the picture of this tick must not lift a stop; None if no stop came since."""
         if seen_tick is None or seen_tick >= self.stopped_at_tick:
             return None
-        return "the robot was stopped after this was said; look at it, then say it again"
+        return Outcome(RefusalCode.STOPPED_SINCE)
 
     def attend(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command. An event in the answer already acts and has to reach the journal."""
@@ -206,22 +205,27 @@ class School:
         # A stop that comes twice stops twice: it may be the second one that is meant.
         stops_again = isinstance(command, Stop) and command.hold is None
         if self.has_taken(command.command_id) and not stops_again:
-            return CommandResult(command.command_id, True, "had been taken already; counted once"), None
+            return CommandResult(command.command_id, Outcome(ResultCode.REPEATED)), None
         if DERIVED in command.command_id and not isinstance(command, Stop):
-            why = f"the id {command.command_id!r} has a {DERIVED}, which only ids of the robot's own have; leave it out"
-            return CommandResult(command.command_id, False, why), None
+            why = Outcome.of(RefusalCode.RESERVED_ID, command_id=command.command_id, sign=DERIVED)
+            return CommandResult(command.command_id, why), None
         nobody_taught = self.authority.teacher is None
         try:
-            text, event = self._carry_out(command, situation, tick)
+            outcome, event = self._carry_out(command, situation, tick)
             if event is not None:
                 self.learning.apply(event)
             self._heed(command)
-        except (RefusedError, InvalidEventError) as error:
+        except (CommandRefusedError, InvalidEventError) as error:
             if nobody_taught and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # who was refused has not become the teacher by it
-            return CommandResult(command.command_id, False, str(error)), None
+            why = (
+                error.outcome
+                if isinstance(error, CommandRefusedError)
+                else Outcome.of(RefusalCode.DOES_NOT_FIT, says=str(error))
+            )
+            return CommandResult(command.command_id, why), None
         self.learning.taken.add(command.command_id)
-        return CommandResult(command.command_id, True, text, lesson=event is not None), event
+        return CommandResult(command.command_id, outcome, lesson=event is not None), event
 
     def _heed(self, command: Command) -> None:
         """What was taught about the present goes before what the teacher had commanded for it."""
@@ -232,16 +236,16 @@ class School:
         """What is learnt from a tick when the wheels have been told; see `Learning.from_tick`."""
         return self.learning.from_tick(self.phase, tick, decision, opinion)
 
-    def _carry_out(self, command: Command, situation: Situation, tick: int) -> tuple[str, TeachingEvent | None]:
+    def _carry_out(self, command: Command, situation: Situation, tick: int) -> Taught:
         authority = self.authority
         if isinstance(command, Stop):
-            return self._stop(command, tick), None
+            return Taught(self._stop(command, tick))
         refuse(_no_person(command.teacher))
         if isinstance(command, Take):
             before = authority.teacher
             refuse(authority.take(command.teacher, tick))
             self._pass_on(before)
-            return f"{command.teacher} teaches", None
+            return Taught(Outcome.of(ResultCode.TAKEN, teacher=command.teacher))
         refuse(authority.held_by_another(command.teacher))
         authority.claim(command.teacher)
         match command:
@@ -249,52 +253,54 @@ class School:
                 refuse(None if to is None else _no_person(to))
                 authority.hand_over(to)
                 self._pass_on(command.teacher)
-                return "nobody teaches now" if to is None else f"{to} teaches now", None
+                released = Outcome(ResultCode.RELEASED)
+                return Taught(released if to is None else Outcome.of(ResultCode.HANDED_OVER, teacher=to))
             case Resume():
                 refuse(self.stopped_since(command.seen_tick))
                 self.stopped = None
                 self._stopped_by.clear()
                 self._stops_since_go.clear()
                 authority.end_hand()
-                return "the robot may drive", None
+                return Taught(Outcome(ResultCode.RESUMED))
             case SetPhase():
                 if command.phase is Phase.AUTONOMOUS:
                     refuse(self.stopped_since(command.seen_tick))
                 self.phase = command.phase
-                return f"phase {command.phase.value}, {command.phase.name.lower()}", None
+                phase = command.phase
+                return Taught(Outcome.of(ResultCode.PHASE_SET, phase=phase.value, name=phase.name.lower()))
             case Pursue():
                 refuse(self.stopped_since(command.seen_tick))
-                return self._pursuing.take(command, tick), None
+                return Taught(self._pursuing.take(command, tick))
             case Seek() | StopSeeking():
                 refuse(self.stopped_since(command.seen_tick))
-                return self._errands_of(command).carry_out(command, tick), None
+                return Taught(self._errands_of().carry_out(command, tick))
             case BeAt():
-                return self._errands_of(command).carry_out(command, tick), None
+                return Taught(self._errands_of().carry_out(command, tick))
             case NameSituation():
-                return self._errands_of(command).name(command, self._origin(command, tick))
+                return Taught(*self._errands_of().name(command, self._origin(command, tick)))
             case RunBehaviour():
-                return self._run(command, tick), None
+                return Taught(self._run(command, tick))
             case BeginSession() | EndSession():
-                return self._session(command, tick)
+                return Taught(*self._session(command, tick))
             case Watch() | Drive():
                 raise AssertionError("streams are followed, not carried out")
             case _:
                 return self._tuition.event_of(command, situation, self._origin(command, tick))
 
-    def _stop(self, command: Stop, tick: int) -> str:
+    def _stop(self, command: Stop, tick: int) -> Outcome:
         if command.hold is not None and self.authority.drives_on(command.teacher, command.hold, tick):
-            return "that press is over; a later one drives"
+            return Outcome(ResultCode.RELEASE_SUPERSEDED)
         # A copy brakes again, but nobody has said it anew: who says go has seen what it was a copy of.
         if command.command_id not in self._stops_since_go:
             self._stops_since_go.append(command.command_id)
             self.stopped_at_tick = tick
         reason = StopReason.SAID_STOP if command.hold is None else StopReason.LET_GO
         self.stop(ActiveStop(reason, command.teacher), command.teacher)
-        return "the robot stands until it is told to resume"
+        return Outcome(ResultCode.STOPPED)
 
-    def _errands_of(self, command: ErrandCommand) -> Errands:
+    def _errands_of(self) -> Errands:
         if self._errands is None:
-            raise RefusedError(f"{type(command).__name__}: this robot has no mid level that could go anywhere")
+            raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
         return self._errands
 
     def _pass_on(self, before: str | None) -> None:
@@ -302,16 +308,16 @@ class School:
         if before is not None:
             self._stopped_by.discard(before)
 
-    def _run(self, command: RunBehaviour, tick: int) -> str:
+    def _run(self, command: RunBehaviour, tick: int) -> Outcome:
         require_action(command.action, self._level.repertoire)
         refuse(self.stopped_since(command.seen_tick) or self._stopped_by_another(command.teacher))
         if not self.authority.present(tick):
-            raise RefusedError("a behaviour runs only while its teacher is there and watches")
+            raise CommandRefusedError(RefusalCode.TEACHER_ABSENT)
         self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
         self.authority.run(command.action, tick, command.ticks)
-        return f"{command.action} for {command.ticks} ticks"
+        return Outcome.of(ResultCode.ACTION_RUNS, action=command.action, ticks=command.ticks)
 
-    def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[str, TeachingEvent]:
+    def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[Outcome, TeachingEvent]:
         name = self.session
         taken = self._clock.take(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
@@ -319,15 +325,15 @@ class School:
             self.stop(self.stopped or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
         return taken
 
-    def _stopped_by_another(self, teacher: str) -> str | None:
-        others = sorted(self._stopped_by - {teacher})
-        return f"{' and '.join(others)} stopped the robot; say resume first" if others else None
+    def _stopped_by_another(self, teacher: str) -> Outcome | None:
+        others = tuple(sorted(self._stopped_by - {teacher}))
+        return Outcome.of(RefusalCode.STOPPED_BY, teachers=others) if others else None
 
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Watch | Drive)
         return Origin(command.command_id, command.teacher, self.phase, tick)
 
 
-def _no_person(name: str) -> str | None:
-    """Why nobody of this name teaches: the journal would take what he says for what the critic does."""
-    return f"{name} is the name of the robot's own critic; teach under another one" if name == CRITIC else None
+def _no_person(name: str) -> Outcome | None:
+    """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
+    return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None

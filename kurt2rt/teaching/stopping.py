@@ -9,7 +9,8 @@ import anyio
 import anyio.abc
 
 from kurt2rt.channel.requests import COMMAND_ID_BYTES, StopRequest
-from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.teaching.answer import Answer, NoAnswerError, local_refusal
 from kurt2rt.teaching.asking import Asking
 
 
@@ -56,7 +57,7 @@ class Stopping:
                 return await give()
             finally:
                 self._moving.discard(scope)
-        return Answer(False, "stopped", f"{what} was stopped meanwhile", -1)
+        return local_refusal("stopped", Outcome.of(RefusalCode.STOPPED_MEANWHILE, command=what))
 
     def wish_anew(self) -> None:
         """The teacher wishes something later than the stop: it is sent no more."""

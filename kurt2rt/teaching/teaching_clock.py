@@ -1,8 +1,8 @@
 """Sessions, and how long they last: the time that the paper counts as teaching."""
 
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.teaching.commands import BeginSession, EndSession
-from kurt2rt.teaching.refused import RefusedError
 
 
 class TeachingClock:
@@ -18,15 +18,15 @@ class TeachingClock:
         """How long the session that is on has lasted at `tick`, or how long the last one did."""
         return self._lasted_ticks if self.session is None else tick - self._from_tick
 
-    def take(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[str, TeachingEvent]:
-        """Begin or end a session: what was done, and the event that tells it. Raises RefusedError."""
+    def take(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+        """Begin or end a session; return what was done and its event. Raises CommandRefusedError."""
         if isinstance(command, BeginSession):
             if self.session is not None:
-                raise RefusedError(f"the session {self.session!r} is on; end it first")
+                raise CommandRefusedError(RefusalCode.SESSION_ON, session=self.session)
             self.session, self._from_tick = command.name, tick
-            return f"session {command.name!r} begins", SessionBegun(command.name, origin)
+            return Outcome.of(ResultCode.SESSION_BEGUN, session=command.name), SessionBegun(command.name, origin)
         if self.session is None:
-            raise RefusedError("no session is on")
+            raise CommandRefusedError(RefusalCode.NO_SESSION)
         name, self._lasted_ticks = self.session, self.ticks(tick)
         self.session = None
-        return f"session {name!r} is over; the robot stands", SessionEnded(self._lasted_ticks, origin)
+        return Outcome.of(ResultCode.SESSION_ENDED, session=name), SessionEnded(self._lasted_ticks, origin)

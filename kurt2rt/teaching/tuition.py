@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from kurt2rt.layers.basic_level import BasicLevel
+from kurt2rt.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.perception.perception import Situation
 from kurt2rt.reinforcement.reinforcement import Reinforcement
 from kurt2rt.rla.match import Match
@@ -17,20 +18,16 @@ from kurt2rt.rla.rla import (
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
-    TeachingEvent,
 )
 from kurt2rt.teaching.appraising import Appraising
 from kurt2rt.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.teaching.meant import Meant
 from kurt2rt.teaching.mid_lessons import MidLessons
 from kurt2rt.teaching.recent import RecentDecisions
-from kurt2rt.teaching.refused import RefusedError, refuse
+from kurt2rt.teaching.taught import Taught, rla_outcome
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Commands that are about the knowledge."""
-
-Taught = tuple[str, TeachingEvent | None]
-"""What was done, in words, and the event that does it; None where nothing had to be."""
 
 
 class Tuition:
@@ -62,7 +59,7 @@ class Tuition:
         """How often a teacher has corrected, by level."""
 
     def event_of(self, command: LessonCommand, situation: Situation, origin: Origin) -> Taught:
-        """What a command teaches in the present `situation`. Raises RefusedError."""
+        """Return what a command teaches in the present `situation`. Raises CommandRefusedError."""
         match command:
             case Teach() | Correct():
                 return self._lesson(command, situation, origin)
@@ -71,10 +68,11 @@ class Tuition:
                 self._require_action_of(rla.level, action)
                 other = self._other_way(action, rla)
                 if other is not None:
-                    raise RefusedError(f"{other.title} says {action} there already; delete {rla.title} instead")
+                    refuse(rla_outcome(RefusalCode.SAYS_SO, other, action=action, delete=rla_id))
                 return self._replace(rla, action, origin)
             case DeleteRla(rla_id=rla_id):
-                return f"{self._require_rla(rla_id).title} deleted", RlaDeleted(rla_id, origin)
+                deleted = rla_outcome(ResultCode.RLA_DELETED, self._require_rla(rla_id))
+                return Taught(deleted, RlaDeleted(rla_id, origin))
             case Reward():
                 return self._reward(command, origin)
             case Appraise():
@@ -85,14 +83,14 @@ class Tuition:
     def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> Taught:
         if command.level == MID:
             if self._mid is None:
-                raise RefusedError("this robot has no mid level to teach")
+                raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
             require_behaviour(command.action, self._level.wanted.behaviours)
             meant = self._mid.meant(command.decision_tick)
         elif command.level == BASIC:
             require_action(command.action, self._level.repertoire)
             meant = self._meant_at_the_basic_level(command.decision_tick, situation)
         else:
-            raise RefusedError(f"nothing is taught at a level {command.level!r}; there are {BASIC} and {MID}")
+            raise CommandRefusedError(RefusalCode.NO_LEVEL, level=command.level, known=(BASIC, MID))
         nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
         if isinstance(command, Teach) and command.beside:
             return self._beside(command.action, meant, nearest, origin)
@@ -109,10 +107,10 @@ class Tuition:
             return self._create(command.action, meant, origin)
         rla = self._of_competitors(nearest.rla, meant)
         if rla.action == command.action:
-            return f"{rla.title} says {command.action} already", None
+            return Taught(rla_outcome(ResultCode.RLA_AGREES, rla, action=command.action))
         other = self._other_way(command.action, rla)
         if other is not None:
-            return f"{other.title} says {command.action} there already; nothing was changed", None
+            return Taught(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=command.action))
         return self._replace(rla, command.action, origin)
 
     def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> Meant:
@@ -123,7 +121,7 @@ class Tuition:
             return Meant(situation.vector, self._level.wanted.behaviour, BASIC, drove, share, touched)
         self._require_known(decision_tick)
         if not self._recent.saw(decision_tick):
-            raise RefusedError("the infra-red sensors were silent then, so there is no situation to teach")
+            raise CommandRefusedError(RefusalCode.WAS_BLIND)
         behaviour, drove = self._recent.behaviour(decision_tick), self._recent.rla(decision_tick)
         touched = self._recent.touched(decision_tick)
         return Meant(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
@@ -131,12 +129,12 @@ class Tuition:
     def _beside(self, action: str, meant: Meant, nearest: Match | None, origin: Origin) -> Taught:
         """Another RLA on the very condition of those that know the situation; where none does, a first one."""
         if meant.level != MID:
-            raise RefusedError("what is possible beside it is taught at the mid level; the basic one does one thing")
+            raise CommandRefusedError(RefusalCode.NO_OTHER_WAY)
         if nearest is None or not nearest.known:
             return self._create(action, meant, origin)
         for rla in self._system.competitors(nearest.rla):
             if rla.action == action:
-                return f"{rla.title} says {action} already", None
+                return Taught(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
         return self._create(action, meant, origin, beside=nearest.rla)
 
     def _of_competitors(self, nearest: Rla, meant: Meant) -> Rla:
@@ -161,14 +159,17 @@ class Tuition:
             behaviour=meant.behaviour,
             level=meant.level,
         )
-        others = "" if beside is None else f" beside {beside.title}"
-        return f"{rla.title} taught{others}: {rla.action}", RlaCreated(rla)
+        if beside is None:
+            outcome = rla_outcome(ResultCode.RLA_TAUGHT, rla, action=action)
+        else:
+            outcome = rla_outcome(ResultCode.RLA_ADDED, rla, action=action, next_to=beside.rla_id)
+        return Taught(outcome, RlaCreated(rla))
 
     def _replace(self, rla: Rla, action: str, origin: Origin) -> Taught:
         event = ActionReplaced(rla.rla_id, action, rla.action, origin)
         if rla.asks:
-            return f"{rla.title} answered anew: {action}", event
-        return f"{rla.title} corrected: {action} instead of {rla.action}", event
+            return Taught(rla_outcome(ResultCode.RLA_ANSWERED, rla, action=action), event)
+        return Taught(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)
 
     def _other_way(self, action: str, rla: Rla) -> Rla | None:
         """Another RLA on the same condition that says so: at the mid level they are ways, and no two are the same."""
@@ -180,34 +181,31 @@ class Tuition:
         meant = self._meant(command.decision_tick)
         rla_id = self._recent.rla(meant)
         if rla_id is None:
-            raise RefusedError("no RLA drove the robot then; there is nothing to reward or to punish")
-        title = self._require_rla(rla_id).title
+            raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
+        rla = self._require_rla(rla_id)
         if self._recent.answering(meant) != rla_id:
-            raise RefusedError(f"the situation lay outside the radius of {title}, or it stood; nobody is blamed for it")
+            refuse(rla_outcome(RefusalCode.OUTSIDE_RADIUS, rla))
         credits_ = () if self._reinforcement is None else self._reinforcement.credits_of(command.value, meant)
         opinion = self._recent.opinion(meant)
         said = None if opinion is None else opinion.said
-        word = "rewarded" if command.value > 0 else "punished"
-        return f"{title} {word}", RlaRewarded(rla_id, command.value, meant, origin, credits_, said)
+        code = ResultCode.RLA_REWARDED if command.value > 0 else ResultCode.RLA_PUNISHED
+        return Taught(rla_outcome(code, rla), RlaRewarded(rla_id, command.value, meant, origin, credits_, said))
 
     def _appraise(self, command: Appraise, origin: Origin) -> Taught:
         if self._appraising is None:
-            raise RefusedError("this robot has no critic")
+            raise CommandRefusedError(RefusalCode.NO_CRITIC)
         return self._appraising.event_of(command, self._meant(command.decision_tick), origin)
 
     def _undo(self, lesson: str | None, origin: Origin) -> Taught:
         if lesson is None:
-            raise RefusedError("there is no lesson to undo")
+            raise CommandRefusedError(RefusalCode.NO_LESSON)
         refuse(self._system.why_not_undo(lesson))
         back = self._system.comes_back(lesson)
         if back is not None and not self._can_act(back):
-            raise RefusedError(
-                f"{back.title} would say {back.action} again, which this task does not have; "
-                "undo it with the task that it was taught with"
-            )
+            refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
         record = self._system.lesson(lesson)
         assert record is not None
-        return f"undone: {record.text}", LessonUndone(lesson, origin)
+        return Taught(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
 
     def _meant(self, decision_tick: int | None) -> int:
         # The newest, not the tick before this one, which may have been missed.
@@ -233,12 +231,12 @@ class Tuition:
     def _require_rla(self, rla_id: int) -> Rla:
         rla = self._system.get(rla_id)
         if rla is None:
-            raise RefusedError(f"there is no RLA {rla_id}; it may have been deleted")
+            raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
         return rla
 
     def _require_known(self, tick: int) -> None:
         if not self._recent.knows(tick):
-            raise RefusedError(f"the decision of tick {tick} is not remembered any more; look at the newest picture")
+            raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
 def _may_not_stand_beside(nearest: Match, meant: Meant) -> bool:
@@ -251,14 +249,14 @@ def _may_not_stand_beside(nearest: Match, meant: Meant) -> bool:
 
 
 def require_action(action: str, repertoire: Iterable[str]) -> None:
-    """Raises RefusedError, which lists those there are, for a name that a repertoire does not have."""
+    """Raise CommandRefusedError, which lists the actions, for a name that a repertoire does not have."""
     names = tuple(repertoire)
     if action not in names:
-        raise RefusedError(f"there is no action {action!r}; the repertoire has: {', '.join(names)}")
+        raise CommandRefusedError(RefusalCode.NO_ACTION, action=action, known=names)
 
 
 def require_behaviour(name: str, behaviours: Iterable[str]) -> None:
-    """Raises RefusedError, which lists those there are, for a behaviour that the task does not teach."""
+    """Raise CommandRefusedError, which lists the behaviours, for one that the task does not teach."""
     names = tuple(behaviours)
     if name not in names:
-        raise RefusedError(f"there is no taught behaviour {name!r}; this task has: {', '.join(names)}")
+        raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=names)

@@ -34,6 +34,7 @@ from kurt2rt.health.report import HealthReport
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.saved_copy import SavedCopy
 from kurt2rt.knowledge.writer import Acknowledgement
+from kurt2rt.outcome import Outcome, outcome_in
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.tasks.settings import load_task
 from kurt2rt.tick import InMemoryEventStore, LessonKeeper, TickRecord
@@ -283,6 +284,11 @@ async def reply_of(task: "asyncio.Task[Reply]") -> Reply:
     await turns()
     assert task.done(), "still waits for its reply"
     return task.result()
+
+
+def outcome_of(reply: Reply) -> Outcome | None:
+    """Return code and fields of a reply; None if it tells none."""
+    return outcome_in(reply.body.get("code"), reply.body.get("fields"))
 
 
 def why(reply: Reply) -> object:

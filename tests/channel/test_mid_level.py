@@ -23,9 +23,10 @@ from kurt2rt.channel.requests import (
 from kurt2rt.channel.state import State, SurpriseState
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.expectations.surprise import Surprise
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.planning.step import Course, PlanStep
 from kurt2rt.rla.rla import BASIC, MID
-from tests.channel.desk import STAMP, Desk, why
+from tests.channel.desk import STAMP, Desk, outcome_of, why
 from tests.channel.grounds import Yard
 
 TURNS = ("straight_on", "turn_left", "turn_right")
@@ -44,10 +45,9 @@ def picture(desk: Desk) -> State:
     return told
 
 
-async def teach(desk: Desk, way: str, *, beside: bool = False) -> str:
-    """A lesson of the mid level; what the robot says to it."""
-    reply = await desk.ask(desk.command(AnswerRequest, way, None, MID, beside))
-    return str(reply.body["text"])
+async def teach(desk: Desk, way: str, *, beside: bool = False) -> Outcome | None:
+    """Give a lesson of the mid level; return what becomes of it."""
+    return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, beside)))
 
 
 async def test_the_robot_introduces_its_mid_level(desk: Desk) -> None:
@@ -70,7 +70,8 @@ async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: De
         NOTHING_YET,
         (),
     )
-    assert await teach(desk, "turn_left") == "mid-level RLA 1 taught: turn_left"
+    taught = await teach(desk, "turn_left")
+    assert taught == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=MID, action="turn_left")
     desk.run()
     told = picture(desk)
     assert (told.asks_at, told.cause, told.behaviour) == (BASIC, "unknown", "turn_left")  # now it cannot turn left
@@ -90,7 +91,7 @@ async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: De
 
 async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: Desk) -> None:
     reply = await desk.ask(desk.answer("forward"))
-    assert reply.body["text"].startswith("RLA 1 of straight_on taught")
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="forward")
     told = picture(desk)
     assert told.mid is not None
     assert told.mid.asks
@@ -99,20 +100,24 @@ async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: De
 async def test_the_mid_level_is_corrected_and_what_else_is_possible_stands_beside(desk: Desk) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(CorrectRequest, "straight_on", None, MID))
-    assert reply.body["text"] == "mid-level RLA 1 corrected: straight_on instead of turn_left"
-    assert "beside mid-level RLA 1: turn_right" in await teach(desk, "turn_right", beside=True)
+    assert outcome_of(reply) == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=1, level=MID, action="straight_on", was="turn_left"
+    )
+    added = await teach(desk, "turn_right", beside=True)
+    assert added == Outcome.of(ResultCode.RLA_ADDED, rla=2, level=MID, action="turn_right", next_to=1)
     desk.run()
     told = picture(desk)
     assert told.mid is not None
     assert (told.mid.behaviour, told.mid.rla) == ("straight_on", 1)
     await desk.ask(desk.command(UndoRequest, None))
-    assert "beside mid-level RLA 1: turn_right" in await teach(desk, "turn_right", beside=True)
+    added = await teach(desk, "turn_right", beside=True)
+    assert added == Outcome.of(ResultCode.RLA_ADDED, rla=3, level=MID, action="turn_right", next_to=1)
 
 
 async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: Desk) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(PursueRequest, "turn_right"))
-    assert reply.body["text"] == "turn_right is wanted until the next junction is passed"
+    assert outcome_of(reply) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_right")
     told = picture(desk)
     assert told.mid is not None
     assert (told.behaviour, told.mid.behaviour, told.mid.rla, told.mid.overridden) == (
@@ -125,9 +130,9 @@ async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: Des
 
 async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taught_are_refused(desk: Desk) -> None:
     refused = await desk.ask(desk.command(AnswerRequest, "forward", None, MID, False))
-    assert (why(refused), refused.body["text"]) == (
+    assert (why(refused), outcome_of(refused)) == (
         "refused",
-        "there is no taught behaviour 'forward'; this task has: straight_on, turn_left, turn_right",
+        Outcome.of(RefusalCode.NO_BEHAVIOUR, behaviour="forward", known=("straight_on", "turn_left", "turn_right")),
     )
     refused = await desk.ask(desk.command(AnswerRequest, "forward", None, BASIC, True))
     assert why(refused) == "refused"
@@ -142,7 +147,7 @@ async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taug
     ):
         refused = await plain.ask(request)
         assert (why(refused), refused.verdict) == ("refused", Verdict.CONFLICT)
-        assert "mid level" in refused.body["text"]
+        assert outcome_of(refused) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert picture(plain).mid is None
 
 
@@ -150,7 +155,7 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     await teach(desk, "turn_left")
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
     reply = await desk.ask(desk.command(NameRequest, "door", None))
-    assert reply.body["text"] == "situation named: door"
+    assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
     assert (await desk.ask(SituationsRequest())).body == {"situations": ["door"]}
     await desk.ask(desk.answer("forward"))
     assert (await desk.ask(desk.command(SeekRequest, "door"))).verdict is Verdict.DONE
@@ -163,7 +168,7 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     under_way = desk.record._replace(decision=desk.record.decision._replace(plan=step))
     told = desk.telling.picture(under_way)
     assert (told.goal, told.plan, told.plan_says) == ("door", step.behaviours, step.says)
-    assert (await desk.ask(desk.command(SeekRequest, None))).body["text"] == "no goal is sought"
+    assert outcome_of(await desk.ask(desk.command(SeekRequest, None))) == Outcome(ResultCode.GOAL_DROPPED)
     desk.run()
     assert (picture(desk).goal, picture(desk).plan_says) == ("", "")
     assert (await desk.ask(desk.command(SeekRlaRequest, 1))).verdict is Verdict.DONE

@@ -4,6 +4,7 @@ import pytest
 
 from kurt2rt.channel.outcomes import Outcomes
 from kurt2rt.channel.reply import done, refusal
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 
 
 async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_good() -> None:
@@ -12,8 +13,8 @@ async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_g
     waiting = outcomes.begin("x")
     assert outcomes.get("x") is waiting
     assert not waiting.done()
-    outcomes.settle("x", done(7, "taught"))
-    assert (await waiting) == done(7, "taught")
+    outcomes.settle("x", done(7, Outcome(ResultCode.RESUMED)))
+    assert (await waiting) == done(7, Outcome(ResultCode.RESUMED))
     assert outcomes.get("x") is waiting
 
 
@@ -21,7 +22,7 @@ async def test_the_first_reply_stands() -> None:
     outcomes = Outcomes()
     waiting = outcomes.begin("x")
     outcomes.settle("x", done(7))
-    outcomes.settle("x", refusal("refused", "too late", 8))
+    outcomes.settle("x", refusal("refused", Outcome(RefusalCode.TOO_MANY), 8))
     assert waiting.result() == done(7)
 
 

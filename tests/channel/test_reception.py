@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.channel.exam_standing import EXAM, ExamStanding
 from kurt2rt.channel.reception import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
-from kurt2rt.channel.reply import Reply, Verdict
+from kurt2rt.channel.reply import Reply, Verdict, done
 from kurt2rt.channel.requests import (
     PACKAGE,
     PART_BYTES,
@@ -60,9 +60,10 @@ from kurt2rt.critic.settings import load_critic
 from kurt2rt.explain.plain import facts_of_plain
 from kurt2rt.health.plain import report_of
 from kurt2rt.layers.decision import Cause
-from kurt2rt.rla.rla import Phase
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.rla.rla import CRITIC, Phase
 from kurt2rt.teaching.commands import Stop, Watch
-from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of, turns, why
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
 from tests.health.reports import ILL
 
@@ -215,7 +216,7 @@ async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Desk) 
     desk.run()
     await desk.ask(desk.stop(), "ben")
     refused = await desk.stream(desk.press(hold=2))
-    assert (why(refused), refused.body["text"]) == ("stopped", "ben stopped the robot; say resume first")
+    assert (why(refused), outcome_of(refused)) == ("stopped", Outcome.of(RefusalCode.STOPPED_BY, teachers=("ben",)))
     await desk.ask(desk.command(ResumeRequest))
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
@@ -226,7 +227,7 @@ async def test_who_is_not_the_teacher_is_told_who_is(desk: Desk) -> None:
     for request in (desk.press(), desk.watch()):
         refused = await desk.stream(request, "ben")
         assert (why(refused), refused.verdict) == ("held", Verdict.CONFLICT)
-        assert "ann teaches now" in refused.body["text"]
+        assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
 
 
 async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: Desk) -> None:
@@ -234,9 +235,9 @@ async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits
     while why(await desk.stream(desk.watch())) == "":
         waiting += 1
     refused = await desk.stream(desk.press())
-    assert (why(refused), refused.body["text"]) == ("refused", "too many commands wait; say it again")
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
     refused = await reply_of(await desk.send(desk.answer()))
-    assert (why(refused), refused.body["text"]) == ("refused", "too many commands wait; say it again")
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
     assert len(desk.runtime.inbox.take()) == waiting
     assert why(await desk.stream(desk.watch())) == ""
 
@@ -267,7 +268,7 @@ async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[Com
     await desk.ask(desk.command(TakeRequest), "ann")
     refused = await desk.ask(desk.command(kind, *COMMANDS[kind]), "ben")
     assert why(refused) == "held"
-    assert "ann teaches now" in refused.body["text"]
+    assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
     assert desk.shelf.labels == []
 
 
@@ -275,7 +276,8 @@ async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: Des
     task = await desk.send(desk.command(PhaseRequest, Phase.CORRECTIONS))
     assert not task.done()
     tick = desk.run().tick
-    assert await reply_of(task) == Reply(Verdict.DONE, {"t": tick, "ok": True, "text": "phase 2, corrections"})
+    phase_set = Outcome.of(ResultCode.PHASE_SET, phase=2, name="corrections")
+    assert await reply_of(task) == done(tick, phase_set)
 
 
 async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: Desk) -> None:
@@ -293,13 +295,13 @@ async def test_a_lesson_is_answered_only_when_it_is_durable(desk: Desk) -> None:
     assert not task.done()
     desk.write()
     reply = await reply_of(task)
-    assert reply == Reply(Verdict.DONE, {"t": desk.tick, "ok": True, "text": "RLA 1 taught: forward", "row": 1})
+    assert reply == done(desk.tick, Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward"), row=1)
 
 
 async def test_what_changes_nothing_needs_no_disk(desk: Desk) -> None:
     await desk.ask(desk.answer())
     reply = await desk.ask(desk.answer(), write=False)
-    assert reply.body["text"] == "RLA 1 says forward already"
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
 
 
 async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: Desk) -> None:
@@ -329,7 +331,7 @@ async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_tha
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
     desk.runtime.school.learning.taken.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
-    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "had been taken already; counted once")
+    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome(ResultCode.REPEATED))
 
 
 async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
@@ -341,7 +343,7 @@ async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
 async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: Desk) -> None:
     request = desk.command(DeleteRequest, 1)
     refused = await desk.ask(request)
-    assert (why(refused), refused.body["text"]) == ("refused", "there is no RLA 1; it may have been deleted")
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.NO_RLA, rla=1))
     await desk.ask(desk.answer())
     assert await reply_of(await desk.send(request)) == refused
     assert len(desk.runtime.level.system) == 1
@@ -360,10 +362,12 @@ async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_count
     request = desk.answer()
     reply = await desk.ask(request, write=False)
     assert (reply.verdict, why(reply)) == (Verdict.UNSAVED, "unsaved")
-    assert "look at the lessons" in reply.body["text"]
+    assert outcome_of(reply) == Outcome(RefusalCode.NOT_SAVED_YET)
     desk.run()
     desk.write()
-    assert (await reply_of(await desk.send(request))).body["text"] == "RLA 1 taught: forward"
+    assert outcome_of(await reply_of(await desk.send(request))) == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, action="forward"
+    )
 
 
 async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk) -> None:
@@ -381,9 +385,9 @@ async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: 
     await desk.stream(desk.press(), "ann")
     desk.run()
     refused = await desk.ask(desk.command(TakeRequest), "ben")
-    assert (why(refused), refused.body["text"]) == ("refused", "ann drives by hand just now; stop the robot first")
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
     await desk.ask(desk.stop(), "ben")
-    assert (await desk.ask(desk.command(TakeRequest), "ben")).body["text"] == "ben teaches"
+    assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
 
 
 async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: Desk) -> None:
@@ -392,31 +396,33 @@ async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: 
     meant = desk.run(counts=100).tick
     desk.run(20, counts=900)
     reply = await desk.ask(desk.command(RewardRequest, 1, meant))
-    assert reply.body["text"] == "RLA 1 rewarded"
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
     reply = await desk.ask(desk.command(CorrectRequest, "back", meant))
-    assert reply.body["text"] == "RLA 1 corrected: back instead of forward"
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
     refused = await desk.ask(desk.command(RewardRequest, 1, desk.tick + 50))
     assert why(refused) == "refused"
 
 
 @pytest.mark.parametrize(
-    ("make", "text"),
+    ("make", "outcome"),
     [
-        (lambda desk: desk.command(SessionRequest, "morning"), "session 'morning' begins"),
-        (lambda desk: desk.command(SessionRequest, None), "no session is on"),
-        (lambda desk: desk.command(ReleaseRequest, "ben"), "ben teaches now"),
-        (lambda desk: desk.command(ReleaseRequest, None), "nobody teaches now"),
-        (lambda desk: desk.command(UndoRequest, None), "there is no lesson to undo"),
+        (lambda desk: desk.command(SessionRequest, "morning"), Outcome.of(ResultCode.SESSION_BEGUN, session="morning")),
+        (lambda desk: desk.command(SessionRequest, None), Outcome(RefusalCode.NO_SESSION)),
+        (lambda desk: desk.command(ReleaseRequest, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
+        (lambda desk: desk.command(ReleaseRequest, None), Outcome(ResultCode.RELEASED)),
+        (lambda desk: desk.command(UndoRequest, None), Outcome(RefusalCode.NO_LESSON)),
         (
             lambda desk: desk.command(BehaviourRequest, "back", 7),
-            "a behaviour runs only while its teacher is there and watches",
+            Outcome(RefusalCode.TEACHER_ABSENT),
         ),
-        (lambda desk: desk.command(ResumeRequest), "the robot may drive"),
-        (lambda desk: desk.command(ReplaceRequest, 3, "back"), "there is no RLA 3; it may have been deleted"),
+        (lambda desk: desk.command(ResumeRequest), Outcome(ResultCode.RESUMED)),
+        (lambda desk: desk.command(ReplaceRequest, 3, "back"), Outcome.of(RefusalCode.NO_RLA, rla=3)),
     ],
 )
-async def test_each_request_becomes_its_command(desk: Desk, make: Callable[[Desk], CommandRequest], text: str) -> None:
-    assert (await desk.ask(make(desk))).body["text"] == text
+async def test_each_request_becomes_its_command(
+    desk: Desk, make: Callable[[Desk], CommandRequest], outcome: Outcome
+) -> None:
+    assert outcome_of(await desk.ask(make(desk))) == outcome
 
 
 # Stop.
@@ -425,7 +431,7 @@ async def test_each_request_becomes_its_command(desk: Desk, make: Callable[[Desk
 async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: Desk) -> None:
     await desk.ask(desk.command(TakeRequest), "ann")
     reply = await desk.ask(desk.stop(), "ben")
-    assert reply.body["text"] == "the robot stands until it is told to resume"
+    assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
     assert desk.run().decision.cause is Cause.STOPPED
 
 
@@ -465,6 +471,8 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
         "t": desk.tick,
         "ok": True,
         "text": "lessons.knowledge, 4096 bytes",
+        "code": "copied",
+        "fields": {"name": "lessons.knowledge", "size": 4096},
         "name": "lessons.knowledge",
         "sha256": "ab" * 32,
         "size": 4096,
@@ -701,7 +709,7 @@ async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stan
 async def test_a_real_robot_has_no_world_to_tell_of(desk: Desk) -> None:
     for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
         reply = await desk.ask(request)
-        assert (reply.verdict, reply.body["text"]) == (Verdict.NOT_HERE, "this robot is not simulated")
+        assert (reply.verdict, outcome_of(reply)) == (Verdict.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
 
 
 async def test_a_simulated_world_is_told_and_changed() -> None:
@@ -718,9 +726,9 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
     }
     move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
     reply = await desk.ask(move)
-    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "box moved")
+    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
     assert await desk.ask(move) == reply  # sent again: it moves once
-    assert (await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))).body["text"] == "the robot stands elsewhere"
+    assert outcome_of(await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
 
 
@@ -747,12 +755,12 @@ async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> 
     meant = desk.run(400, counts=100).tick
     desk.run(400, counts=700)
     blame = desk.command(AppraiseRequest, "bad", meant)
-    assert (await desk.ask(blame)).body["text"] == "appraisal RLA 1 taught: bad"
-    assert (await desk.ask(blame)).body["text"] == "appraisal RLA 1 taught: bad"
+    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
+    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
     assert opinion_at(desk, 700) is None
     assert opinion_at(desk, 100) == -1
     again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
-    assert (again.verdict, again.body["text"]) == (Verdict.DONE, "the critic thought bad, too")
+    assert (again.verdict, outcome_of(again)) == (Verdict.DONE, Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"))
     lessons = (await desk.ask(LessonsRequest(5))).body["lessons"]
     assert [text for _, text, *_ in lessons] == ["appraisal RLA 1 taught: bad"]  # that it agreed is no lesson
 
@@ -777,10 +785,15 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
     desk = Desk(behaviours=("straight_on", "turn_left"))
     assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
     reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
-    assert (reply.verdict, reply.body["text"]) == (Verdict.DONE, "turn_left is wanted")
+    assert (reply.verdict, outcome_of(reply)) == (
+        Verdict.DONE,
+        Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left"),
+    )
     reply = await desk.ask(desk.command(PursueRequest, "fly"))
     assert why(reply) == "refused"
-    assert reply.body["text"] == "there is no taught behaviour 'fly'; this task has: straight_on, turn_left"
+    assert outcome_of(reply) == Outcome.of(
+        RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=("straight_on", "turn_left")
+    )
     assert desk.runtime.wanted.behaviour == "turn_left"
 
 
@@ -791,11 +804,11 @@ async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_
     await desk.ask(desk.command(PursueRequest, "turn_left"))
     late = await desk.ask(older)
     assert why(late) == "refused"
-    assert late.body["text"].startswith("turn_left was asked for after this was said; look at the robot")
+    assert outcome_of(late) == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_left")
     before = desk.command(PursueRequest, "straight_on")
     desk.run(5)
     await desk.ask(StopRequest(b"stopstop"))
-    assert (await desk.ask(before)).body["text"].startswith("the robot was stopped after this was said")
+    assert outcome_of(await desk.ask(before)) == Outcome(RefusalCode.STOPPED_SINCE)
     assert desk.runtime.wanted.behaviour == "turn_left"
 
 
@@ -819,7 +832,7 @@ async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_
     go = desk.command(ResumeRequest)
     desk.run(5)
     assert await desk.ask(stop, "ann") == answered
-    assert (await desk.ask(go)).body["text"] == "the robot may drive"
+    assert outcome_of(await desk.ask(go)) == Outcome(ResultCode.RESUMED)
     assert desk.run().decision.cause is not Cause.STOPPED
 
 
@@ -831,7 +844,7 @@ async def test_a_robot_that_was_stopped_is_set_down_by_nothing_that_was_said_bef
     await desk.ask(desk.stop(), "ben")
     refused = await desk.ask(before)
     assert why(refused) == "refused"
-    assert refused.body["text"] == "the robot was stopped after this was said; look at it, then say it again"
+    assert outcome_of(refused) == Outcome(RefusalCode.STOPPED_SINCE)
     assert yard.changes == []
     await desk.ask(desk.command(PlaceRequest, 3.0, 1.0, 0.5))
     assert yard.changes == [(3.0, 1.0, 0.5)]

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.credentials import pair, renew, revoke
+from kurt2rt.outcome import ResultCode
 from tests.channel.device_by_the_book import Device
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
@@ -61,7 +62,7 @@ def test_the_teacher_who_is_revoked_leaves_a_robot_that_stands_and_can_be_taken(
             async with Device(await phone_in(tmp_path), at_work.port) as device:
                 picture = await (await device.look()).picture()
                 taken = await device.ask("/take", [picture["b"], bytes(8), picture["t"]])
-                assert taken.body["text"] == "phone teaches"
+                assert taken.body["code"] == ResultCode.TAKEN
                 revoke(tmp_path / "teachers", tmp_path / "devices", "phone")
                 await asyncio.sleep(_TAKEN_UP_S)
             assert at_work.runtime.school.authority.teacher is None

@@ -21,10 +21,11 @@ from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble
-from kurt2rt.rla.rla import ASK, Phase
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.rla.rla import ASK, CRITIC, Phase
 from kurt2rt.standing import Standing, StandReason
 from kurt2rt.teaching.active_stop import ActiveStop, StopReason
-from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, reply_of
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of
 from tests.channel.grounds import Yard
 from tests.health.reports import ILL, WELL
 
@@ -150,7 +151,7 @@ async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
 
 async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
     reply = await desk.ask(desk.command(BehaviourRequest, "back", 5))
-    assert reply.body["text"] == "a behaviour runs only while its teacher is there and watches"
+    assert outcome_of(reply) == Outcome(RefusalCode.TEACHER_ABSENT)
     await desk.ask(desk.command(TakeRequest))
     await desk.stream(desk.watch())
     desk.run()
@@ -236,7 +237,7 @@ async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(
     await drives(desk)
     assert (picture(desk).opinion, picture(desk).opinion_of) == (None, None)
     reply = await desk.ask(desk.command(AppraiseRequest, "bad", None))
-    assert reply.body["text"] == "appraisal RLA 2 taught: bad"
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, level=CRITIC, action="bad")
     desk.run()
     told = picture(desk)
     assert (told.opinion, told.opinion_of, told.rla) == (-1, 2, 1)

@@ -64,7 +64,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
             ("begin monday", "session 'monday' begins"),
             ("replace 1 back", "RLA 1 corrected: back instead of stand"),
             ("undo", "undone: RLA 1 corrected: back instead of stand"),
-            ("", "the robot stands until it is told to resume"),
+            ("", "the robot stands until you type go"),
             ("go", "the robot may drive"),
             ("phase 2", "phase 2, corrections"),
             ("delete 7", "refused: there is no RLA 7"),
@@ -78,7 +78,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
             person.type(line)
             person.wait_for(answer)
         person.type("quit")
-        person.wait_for("nobody teaches now")
+        person.wait_for("the robot has no teacher now")
         assert person.process.wait() == 0
     (copy,) = (tmp_path / "saved").iterdir()
     assert actions_in(copy)[0] == actions_in(knowledge)[0] == "stand"
@@ -106,7 +106,7 @@ def test_the_terminal_and_the_page_are_open_side_by_side(tmp_path: Path) -> None
         with running("teach", "--terminal", "--port", port, folder=tmp_path) as person:
             person.wait_for("terminal teaches")
             person.type("quit")
-            person.wait_for("nobody teaches now")
+            person.wait_for("the robot has no teacher now")
         end = robot.end(signal.SIGTERM)
     assert (end.exit_code, end.err) == (0, "")
 

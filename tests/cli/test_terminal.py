@@ -37,6 +37,7 @@ from kurt2rt.channel.requests import (
 from kurt2rt.cli.terminal import TerminalTeacher
 from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, question_in, sentence_of
 from kurt2rt.health.plain import plain_of
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.perception.sensor_words import law_of
 from kurt2rt.rla.rla import Phase
 from kurt2rt.standing import Standing, StandReason
@@ -96,7 +97,7 @@ class Mind:
             return Reply(Verdict.DONE, {"health": plain_of(ILL)})
         if isinstance(request, SituationsRequest):
             return Reply(Verdict.DONE, {"situations": ["the door", "the window"]})
-        return done(7, f"{request.path} is done")
+        return done(7, Outcome.of(ResultCode.GOAL_SOUGHT, says=f"{request.path} is done"))
 
 
 @asynccontextmanager

@@ -187,7 +187,7 @@ def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: py
     assert town.runtime.to_save().expectations[4].count == 1
     town.street()
     (told,) = town.run(BeAt("b", "Ann", "door")).results
-    assert told.accepted, told.text
+    assert told.accepted, told.outcome
     town.street()
     saved = town.runtime.to_save()
     assert 5 not in saved.expectations

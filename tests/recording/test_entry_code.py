@@ -20,12 +20,13 @@ from kurt2rt.recording.entries import (
     MatchEntry,
     MidEntry,
     OpinionEntry,
+    ResultEntry,
     TickEntry,
 )
 from kurt2rt.recording.entry_code import decode_tick, encode_tick
 from kurt2rt.rla.credit import Credit
 from kurt2rt.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
-from kurt2rt.teaching.commands import Command, CommandResult, Seek, SetPhase
+from kurt2rt.teaching.commands import Command, Seek, SetPhase
 from kurt2rt.teaching.happenings import Happening
 
 KINDS = (*get_args(Command), *get_args(Happening))
@@ -118,7 +119,9 @@ entries = some.builds(
     text,
     some.none() | opinions,
     some.none() | surprises,
-    some.lists(some.builds(CommandResult, text, some.booleans(), text, some.booleans()), max_size=2).map(tuple),
+    some.lists(
+        some.builds(ResultEntry, text, some.booleans(), text, some.booleans(), some.none() | text), max_size=2
+    ).map(tuple),
     some.lists(events, max_size=2).map(tuple),
     some.integers(0, 2**32 - 1),
     some.none() | text,

@@ -128,7 +128,7 @@ class Track:
         """The teacher praises or blames; the event that comes of it."""
         self._commands += 1
         result = self.say(Reward(f"signal-{self._commands}", "Ann", value, about))
-        assert result.accepted, result.text
+        assert result.accepted, result.outcome
         event = self.events[-1]
         assert isinstance(event, RlaRewarded)
         return event

@@ -4,6 +4,7 @@ import pytest
 
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.reinforcement.settings import ReinforcementSettings
 from kurt2rt.rla.rla import (
     ActionReplaced,
@@ -70,10 +71,7 @@ def test_nobody_is_blamed_while_the_robot_asks_or_stands() -> None:
     asked = robot.go(25.0)
     assert asked.asking
     refused = robot.say(Reward("r-1", "Ann", -1, robot.tick))
-    assert (refused.accepted, refused.text) == (
-        False,
-        "no RLA drove the robot then; there is nothing to reward or to punish",
-    )
+    assert refused.outcome == Outcome(RefusalCode.NO_RLA_DROVE)
     robot.go(LEFT, because=Cause.STOPPED)
     assert not robot.say(Reward("r-2", "Ann", -1, robot.tick)).accepted
     assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
@@ -86,8 +84,7 @@ def test_an_rla_whose_action_is_held_where_it_is_not_known_is_not_blamed() -> No
     held = robot.go(RIGHT)
     assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, False)
     refused = robot.say(Reward("r-1", "Ann", -1, robot.tick))
-    assert not refused.accepted
-    assert "lay outside the radius of RLA 1" in refused.text
+    assert refused.outcome == Outcome.of(RefusalCode.OUTSIDE_RADIUS, rla=1)
     robot.go(RIGHT, MINIMUM_TICKS)
     assert shares(robot.signal(-1)).keys() == {1, 2}  # for the tick in which it was known, and its own
 
@@ -170,7 +167,9 @@ def test_the_answer_to_a_withdrawn_rla_gives_it_another_action_that_acts_in_the_
     sink(robot, LEFT)
     robot.go(LEFT, 2)
     robot.go(LEFT + SHARE * RADIUS)
-    assert robot.say(Teach("t-1", "Ann", "c", robot.tick)).text == "RLA 1 answered anew: c"
+    assert robot.say(Teach("t-1", "Ann", "c", robot.tick)).outcome == Outcome.of(
+        ResultCode.RLA_ANSWERED, rla=1, action="c"
+    )
     assert robot.actions == {1: "c", 2: "b"}
     assert robot.worth(1) == 0.5
     decision = robot.go(LEFT)
@@ -181,7 +180,9 @@ def test_an_answer_farther_off_inserts_and_the_withdrawn_one_goes_on_asking() ->
     robot = track()
     sink(robot, LEFT)
     robot.go(LEFT, 2)
-    assert robot.say(teach("c"), LEFT + SHARE * RADIUS + 0.5).text == "RLA 3 taught: c"
+    assert robot.say(teach("c"), LEFT + SHARE * RADIUS + 0.5).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=3, action="c"
+    )
     assert robot.go(LEFT + SHARE * RADIUS).action == "c"
     assert robot.go(LEFT).asking
 
@@ -191,7 +192,9 @@ def test_a_withdrawal_that_is_undone_lets_the_robot_drive_as_before() -> None:
     known = robot.hash
     sink(robot, LEFT)
     robot.go(LEFT, 2)
-    assert robot.say(Undo("u-1", "Ann")).text == "undone: RLA 1 withdrawn: it asks again"
+    assert robot.say(Undo("u-1", "Ann")).outcome == Outcome.of(
+        ResultCode.LESSON_UNDONE, says="RLA 1 withdrawn: it asks again"
+    )
     assert robot.hash == known
     assert robot.go(LEFT).action == "a"
 
@@ -261,7 +264,7 @@ def test_after_enough_tries_all_on_the_condition_are_deleted_so_that_neighbours_
 def test_a_correction_on_competitors_means_the_one_that_drove() -> None:
     robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), saved=Statistics(values={1: -0.5}))
     assert robot.go(LEFT).rla_id == 2
-    assert robot.say(correct("c"), LEFT).text == "RLA 2 corrected: c instead of b"
+    assert robot.say(correct("c"), LEFT).outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=2, action="c", was="b")
     robot.go(LEFT)
     assert robot.go(LEFT).action == "c"
 

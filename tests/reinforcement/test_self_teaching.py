@@ -5,6 +5,7 @@ import pytest
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import BestSettings
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.rla.rla import CRITIC, MID, LessonUndone, Origin, Phase, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.teaching.commands import Correct, Undo
 from tests.layers.helpers import sensed, situation
@@ -202,7 +203,9 @@ def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
     assert isinstance(event, RlaCreated)
     tried, (place,) = event.rla.rla_id, event.rla.condition
     assert robot.go(place, 1, CRASHED).rla_id == tried
-    assert robot.say(Correct("c-1", "Ann", "c"), place).text == f"RLA {tried} corrected: c instead of a"
+    assert robot.say(Correct("c-1", "Ann", "c"), place).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=tried, action="c", was="a"
+    )
     robot.go(HERE, 100, CRASHED)
     assert robot.actions[tried] == "c"
 

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
 from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.rla.space import Space
@@ -128,7 +129,7 @@ def test_an_opinion_that_the_critic_shared_is_no_lesson_and_changes_nothing() ->
     before = system.knowledge_hash(), system.lessons
     system.apply(Appraised("good", 1, 99, origin("same", 100)))
     assert (system.knowledge_hash(), system.lessons) == before
-    assert system.why_not_undo("same") == "there is no lesson 'same'"
+    assert system.why_not_undo("same") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="same")
 
 
 def test_how_an_rla_is_spoken_of() -> None:

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import ASK, Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
 from kurt2rt.rla.rla_system import InvalidEventError, RlaSystem
@@ -71,8 +72,8 @@ def test_where_another_lesson_has_taken_its_place_the_refusal_names_it() -> None
 
 def test_what_stands_or_never_was_cannot_be_redone() -> None:
     system = system_of(FIRST)
-    assert system.why_not_redo("lesson-1") == "lesson 'lesson-1' stands; there is nothing to redo"
-    assert system.why_not_redo("lesson-9") == "there is no lesson 'lesson-9'"
+    assert system.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
+    assert system.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
 
 
 def test_a_reward_counts_again() -> None:

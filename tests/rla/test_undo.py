@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.outcome import RefusalCode
 from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.lesson_book import LessonRecord, rla_of
 from kurt2rt.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
@@ -150,7 +151,7 @@ def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, tex
     assert [record.text for record in system.lessons] == ["RLA 1 of turn_left taught: forward", text]
     problem = system.why_not_undo("lesson-1")
     assert problem is not None
-    assert f"({text})" in problem
+    assert (problem.code, problem.fields["says"]) == (RefusalCode.TAUGHT_AFTER, text)
     system.apply(undone(event.origin.command_id))
     assert (system.lessons[-1].text, system.lessons[-1].undone) == (text, True)
 

@@ -8,6 +8,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import ResultCode
 from kurt2rt.teaching.commands import Command
 from kurt2rt.tick import TickRecord
 from tests.service.rig import Rig, eager_task, end_service, rig, scripted
@@ -19,7 +20,7 @@ async def teach_until(lessons: int, here: Rig, knowledge: Path, number: signal.S
     acting: list[str] = []
 
     def watch(record: TickRecord) -> Command | None:
-        acting.extend(result.command_id for result in record.results if " taught: " in result.text)
+        acting.extend(result.command_id for result in record.results if result.code is ResultCode.RLA_TAUGHT)
         if len(acting) >= lessons:
             end_service(number)
             return None

@@ -8,6 +8,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.journal_file import log_of
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import ResultCode
 from kurt2rt.teaching.commands import Command, Resume, Stop
 from kurt2rt.tick import TickRecord
 from tests.service.rig import end_service, rig, scripted
@@ -67,7 +68,7 @@ async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(t
     story = Story(a_lesson_is_saved, it_stands_for_a_while, it_goes_on)
 
     def watch(record: TickRecord) -> Command | None:
-        acting.extend(result.command_id for result in record.results if " taught: " in result.text)
+        acting.extend(result.command_id for result in record.results if result.code is ResultCode.RLA_TAUGHT)
         story.see(record)
         return teacher(record)
 

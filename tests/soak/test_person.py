@@ -10,6 +10,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.soak.person import Person
 from kurt2rt.teaching.commands import CommandResult, Resume
 from kurt2rt.tick import TickRecord
@@ -42,7 +43,7 @@ def drive(place: LongRunRig, person: Person, until_s: float, wanted: WheelSpeeds
 
 def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
     """A tick in which an RLA would drive, and in which these were carried out."""
-    results = tuple(CommandResult(each.command_id, True, "") for each in commands)
+    results = tuple(CommandResult(each.command_id, Outcome(ResultCode.RESUMED)) for each in commands)
     decision = SimpleNamespace(cause=Cause.RLA)
     return cast(TickRecord, SimpleNamespace(grant=grant, decision=decision, commands=commands, results=results))
 

@@ -17,6 +17,7 @@ from kurt2rt.channel.site import RobotSite
 from kurt2rt.channel.state import State
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.wire import encode_state
+from kurt2rt.outcome import Outcome, RefusalCode
 from tests.channel.states import ASKING
 
 Mind = Callable[[Request], Awaitable[Reply]]
@@ -28,7 +29,7 @@ _Thing = TypeVar("_Thing")
 
 
 async def agrees(_: Request) -> Reply:
-    return done(7, "done")
+    return done(7)
 
 
 class StandInRobot:
@@ -48,7 +49,7 @@ class StandInRobot:
         self.heard.append(request)
         self._wake()
         if isinstance(request, StreamRequest | CommandRequest) and request.boot != self.state.boot:
-            return refusal("boot", "the robot program was started anew", 7)
+            return refusal("boot", Outcome(RefusalCode.RESTARTED), 7)
         return await self.mind(request)
 
     def show(self, **changes: Any) -> State:

@@ -5,6 +5,7 @@ import pytest
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.critic.settings import NAMES
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Appraise, CommandResult, ReplaceAction, Reward, Undo
@@ -32,7 +33,10 @@ def test_the_first_appraisal_is_an_rla_of_the_critics_on_the_circumstances_of_th
     meant = robot.tick
     robot.go(0.0, 20, CALM)
     result = appraise(robot, "bad", about=meant)
-    assert (result.text, result.lesson) == ("appraisal RLA 2 taught: bad", True)
+    assert (result.outcome, result.lesson) == (
+        Outcome.of(ResultCode.RLA_TAUGHT, rla=2, level=CRITIC, action="bad"),
+        True,
+    )
     event = robot.events[-1]
     assert isinstance(event, RlaCreated)
     assert (event.rla.level, event.rla.action, event.rla.condition) == (CRITIC, "bad", tuple(CRASHED)[: len(NAMES)])
@@ -56,11 +60,15 @@ def test_the_robot_need_not_drive_to_be_appraised() -> None:
 def test_another_opinion_near_an_appraisal_replaces_and_farther_off_inserts() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, NEAR_CALM)
-    assert appraise(robot, "bad").text == "appraisal RLA 2 corrected: bad instead of good"
+    assert appraise(robot, "bad").outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=2, level=CRITIC, action="bad", was="good"
+    )
     assert isinstance(robot.events[-1], ActionReplaced)
     far = beyond(robot)
     robot.go(0.0, 1, far)
-    assert appraise(robot, "good", "x-2").text == "appraisal RLA 3 taught: good"
+    assert appraise(robot, "good", "x-2").outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=3, level=CRITIC, action="good"
+    )
 
 
 def beyond(robot: Track) -> AppraisalFeatures:
@@ -74,7 +82,7 @@ def test_the_same_opinion_teaches_nothing_and_counts_for_agreement() -> None:
     robot.go(0.0, 1, CALM)
     known, heard = robot.hash, robot.agreement.heard_of(1)
     result = appraise(robot, "good")
-    assert (result.accepted, result.text) == (True, "the critic thought good, too")
+    assert result.outcome == Outcome.of(ResultCode.CRITIC_AGREED, appraisal="good")
     event = robot.events[-1]
     assert isinstance(event, Appraised)
     assert (event.value, event.decided_at_tick) == (1, robot.tick)
@@ -89,7 +97,7 @@ def test_what_it_has_learnt_since_that_tick_is_no_agreement() -> None:
     first, second = robot.tick - 5, robot.tick
     appraise(robot, "bad", "x-1", first)
     result = appraise(robot, "bad", "x-2", second)
-    assert (result.accepted, result.text, result.lesson) == (True, "the critic says bad already", False)
+    assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.CRITIC_AGREES, appraisal="bad"), False)
     assert robot.agreement.heard_of(-1) == 1
     assert robot.agreement.share_of(-1) == 0.0
 
@@ -109,8 +117,8 @@ def test_an_appraisal_that_the_critic_does_not_have_is_refused_with_those_that_i
     robot = track()
     robot.go(0.0)
     result = appraise(robot, "lovely")
-    assert not result.accepted
-    assert result.text.startswith("there is no appraisal 'lovely'; the critic knows: bad")
+    known = ("bad", "neutral", "good")
+    assert result.outcome == Outcome.of(RefusalCode.NO_APPRAISAL, appraisal="lovely", known=known)
 
 
 @pytest.mark.parametrize("meant", [0, 1, 500])
@@ -128,16 +136,19 @@ def test_where_the_robot_saw_nothing_there_is_nothing_to_appraise() -> None:
     robot.recent.remember(robot.tick + 1, situation(0.0), decision, blind=True)
     robot.tick += 1
     result = appraise(robot, "bad")
-    assert (result.accepted, "silent then" in result.text) == (False, True)
+    assert result.outcome == Outcome(RefusalCode.WAS_BLIND)
 
 
 def test_an_appraisal_is_undone_corrected_and_deleted_as_any_rla() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, CRASHED)
     appraise(robot, "bad")
-    assert robot.say(Undo("u-1", "Ann")).text == "undone: appraisal RLA 3 taught: bad"
+    assert robot.say(Undo("u-1", "Ann")).outcome == Outcome.of(
+        ResultCode.LESSON_UNDONE, says="appraisal RLA 3 taught: bad"
+    )
     refused = robot.say(ReplaceAction("p-1", "Ann", 2, "a"))
-    assert refused.text.startswith("there is no action 'a'; the repertoire has: bad")
+    known = ("bad", "neutral", "good")
+    assert refused.outcome == Outcome.of(RefusalCode.NO_ACTION, action="a", known=known)
     assert robot.say(ReplaceAction("p-2", "Ann", 2, "neutral")).accepted
     assert robot.say(delete(2)).accepted
     assert robot.system.rlas_at(CRITIC) == ()
@@ -156,4 +167,4 @@ def test_a_robot_without_a_critic_says_so() -> None:
         small.level, Authority(small.actions, attended=False), insert_beyond_share=0.5, taken_command_ids=()
     )
     result, event = school.attend(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
-    assert (result.accepted, result.text, event) == (False, "this robot has no critic", None)
+    assert (result.outcome, event) == (Outcome(RefusalCode.NO_CRITIC), None)

@@ -3,6 +3,7 @@
 import pytest
 
 from hal.robot import WheelSpeeds
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.teaching.authority import Authority
 from kurt2rt.teaching.commands import Drive
 from tests.layers.helpers import Counted, sensed
@@ -156,7 +157,7 @@ def test_who_speaks_first_teaches_and_the_next_one_has_to_ask() -> None:
     authority.claim("Ben")
     assert authority.teacher == "Ann"
     assert authority.held_by_another("Ann") is None
-    assert authority.held_by_another("Ben") == "Ann teaches now; ask to be handed over to, or take the robot"
+    assert authority.held_by_another("Ben") == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
 def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -> None:
@@ -180,7 +181,7 @@ def test_nobody_takes_the_robot_from_a_hand_on_the_wheels(behaviour: bool) -> No
         hands.authority.run("a", NOW, LEASE)
     else:
         hands.drive(NOW)
-    refusal = "Ann drives by hand just now; stop the robot first"
+    refusal = Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="Ann")
     assert hands.authority.take("Ben", NOW + LEASE - 1) == refusal
     assert hands.authority.teacher == "Ann"
     assert hands.authority.take("Ben", NOW + LEASE) is None

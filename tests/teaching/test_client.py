@@ -55,9 +55,11 @@ from kurt2rt.channel.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.wire import WireError
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.outcome_text import text_of
 from kurt2rt.rla.rla import MID, Phase
 from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.answer import Answer, NoAnswerError
+from kurt2rt.teaching.answer import Answer, NoAnswerError, local_refusal
 from kurt2rt.teaching.lesson_line import LessonLine
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.teaching.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
@@ -82,6 +84,10 @@ HELLO = {
     "simulated": True,
     "phases": {1: "supervised", 2: "corrections"},
 }
+
+
+HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+NOT_SAVED = Outcome.of(RefusalCode.NOT_SAVED, says="the disk is full")
 
 
 class Clock:
@@ -358,17 +364,20 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
 
 async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: StandInRobot) -> None:
     async def saves(_: Request) -> Reply:
-        return done(99, "saved", name="a.db", sha256="ab12")
+        return done(99, name="a.db", sha256="ab12")
 
     robot.mind = saves
-    assert await client.save("x") == Answer(True, "", "saved", 99, {"name": "a.db", "sha256": "ab12"})
+    assert await client.save("x") == Answer(True, "", "", 99, {"name": "a.db", "sha256": "ab12"})
 
 
 @pytest.mark.parametrize(
     ("reply", "answer"),
     [
-        (refusal("held", "Ann teaches now", 5), Answer(False, "held", "Ann teaches now", 5)),
-        (unsaved("the disk is full", 5), Answer(False, "unsaved", "the disk is full", 5)),
+        (
+            refusal("held", HELD, 5),
+            Answer(False, "held", text_of(HELD), 5, outcome=HELD),
+        ),
+        (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "the disk is full", 5, outcome=NOT_SAVED)),
         (Reply(Verdict.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
     ],
 )
@@ -569,7 +578,7 @@ async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
         await robot.hears(kind, 2)
         stop = await client.stop()
     assert stop.accepted
-    assert answers == [Answer(False, "stopped", f"{what} was stopped meanwhile", -1)]
+    assert answers == [local_refusal("stopped", Outcome.of(RefusalCode.STOPPED_MEANWHILE, command=what))]
     # Longer than a command waits before it is sent again: four more commands go and come.
     sent = len(robot.all_of(kind))
     robot.mind = agrees
@@ -611,7 +620,7 @@ async def test_go_right_after_a_stop_says_that_the_teacher_knows_of_that_stop(
     stopped_tick = picture.tick + 3
 
     async def stops_later(request: Request) -> Reply:
-        return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20, "done")
+        return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20)
 
     robot.mind = stops_later
     await client.stop()
@@ -629,7 +638,7 @@ async def test_ticks_that_an_earlier_start_of_the_robot_told_count_for_nothing(p
     clock = Clock()
 
     async def far_on(_: Request) -> Reply:
-        return done(1_000_000, "done")
+        return done(1_000_000)
 
     async with AsyncExitStack() as first_start:
         robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
@@ -868,15 +877,15 @@ async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: P
 async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: StandInRobot, why: str) -> None:
     async def refuses(request: Request) -> Reply:
         if isinstance(request, DriveRequest):
-            return refusal(why, "Ann stopped the robot", 5)
+            return refusal(why, HELD, 5)
         return await agrees(request)
 
     robot.mind = refuses
     async with client.driving() as wheel:
         assert wheel.set(0.2, 0.2)
         await eventually(lambda: not client.pressing)
-        assert client.refused == "Ann stopped the robot"
-        assert wheel.ended == "Ann stopped the robot"
+        assert client.refused == text_of(HELD)
+        assert wheel.ended == text_of(HELD)
         assert not wheel.set(0.2, 0.2)
     assert robot.all_of(StopRequest) == []
 
@@ -889,9 +898,9 @@ async def test_a_press_goes_on_when_only_a_message_that_was_late_is_refused(
     async def refuses_the_first_one_late(request: Request) -> Reply:
         if request == robot.all_of(DriveRequest)[0]:
             await late.wait()
-            return refusal("stale", "given on an old picture", 5)
+            return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), 5)
         if request == robot.all_of(DriveRequest)[1]:
-            return refusal("old", "a newer one came first", 5)
+            return refusal("old", Outcome(RefusalCode.OVERTAKEN), 5)
         return await agrees(request)
 
     robot.mind = refuses_the_first_one_late

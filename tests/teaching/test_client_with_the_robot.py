@@ -13,6 +13,7 @@ from kurt2rt.channel.credentials import Pairing, pair
 from kurt2rt.channel.requests import PACKAGE
 from kurt2rt.channel.state import State
 from kurt2rt.exchange.given import read_given
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.rla.rla import Phase
 from kurt2rt.rounds import Screen
 from kurt2rt.service import Openness, serve
@@ -80,7 +81,7 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             asks = await state_where(robot, teacher="phone", cause="unknown")
             answer = await robot.answer("forward", of=asks.tick)
             assert answer.accepted
-            assert answer.text == "RLA 1 taught: forward"
+            assert answer.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward")
             drives = await state_where(robot, cause="rla", lessons=1, unsaved=0)
             assert (drives.rla, drives.action, drives.taught_by) == (1, "forward", "phone")
             (line,) = await robot.lessons()

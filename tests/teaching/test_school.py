@@ -6,6 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.appraisals import Appraisal
 from kurt2rt.rla.rla import (
     ActionReplaced,
@@ -86,8 +87,8 @@ class Lesson:
             self.school.recent.remember(self.tick, situation(place), decision, behaviour, blind=blind)
         return self.tick
 
-    def drive(self, teacher: str = "Ann", hold: int = 1) -> str | None:
-        """A press arrives in the next tick; why it does not drive the robot."""
+    def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
+        """Have a press arrive in the next tick; return why it does not drive the robot."""
         self.tick += 1
         refusal = self.school.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
         assert (refusal is None) == self.school.authority.is_manual(self.tick)
@@ -101,7 +102,7 @@ class Lesson:
 def test_teach_puts_an_rla_on_the_present_situation() -> None:
     lesson = Lesson()
     result = lesson.say(teach("a", "t-1"), place=2.5)
-    assert result == CommandResult("t-1", True, "RLA 1 taught: a", lesson=True)
+    assert result == CommandResult("t-1", Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="a"), lesson=True)
     assert lesson.events == [RlaCreated(Rla(1, (2.5,), "a", None, Origin("t-1", "Ann", Phase.SUPERVISED, 101)))]
     assert lesson.small.at(2.5).action == "a"
 
@@ -116,9 +117,11 @@ def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
     """A second RLA there would be accepted and never win, because the older one does."""
     lesson = Lesson()
     lesson.say(teach("a", "first"), place=2.5)
-    assert lesson.say(teach("a", "double click"), place=2.5).text == "RLA 1 says a already"
+    assert lesson.say(teach("a", "double click"), place=2.5).outcome == Outcome.of(
+        ResultCode.RLA_AGREES, rla=1, action="a"
+    )
     result = lesson.say(teach("b", "another teacher"), place=2.5)
-    assert (result.accepted, result.text) == (True, "RLA 1 corrected: b instead of a")
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
     assert lesson.actions == {1: "b"}
     assert lesson.small.at(2.5).action == "b"
 
@@ -126,7 +129,7 @@ def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
 def test_a_correction_up_to_the_border_replaces_the_action_of_the_nearest() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(correct("b", "c-1"), place=BORDER)
-    assert result.text == "RLA 1 corrected: b instead of a"
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
     assert lesson.events[-1] == ActionReplaced(1, "b", "a", Origin("c-1", "Ann", Phase.SUPERVISED, 101))
     assert lesson.actions == {1: "b"}
 
@@ -134,7 +137,7 @@ def test_a_correction_up_to_the_border_replaces_the_action_of_the_nearest() -> N
 def test_a_correction_beyond_the_border_inserts_a_new_rla() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(correct("b"), place=math.nextafter(BORDER, 100))
-    assert result.text == "RLA 2 taught: b"
+    assert result.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, action="b")
     assert lesson.actions == {1: "a", 2: "b"}
 
 
@@ -146,20 +149,22 @@ def test_the_border_is_a_share_of_the_nearest_rlas_own_radius() -> None:
 
 def test_a_correction_before_the_first_lesson_teaches() -> None:
     lesson = Lesson()
-    assert lesson.say(correct("b")).text == "RLA 1 taught: b"
+    assert lesson.say(correct("b")).outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="b")
 
 
 def test_a_correction_to_what_it_says_already_changes_nothing() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(correct("a"), place=1.0)
-    assert (result.accepted, result.text) == (True, "RLA 1 says a already")
+    assert result.outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="a")
     assert len(lesson.events) == 1
 
 
 def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
-    assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).text == "RLA 2 corrected: c instead of b"
-    assert lesson.say(delete(1, "d-1"), place=999.0).text == "RLA 1 deleted"
+    assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=2, action="c", was="b"
+    )
+    assert lesson.say(delete(1, "d-1"), place=999.0).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
     assert lesson.events[2:] == [
         ActionReplaced(2, "c", "b", Origin("r-1", "Ann", Phase.SUPERVISED, 101)),
         RlaDeleted(1, Origin("d-1", "Ann", Phase.SUPERVISED, 102)),
@@ -169,16 +174,18 @@ def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> No
 
 def test_stop_and_resume() -> None:
     lesson = Lesson()
-    assert lesson.say(stop()).text == "the robot stands until it is told to resume"
+    assert lesson.say(stop()).outcome == Outcome(ResultCode.STOPPED)
     assert lesson.school.stopped
-    assert lesson.say(resume()).text == "the robot may drive"
+    assert lesson.say(resume()).outcome == Outcome(ResultCode.RESUMED)
     assert not lesson.school.stopped
 
 
 def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "t-1"), place=0.0)
-    assert lesson.say(set_phase(Phase.CORRECTIONS)).text == "phase 2, corrections"
+    assert lesson.say(set_phase(Phase.CORRECTIONS)).outcome == Outcome.of(
+        ResultCode.PHASE_SET, phase=2, name="corrections"
+    )
     lesson.say(teach("b", "t-2"), place=50.0)
     assert [event.origin.phase for event in lesson.events] == [Phase.SUPERVISED, Phase.CORRECTIONS]
 
@@ -187,7 +194,7 @@ def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
 def test_an_action_that_is_not_in_the_repertoire_is_refused_with_those_that_are(command: Command) -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(command, place=100.0)
-    assert (result.accepted, result.text) == (False, "there is no action 'fly'; the repertoire has: a, b, c")
+    assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
     assert lesson.actions == {1: "a"}
     assert len(lesson.events) == 1
     assert lesson.school.corrections == 0
@@ -199,7 +206,7 @@ def test_an_rla_that_does_not_live_is_refused(command: Command) -> None:
     lesson.say(delete(1, "before"))
     result = lesson.say(command)
     assert not result.accepted
-    assert "it may have been deleted" in result.text
+    assert result.code is RefusalCode.NO_RLA
     assert lesson.actions == {2: "b"}
 
 
@@ -213,7 +220,7 @@ def test_a_command_that_comes_twice_counts_once(command: Command) -> None:
     known, corrections = lesson.actions, lesson.school.corrections
     events = list(lesson.events)
     for place in (100.0, 200.0):
-        assert lesson.say(command, place) == CommandResult("x", True, "had been taken already; counted once")
+        assert lesson.say(command, place) == CommandResult("x", Outcome(ResultCode.REPEATED))
     assert (lesson.actions, lesson.events, lesson.school.corrections) == (known, events, corrections)
 
 
@@ -229,7 +236,7 @@ def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> N
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), taken=("lesson-1",))
     assert lesson.school.has_taken("lesson-1")
-    assert lesson.say(teach("b", "lesson-1"), place=100.0).text == "had been taken already; counted once"
+    assert lesson.say(teach("b", "lesson-1"), place=100.0).outcome == Outcome(ResultCode.REPEATED)
     assert lesson.actions == {1: "a"}
 
 
@@ -237,7 +244,7 @@ def test_a_refused_command_may_come_again() -> None:
     lesson = Lesson()
     assert not lesson.say(delete(1, "x")).accepted
     lesson.say(teach("a"))
-    assert lesson.say(delete(1, "x")).text == "RLA 1 deleted"
+    assert lesson.say(delete(1, "x")).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
 
 
 def test_the_events_of_a_lesson_fold_to_the_same_knowledge() -> None:
@@ -265,7 +272,7 @@ def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     wrong = lesson.go_on(0.0)
     lesson.go_on(50.0, 20)
     result = lesson.say(Correct("c-1", "Ann", "c", wrong), place=50.0)
-    assert result.text == "RLA 1 corrected: c instead of a"
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="c", was="a")
     assert lesson.actions == {1: "c", 2: "b"}
     assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
 
@@ -304,7 +311,7 @@ def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> 
     }
     result = lesson.say(commands[kind])
     assert (result.accepted, result.lesson) == (False, False)
-    assert result.text == f"the decision of tick {meant} is not remembered any more; look at the newest picture"
+    assert result.outcome == Outcome.of(RefusalCode.TICK_FORGOTTEN, tick=meant)
     assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
     assert not lesson.school.has_taken("x")
 
@@ -313,7 +320,9 @@ def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     first = lesson.go_on(0.0)
     lesson.go_on(50.0, 999)
-    assert lesson.say(Correct("x", "Ann", "b", first), place=50.0).text == "RLA 1 corrected: b instead of a"
+    assert lesson.say(Correct("x", "Ann", "b", first), place=50.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=1, action="b", was="a"
+    )
 
 
 def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
@@ -322,19 +331,21 @@ def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
     lesson.go_on(0.0)
     for command in (Teach("x", "Ann", "b", dark), Correct("x", "Ann", "b", dark)):
         result = lesson.say(command)
-        assert (result.accepted, lesson.actions) == (False, {1: "a"})
-        assert "silent then" in result.text
+        assert (result.outcome, lesson.actions) == (Outcome(RefusalCode.WAS_BLIND), {1: "a"})
 
 
-@pytest.mark.parametrize(("value", "word", "appraisal"), [(1, "rewarded", (1, 0)), (-1, "punished", (0, 1))])
+@pytest.mark.parametrize(
+    ("value", "code", "appraisal"),
+    [(1, ResultCode.RLA_REWARDED, (1, 0)), (-1, ResultCode.RLA_PUNISHED, (0, 1))],
+)
 def test_a_reward_goes_to_the_rla_that_drove_in_the_tick_it_names(
-    value: int, word: str, appraisal: tuple[int, int]
+    value: int, code: ResultCode, appraisal: tuple[int, int]
 ) -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     good = lesson.go_on(0.0)
     lesson.go_on(50.0, 20)
     result = lesson.say(Reward("r-1", "Ann", value, good), place=50.0)
-    assert (result.text, result.lesson) == (f"RLA 1 {word}", True)
+    assert (result.outcome, result.lesson) == (Outcome.of(code, rla=1), True)
     assert lesson.events[-1] == RlaRewarded(1, value, good, Origin("r-1", "Ann", Phase.SUPERVISED, lesson.tick))
     assert lesson.small.level.system.appraisal(1) == Appraisal(*appraisal)
     assert lesson.small.level.system.appraisal(2) == Appraisal()
@@ -344,7 +355,7 @@ def test_a_reward_without_a_tick_means_the_newest_decision_also_after_a_missed_t
     lesson = Lesson(created(1, (0.0,), "a"))
     newest = lesson.go_on(0.0)
     lesson.tick += 5  # missed
-    assert lesson.say(Reward("r-1", "Ann", 1)).text == "RLA 1 rewarded"
+    assert lesson.say(Reward("r-1", "Ann", 1)).outcome == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
     event = lesson.events[-1]
     assert isinstance(event, RlaRewarded)
     assert event.decided_at_tick == newest
@@ -354,12 +365,10 @@ def test_there_is_nothing_to_reward_where_no_rla_drove_or_it_is_gone() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     assert not lesson.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
     asked = lesson.go_on(50.0)
-    assert lesson.say(Reward("r-1", "Ann", 1, asked)).text == (
-        "no RLA drove the robot then; there is nothing to reward or to punish"
-    )
+    assert lesson.say(Reward("r-1", "Ann", 1, asked)).outcome == Outcome(RefusalCode.NO_RLA_DROVE)
     drove = lesson.go_on(0.0)
     lesson.say(delete(1))
-    assert lesson.say(Reward("r-2", "Ann", -1, drove)).text == "there is no RLA 1; it may have been deleted"
+    assert lesson.say(Reward("r-2", "Ann", -1, drove)).outcome == Outcome.of(RefusalCode.NO_RLA, rla=1)
 
 
 def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before() -> None:
@@ -373,7 +382,7 @@ def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before()
     undone = [event.lesson for event in lesson.events if isinstance(event, LessonUndone)]
     assert undone == ["2", "1"]
     result = lesson.say(Undo("u-3", "Ann"))
-    assert (result.accepted, result.text) == (False, "there is no lesson to undo")
+    assert result.outcome == Outcome(RefusalCode.NO_LESSON)
 
 
 def test_undo_of_a_named_lesson_leaves_the_later_ones_of_other_rlas() -> None:
@@ -387,7 +396,7 @@ def test_undo_of_a_named_lesson_leaves_the_later_ones_of_other_rlas() -> None:
 def test_an_undo_says_what_it_took_back() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"))
-    assert lesson.say(Undo("u-1", "Ann")).text == "undone: RLA 1 taught: a"
+    assert lesson.say(Undo("u-1", "Ann")).outcome == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: a")
 
 
 def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing() -> None:
@@ -396,7 +405,7 @@ def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing()
     lesson.say(correct("b", "2"), place=0.0)
     refused = lesson.say(Undo("u-1", "Ann", "1"))
     assert (refused.accepted, refused.lesson) == (False, False)
-    assert "'2' came after '1'" in refused.text
+    assert (refused.code, refused.outcome.fields["later"]) == (RefusalCode.TAUGHT_AFTER, "2")
     assert not lesson.say(Undo("u-2", "Ann", "never was")).accepted
     assert lesson.actions == {1: "b"}
     assert not lesson.school.has_taken("u-1")
@@ -405,20 +414,22 @@ def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing()
 def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
     lesson = Lesson()
     school = lesson.school
-    assert lesson.say(EndSession("e-0", "Ann")).text == "no session is on"
+    assert lesson.say(EndSession("e-0", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
     assert school.teaching_ticks(lesson.tick) == 0
-    assert lesson.say(BeginSession("b-1", "Ann", "morning")).text == "session 'morning' begins"
+    assert lesson.say(BeginSession("b-1", "Ann", "morning")).outcome == Outcome.of(
+        ResultCode.SESSION_BEGUN, session="morning"
+    )
     began = lesson.tick
     refused = lesson.say(BeginSession("b-2", "Ann", "noon"))
-    assert (refused.accepted, refused.text) == (False, "the session 'morning' is on; end it first")
+    assert refused.outcome == Outcome.of(RefusalCode.SESSION_ON, session="morning")
     assert (school.session, school.teaching_ticks(began + 70)) == ("morning", 70)
 
     lesson.tick = began + 99
     result = lesson.say(EndSession("e-1", "Ann"))
-    assert (result.text, result.lesson) == ("session 'morning' is over; the robot stands", True)
+    assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.SESSION_ENDED, session="morning"), True)
     assert school.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
     assert school.teaching_ticks(began + 5000) == 100
-    assert lesson.say(EndSession("e-2", "Ann")).text == "no session is on"
+    assert lesson.say(EndSession("e-2", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
     assert lesson.events == [
         SessionBegun("morning", Origin("b-1", "Ann", Phase.SUPERVISED, began)),
         SessionEnded(100, Origin("e-1", "Ann", Phase.SUPERVISED, began + 100)),
@@ -431,10 +442,10 @@ def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> No
     lesson = Lesson()
     lesson.say(teach("a", "1"))
     refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
-    assert (refused.accepted, refused.text) == (False, "Ann teaches now; ask to be handed over to, or take the robot")
-    assert lesson.drive("Ben") == refused.text
-    assert lesson.school.follow(Watch("Ben", lesson.tick), lesson.tick) == refused.text
-    assert lesson.say(Take("3", "Ben")).text == "Ben teaches"
+    assert refused.outcome == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+    assert lesson.drive("Ben") == refused.outcome
+    assert lesson.school.follow(Watch("Ben", lesson.tick), lesson.tick) == refused.outcome
+    assert lesson.say(Take("3", "Ben")).outcome == Outcome.of(ResultCode.TAKEN, teacher="Ben")
     assert lesson.say(Teach("2", "Ben", "b"), place=50.0).accepted
     assert not lesson.say(teach("c", "4"), place=90.0).accepted
 
@@ -447,9 +458,9 @@ def test_to_be_there_is_not_to_speak() -> None:
 
 def test_handing_over_to_a_name_and_to_nobody() -> None:
     lesson = Lesson()
-    assert lesson.say(HandOver("1", "Ann", "Ben")).text == "Ben teaches now"
+    assert lesson.say(HandOver("1", "Ann", "Ben")).outcome == Outcome.of(ResultCode.HANDED_OVER, teacher="Ben")
     assert not lesson.say(HandOver("2", "Ann")).accepted
-    assert lesson.say(HandOver("3", "Ben")).text == "nobody teaches now"
+    assert lesson.say(HandOver("3", "Ben")).outcome == Outcome(ResultCode.RELEASED)
     assert lesson.say(Teach("4", "Cleo", "a")).accepted
     assert lesson.school.authority.teacher == "Cleo"
 
@@ -467,7 +478,7 @@ def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
     lesson = Lesson()
     assert lesson.drive(hold=1) is None
     lesson.say(stop())
-    assert lesson.drive(hold=1) == "this press is over; let go and press anew"
+    assert lesson.drive(hold=1) == Outcome(RefusalCode.PRESS_OVER)
     assert lesson.drive(hold=2) is None
 
 
@@ -475,8 +486,10 @@ def test_after_another_ones_stop_a_new_press_waits_for_resume() -> None:
     lesson = Lesson()
     assert lesson.drive(hold=1) is None
     lesson.say(Stop("1", "Ben"))
-    assert lesson.drive(hold=2) == "Ben stopped the robot; say resume first"
-    assert lesson.say(RunBehaviour("2", "Ann", "a", 10)).text == "Ben stopped the robot; say resume first"
+    assert lesson.drive(hold=2) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
+    assert lesson.say(RunBehaviour("2", "Ann", "a", 10)).outcome == Outcome.of(
+        RefusalCode.STOPPED_BY, teachers=("Ben",)
+    )
     lesson.say(resume())
     assert lesson.drive(hold=2) is None
 
@@ -488,14 +501,16 @@ def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
     lesson.say(BeginSession("0", "Ann", "morning"))
     lesson.say(Stop("1", "Ben"))
     assert lesson.say(own).accepted
-    assert lesson.drive() == "Ben stopped the robot; say resume first"
+    assert lesson.drive() == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
     lesson.say(resume())
     assert lesson.drive() is None
 
 
 def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> None:
     lesson = Lesson()
-    assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).text == "b for 10 ticks"
+    assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).outcome == Outcome.of(
+        ResultCode.ACTION_RUNS, action="b", ticks=10
+    )
     hand = lesson.school.authority.is_manual
     assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
     assert lesson.school.stopped == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
@@ -504,7 +519,7 @@ def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> Non
 def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
     lesson = Lesson()
     result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
-    assert (result.accepted, result.text) == (False, "there is no action 'fly'; the repertoire has: a, b, c")
+    assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
     assert not lesson.school.stopped
 
 
@@ -513,7 +528,7 @@ def test_resume_ends_what_the_hand_was_doing() -> None:
     lesson.drive(hold=4)
     lesson.say(resume())
     assert not lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.drive(hold=4) == "this press is over; let go and press anew"
+    assert lesson.drive(hold=4) == Outcome(RefusalCode.PRESS_OVER)
 
 
 def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
@@ -532,7 +547,7 @@ def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_no
     assert lesson.drive("Ben", hold=1) is None
     lesson.say(Stop("3", "Cleo"))
     lesson.say(Take("4", "Ann"))
-    assert lesson.drive(hold=9) == "Cleo stopped the robot; say resume first"
+    assert lesson.drive(hold=9) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Cleo",))
 
 
 def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
@@ -540,13 +555,13 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     lesson.drive(hold=1)
     release = Stop("1", "Ann", hold=1)
     lesson.drive(hold=2)
-    assert lesson.say(release).text == "that press is over; a later one drives"
+    assert lesson.say(release).outcome == Outcome(ResultCode.RELEASE_SUPERSEDED)
     assert lesson.school.authority.is_manual(lesson.tick)
     assert lesson.say(Stop("2", "Ann", hold=2)).accepted
     assert not lesson.school.authority.is_manual(lesson.tick)
     assert lesson.school.stopped == ActiveStop(StopReason.LET_GO, "Ann")
     lesson.say(resume())
-    assert lesson.say(Stop("2", "Ann", hold=2)).text == "had been taken already; counted once"
+    assert lesson.say(Stop("2", "Ann", hold=2)).outcome == Outcome(ResultCode.REPEATED)
     assert not lesson.school.stopped
 
 
@@ -565,7 +580,7 @@ def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
     lesson = Lesson()
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))
-    assert refused.text == "the robot was stopped after this was said; look at it, then say it again"
+    assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
     assert lesson.school.stopped
     assert lesson.say(late(lesson.tick)).accepted
 
@@ -585,11 +600,19 @@ TURNS = ("straight_on", "turn_left", "turn_right")
 
 def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
     lesson = Lesson(behaviours=TURNS)
-    assert lesson.say(teach("a", "t-1")).text == "RLA 1 of straight_on taught: a"
-    assert lesson.say(pursue("turn_left", "p-1")) == CommandResult("p-1", True, "turn_left is wanted")
+    assert lesson.say(teach("a", "t-1")).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
+    )
+    assert lesson.say(pursue("turn_left", "p-1")) == CommandResult(
+        "p-1", Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
+    )
     assert lesson.small.at(0.0).asking  # what it knows of straight_on is of no use here
-    assert lesson.say(teach("b", "t-2")).text == "RLA 2 of turn_left taught: b"
-    assert lesson.say(correct("c", "c-1"), place=1.0).text == "RLA 2 of turn_left corrected: c instead of b"
+    assert lesson.say(teach("b", "t-2")).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="b"
+    )
+    assert lesson.say(correct("c", "c-1"), place=1.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=2, behaviour="turn_left", action="c", was="b"
+    )
     assert [(rla.behaviour, rla.action) for rla in lesson.small.level.system.rlas] == [
         ("straight_on", "a"),
         ("turn_left", "c"),
@@ -602,15 +625,17 @@ def test_to_pursue_another_behaviour_is_no_lesson_and_counts_once() -> None:
     lesson = Lesson(behaviours=TURNS)
     lesson.say(pursue("turn_left", "p-1"))
     lesson.say(pursue("turn_right", "p-2"))
-    assert lesson.say(pursue("turn_left", "p-1")).text == "had been taken already; counted once"
+    assert lesson.say(pursue("turn_left", "p-1")).outcome == Outcome(ResultCode.REPEATED)
     assert (lesson.small.wanted.behaviour, lesson.events) == ("turn_right", [])
 
 
-@pytest.mark.parametrize(("behaviours", "known"), [(TURNS, ", ".join(TURNS)), (("",), "one, without a name")])
-def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(behaviours: tuple[str, ...], known: str) -> None:
+@pytest.mark.parametrize(("behaviours", "known"), [(TURNS, TURNS), (("",), ())])
+def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(
+    behaviours: tuple[str, ...], known: tuple[str, ...]
+) -> None:
     lesson = Lesson(behaviours=behaviours)
     result = lesson.say(pursue("fly"))
-    assert (result.accepted, result.text) == (False, f"there is no taught behaviour 'fly'; this task has: {known}")
+    assert result.outcome == Outcome.of(RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=known)
     assert lesson.small.wanted.behaviour == behaviours[0]
     assert lesson.school.authority.teacher is None
 
@@ -631,10 +656,7 @@ def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wa
     lesson.say(Pursue("1", "Ann", "turn_left", 80))
     assert lesson.say(Pursue("2", "Ann", "turn_right", 90)).accepted
     late = lesson.say(Pursue("3", "Ann", "straight_on", 85))
-    assert (late.accepted, late.text) == (
-        False,
-        "turn_right was asked for after this was said; look at the robot, then say it again",
-    )
+    assert late.outcome == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_right")
     assert not lesson.say(Pursue("4", "Ann", "fly", 95)).accepted  # and it is as if it had not been said
     assert lesson.say(Pursue("5", "Ann", "turn_left", 90)).accepted
     lesson.say(pursue("straight_on", "6"))  # by one who stands by
@@ -648,7 +670,9 @@ def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teac
     asked = lesson.go_on(2.5)
     lesson.say(pursue("turn_left"))
     lesson.go_on(2.5, 20)
-    assert lesson.say(kind("late", "Ann", "a", asked), place=80.0).text == "RLA 1 of straight_on taught: a"
+    assert lesson.say(kind("late", "Ann", "a", asked), place=80.0).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
+    )
     assert lesson.small.at(2.5).asking
     lesson.say(pursue("straight_on", "back"))
     assert lesson.small.at(2.5).action == "a"
@@ -663,10 +687,18 @@ def test_a_correction_of_an_old_picture_corrects_an_rla_of_what_was_wanted_then(
     wrong = lesson.go_on(0.0)
     lesson.say(pursue("turn_left"))
     praised = lesson.go_on(0.0, 20)
-    assert lesson.say(Correct("c-1", "Ann", "c", wrong)).text == "RLA 1 of straight_on corrected: c instead of a"
-    assert lesson.say(Reward("r-1", "Ann", 1, praised)).text == "RLA 2 of turn_left rewarded"
-    assert lesson.say(Undo("u-1", "Ann", "c-1")).text == ("undone: RLA 1 of straight_on corrected: c instead of a")
-    assert lesson.say(delete(1)).text == "RLA 1 of straight_on deleted"  # by its id, whatever is wanted
+    assert lesson.say(Correct("c-1", "Ann", "c", wrong)).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=1, behaviour="straight_on", action="c", was="a"
+    )
+    assert lesson.say(Reward("r-1", "Ann", 1, praised)).outcome == Outcome.of(
+        ResultCode.RLA_REWARDED, rla=2, behaviour="turn_left"
+    )
+    assert lesson.say(Undo("u-1", "Ann", "c-1")).outcome == Outcome.of(
+        ResultCode.LESSON_UNDONE, says="RLA 1 of straight_on corrected: c instead of a"
+    )
+    assert lesson.say(delete(1)).outcome == Outcome.of(
+        ResultCode.RLA_DELETED, rla=1, behaviour="straight_on"
+    )  # by its id, whatever is wanted
     assert lesson.actions == {2: "b"}
 
 
@@ -688,13 +720,13 @@ def test_nobody_teaches_in_the_critics_name(command: Command) -> None:
     lesson.go_on(0.0)
     result = lesson.say(command)
     assert not result.accepted
-    assert result.text == "critic is the name of the robot's own critic; teach under another one"
+    assert result.outcome == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
     assert lesson.school.authority.teacher != "critic"
 
 
 def test_the_critic_drives_nothing_by_hand_but_whoever_says_stop_is_heard() -> None:
     lesson = Lesson()
-    assert lesson.drive("critic") == "critic is the name of the robot's own critic; teach under another one"
+    assert lesson.drive("critic") == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
     assert lesson.say(Stop("s", "critic")).accepted
 
 
@@ -719,7 +751,7 @@ def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
     lesson = Lesson()
     result = lesson.say(teach("a", "t/withdraw-1"))
     assert (result.accepted, lesson.actions) == (False, {})
-    assert result.text == "the id 't/withdraw-1' has a /, which only ids of the robot's own have; leave it out"
+    assert result.outcome == Outcome.of(RefusalCode.RESERVED_ID, command_id="t/withdraw-1", sign="/")
     assert lesson.say(Stop("s/1", "Ann")).accepted
 
 

@@ -20,6 +20,7 @@ from kurt2rt.channel.requests import (
     SessionRequest,
     TakeRequest,
 )
+from kurt2rt.outcome import Outcome, RefusalCode
 from kurt2rt.rla.programs import AUTO
 from kurt2rt.rla.rla import Phase
 from kurt2rt.tasks.settings import TaskSettings, load_task
@@ -62,8 +63,8 @@ class Mind:
         if isinstance(request, HelloRequest):
             return Reply(Verdict.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
         if not isinstance(request, _CarriedOut):
-            return done(self._robot.state.tick, "done")
-        reply = done(self._robot.state.tick, "done")
+            return done(self._robot.state.tick)
+        reply = done(self._robot.state.tick)
         if request.command_id not in self._done:
             self._done.add(request.command_id)
             reply = self._carry_out(request)
@@ -85,7 +86,7 @@ class Mind:
             case TakeRequest():
                 robot.show(teacher="auto")
             case PhaseRequest(phase=phase) if phase is self.refuses_phase:
-                return refusal("refused", "too many commands wait; say it again", tick)
+                return refusal("refused", Outcome(RefusalCode.TOO_MANY), tick)
             case PhaseRequest(phase=phase):
                 robot.show(phase=int(phase))
                 if phase is self.stop_at_phase:
@@ -95,14 +96,14 @@ class Mind:
             case SessionRequest(name=None):
                 robot.show(session=None, stopped=ActiveStop(StopReason.SESSION_OVER, robot.state.session or ""))
             case SessionRequest(name=name) if robot.state.session is not None:
-                return refusal("refused", f"the session {name!r} is on; end it first", tick)
+                return refusal("refused", Outcome.of(RefusalCode.SESSION_ON, session=name), tick)
             case SessionRequest(name=name):
                 robot.show(session=name, stopped=None)
             case ResumeRequest(seen=seen) if seen < self._stopped_tick:
-                return refusal("stopped", "the robot was stopped after this was said", tick)
+                return refusal("stopped", Outcome(RefusalCode.STOPPED_SINCE), tick)
             case ResumeRequest():
                 robot.show(stopped=None)
-        return done(robot.state.tick, "done")
+        return done(robot.state.tick)
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ from kurt2rt.channel.credentials import ONLOOKER, Pairing, pair
 from kurt2rt.channel.requests import AppraiseRequest, Request, StopRequest, WatchRequest
 from kurt2rt.channel.schema import ChannelError
 from kurt2rt.channel.wire import WireError
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.teaching import RobotProcess, Teacher
 from kurt2rt.teaching.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots
@@ -49,7 +50,9 @@ async def test_teacher_in_a_running_loop_teaches(robot: RobotProcess) -> None:
         assert teacher.take().accepted
         teacher.resume()
         asking = teacher.wait_for_question()
-        assert teacher.answer("forward", of=asking.tick).text == "RLA 1 taught: forward"
+        assert teacher.answer("forward", of=asking.tick).outcome == Outcome.of(
+            ResultCode.RLA_TAUGHT, rla=1, action="forward"
+        )
         drives = teacher.wait_until(lambda state: state.cause == "rla")
         assert (drives.rla, drives.teacher) == (1, "local")
         refused = teacher.correct("fly")

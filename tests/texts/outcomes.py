@@ -1,0 +1,71 @@
+"""Listing of the texts of `kurt2rt.outcome_text`."""
+
+from collections.abc import Iterator
+
+from kurt2rt.outcome import Code, Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.outcome_text import Surface, fields_of, text_of
+from kurt2rt.rla.rla import MID
+
+SAMPLES: dict[str, Field] = {
+    "action": "forward",
+    "appraisal": "bad",
+    "behaviour": "turn_left",
+    "command": "door",
+    "command_id": "t/1",
+    "delete": 4,
+    "earlier": "ann-1",
+    "features": ("smell",),
+    "known": ("back", "forward"),
+    "later": "ann-3",
+    "lesson": "ann-2",
+    "level": MID,
+    "longest": 64,
+    "most_bytes": 1000,
+    "name": "door",
+    "next_to": 4,
+    "offset": 896,
+    "phase": 2,
+    "rla": 7,
+    "says": "<words of another table>",
+    "session": "morning",
+    "sign": "/",
+    "size": 4096,
+    "teacher": "Ann",
+    "teachers": ("Ann", "Ben"),
+    "tick": 1200,
+    "ticks": 50,
+    "times": 4,
+    "was": "back",
+}
+"""One value for every field that a text shows."""
+
+
+def sample(code: Code) -> Outcome:
+    """Return an outcome with a value in every field that its text shows."""
+    return Outcome(code, {name: SAMPLES[name] for name in sorted(fields_of(code))})
+
+
+def on_page() -> Iterator[tuple[str, str]]:
+    """Yield the page's text of each outcome."""
+    return _each(Surface.PAGE)
+
+
+def in_terminal() -> Iterator[tuple[str, str]]:
+    """Yield the terminal's text of each outcome."""
+    return _each(Surface.TERMINAL)
+
+
+def in_log() -> Iterator[tuple[str, str]]:
+    """Yield the text of each outcome in logs and on the wire."""
+    return _each(Surface.LOG)
+
+
+def _each(surface: Surface) -> Iterator[tuple[str, str]]:
+    for code in (*ResultCode, *RefusalCode):
+        yield code, text_of(sample(code), surface)
+    taught = Outcome.of(ResultCode.RLA_TAUGHT, rla=7, behaviour="turn_left", level=MID, action="back")
+    yield f"{taught.code}, behaviour and level", text_of(taught, surface)
+    wanted = Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="")
+    yield f"{wanted.code}, without a name", text_of(wanted, surface)
+    unnamed = Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
+    yield f"{unnamed.code}, none known", text_of(unnamed, surface)
