@@ -14,7 +14,7 @@ from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.hand_link import HandLink
 from kurt2rt.faults.levels import DisturbedLevel
 from kurt2rt.faults.outcome import LOST_FRAMES, Outcome, Standstill
-from kurt2rt.faults.place import Place, Stage
+from kurt2rt.faults.place import FaultRig, RigFactory
 from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.script import Script
 from kurt2rt.faults.table import FaultCase, FaultTable
@@ -37,7 +37,7 @@ class _Drill:
 
     def __init__(
         self,
-        place: Place,
+        rig: FaultRig,
         case: FaultCase,
         table: FaultTable,
         settings: RobotSettings,
@@ -46,32 +46,32 @@ class _Drill:
         keeper: LessonKeeper,
         recorder: FailingRecorder | None,
     ) -> None:
-        self._place = place
+        self._rig = rig
         self._case = case
         self._settings = settings
         self._task = task
         self._keeper = keeper
-        self._time = place.time
+        self._time = rig.time
         self._recorder = recorder
-        self._script = Script(place, case, table)
+        self._script = Script(rig, case, table)
         self._witness = Witness(
-            place, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
+            rig, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
         )
         self._latched: str | None = None
         self._ended_by = ""
         # The ticks' phase against the controller's cycle.
         self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
-        self._time.at(place.disturbance.begin_s, self._require_driving)
+        self._time.at(rig.disturbance.begin_s, self._require_driving)
         self._time.at(self._script.word_at_s, self._note_the_end)
-        self._level = DisturbedLevel(self._time, place.disturbance) if case.target == "tick" else None
+        self._level = DisturbedLevel(self._time, rig.disturbance) if case.target == "tick" else None
         self._runtime = self._build(())
         if self._level is not None:
             self._level.behind = self._runtime.level
         self._link: HandLink | None = None
         if case.target == "teacher_link":
-            self._link = HandLink(self._time, place.disturbance, self._runtime, chance)
+            self._link = HandLink(self._time, rig.disturbance, self._runtime, chance)
         if recorder is not None:
-            place.look_on(recorder)
+            rig.look_on(recorder)
         self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
@@ -85,10 +85,10 @@ class _Drill:
     def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> Outcome:
         """What it came to."""
         witness, word_at_s = self._witness, self._script.word_at_s
-        begin_s, end_s = self._place.disturbance.begin_s, self._place.disturbance.end_s
+        begin_s, end_s = self._rig.disturbance.begin_s, self._rig.disturbance.end_s
         stands = witness.stands(begin_s, end_s)
         standstills = [Standstill(each.from_s - begin_s, witness.words_from(each.from_s)) for each in stands]
-        health = self._place.robot.health
+        health = self._rig.robot.health
         counted = {
             "junk frames": health.junk,
             "unintelligible commands": witness.envelope.unintelligible,
@@ -119,7 +119,7 @@ class _Drill:
     def _build(self, events: tuple[TeachingEvent, ...]) -> Runtime:
         clock: Clock = DrillClock(self._time)
         if self._case.target == "clock":
-            clock = DisturbedClock(self._time, self._place.disturbance)
+            clock = DisturbedClock(self._time, self._rig.disturbance)
         return build_runtime(
             self._witness,
             self._settings,
@@ -132,14 +132,14 @@ class _Drill:
         )
 
     def _require_driving(self) -> None:
-        begin_s = self._place.disturbance.begin_s
+        begin_s = self._rig.disturbance.begin_s
         if self._witness.stands(begin_s - self._settings.can.cycle_s, begin_s):
             raise DidNotDriveError(
                 "the robot stands before anything fails", where=self._case, do="look at action and task"
             )
 
     def _note_the_end(self) -> None:
-        self._latched = self._place.robot.health.latched
+        self._latched = self._rig.robot.health.latched
 
     async def _serve(self) -> None:
         """As kurt2rt.service does: whatever ends the loop, the wheels stand before anything else ends."""
@@ -148,13 +148,13 @@ class _Drill:
         except DidNotDriveError:
             raise
         except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the service
-            self._place.robot.emergency_stop(GuardReason.SERVICE_ENDS)
+            self._rig.robot.emergency_stop(GuardReason.SERVICE_ENDS)
             self._ended_by = repr(error)
 
     def _start_anew(self) -> None:
         """What a supervisor does, and a teacher afterwards."""
         events = tuple(self._keeper.events) if isinstance(self._keeper, InMemoryEventStore) else ()
-        self._witness.look_at(self._place.start_anew())
+        self._witness.look_at(self._rig.start_anew())
         self._level = None
         self._runtime = self._build(events)
         self._script.begin_anew(self._runtime)
@@ -169,7 +169,7 @@ class _Drill:
 
 
 async def drill(
-    stage: Stage,
+    stage: RigFactory,
     case: FaultCase,
     table: FaultTable,
     settings: RobotSettings,
@@ -180,7 +180,7 @@ async def drill(
 ) -> Outcome:
     """Try one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
     schedule = table.schedule
-    place = stage.open(
+    rig = stage.open(
         case.target,
         case.kind,
         begin_s=schedule.begins_at_s,
@@ -191,18 +191,18 @@ async def drill(
     )
     chance = random.Random(f"drill {case} {seed}")
     with ExitStack() as stack:
-        stack.callback(place.close)
+        stack.callback(rig.close)
         keeper: LessonKeeper = InMemoryEventStore()
         disk: FailingDisk | None = None
         if case.target == "disk":
-            disk = FailingDisk(place.time, place.disturbance, folder / "drill.knowledge", settings, task)
+            disk = FailingDisk(rig.time, rig.disturbance, folder / "drill.knowledge", settings, task)
             keeper = disk
             stack.callback(disk.close)
         recorder: FailingRecorder | None = None
         if case.target == "recorder":
-            recorder = FailingRecorder(place.time, place.disturbance)
+            recorder = FailingRecorder(rig.time, rig.disturbance)
             stack.callback(recorder.close)
-        running = _Drill(place, case, table, settings, task, chance, keeper, recorder)
+        running = _Drill(rig, case, table, settings, task, chance, keeper, recorder)
         await running.run()
         problems: list[Complaint | None] = []
         if disk is not None:

@@ -61,7 +61,7 @@ class Disturbance(Protocol):
         ...
 
 
-class Place(Protocol):
+class FaultRig(Protocol):
     """Robot, bus and driver."""
 
     on_put: Callable[[int, bytes], None]
@@ -97,11 +97,11 @@ class Place(Protocol):
         ...
 
 
-class Stage(Protocol):
-    """Opens places."""
+class RigFactory(Protocol):
+    """Opens rigs."""
 
     def open(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float, seed: int
-    ) -> Place:
+    ) -> FaultRig:
         """The place where `target` is disturbed; one that is no part of robot or bus is left to the caller."""
         ...

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from kurt2rt.faults.hand_link import HandLink
-from kurt2rt.faults.place import Place
+from kurt2rt.faults.place import FaultRig
 from kurt2rt.faults.table import FaultCase, FaultTable
 from kurt2rt.runtime import Runtime
 from kurt2rt.teaching.active_stop import STARTED
@@ -17,11 +17,11 @@ _LESSON_EVERY_S = 0.25
 class Script:
     """Acts at moments of simulated time, and after each tick."""
 
-    def __init__(self, place: Place, case: FaultCase, table: FaultTable) -> None:
-        self._time = place.time
+    def __init__(self, rig: FaultRig, case: FaultCase, table: FaultTable) -> None:
+        self._time = rig.time
         self._case = case
         self._action = table.action
-        self._begin_s, self._end_s = place.disturbance.begin_s, place.disturbance.end_s
+        self._begin_s, self._end_s = rig.disturbance.begin_s, rig.disturbance.end_s
         self.word_at_s = self._end_s + table.schedule.settles_s
         """When somebody says what lets the robot drive on; until then it may do so by itself."""
         self.over_at_s = self.word_at_s

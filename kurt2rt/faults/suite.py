@@ -9,7 +9,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.faults.drill import drill
 from kurt2rt.faults.judge import DrillVerdict, judge
 from kurt2rt.faults.outcome import Outcome
-from kurt2rt.faults.place import Stage
+from kurt2rt.faults.place import RigFactory
 from kurt2rt.faults.table import FaultCase, FaultTable
 from kurt2rt.tasks.settings import TaskSettings
 
@@ -23,7 +23,7 @@ class Trial(NamedTuple):
 
 
 async def try_case(
-    stage: Stage, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
+    stage: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
 ) -> Trial:
     """Try one case. The seed makes noise, and the phases of fault, ticks and watchdog. Raises DidNotDriveError."""
     with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
@@ -32,7 +32,7 @@ async def try_case(
 
 
 async def try_cases(
-    stage: Stage,
+    stage: RigFactory,
     cases: Iterable[FaultCase],
     table: FaultTable,
     settings: RobotSettings,

@@ -6,7 +6,7 @@ from hal.robot import STANDSTILL, Robot, SensorReadings
 from hal.robot_proxy import RobotProxy
 from kurt2rt.faults.complaint import ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope
-from kurt2rt.faults.place import Place
+from kurt2rt.faults.place import FaultRig
 from kurt2rt.tick import TickRecord
 
 
@@ -20,21 +20,21 @@ class Stand(NamedTuple):
 class Witness(RobotProxy):
     """Sees both ends of the bus, and is the robot for the tick."""
 
-    def __init__(self, place: Place, envelope: Envelope, controller_watchdog_s: float) -> None:
-        super().__init__(place.robot)
+    def __init__(self, rig: FaultRig, envelope: Envelope, controller_watchdog_s: float) -> None:
+        super().__init__(rig.robot)
         self.envelope = envelope
         self.latched: tuple[float, str] | None = None
         """When the guard first stopped for good, and its word."""
         self.drove_at_s: list[float] = []
         """Times of ticks whose set points moved the robot."""
-        self._place = place
-        self._begin_s = place.disturbance.begin_s
+        self._rig = rig
+        self._begin_s = rig.disturbance.begin_s
         self._controller_watchdog_s = controller_watchdog_s
         self._sensed_at_s = 0.0
         self._arrivals: list[tuple[float, bool]] = []
         self._words: list[tuple[float, tuple[str, ...]]] = []
-        place.on_put = self._note_put
-        place.on_control = self._note_arrival
+        rig.on_put = self._note_put
+        rig.on_control = self._note_arrival
 
     def look_at(self, robot: Robot) -> None:
         """Another driver has taken the place of the one that was there."""
@@ -42,7 +42,7 @@ class Witness(RobotProxy):
 
     def note(self, record: TickRecord) -> None:
         """A tick is over."""
-        now_s = self._place.time.now_s()
+        now_s = self._rig.time.now_s()
         if record.grant.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
             if not record.decision.driving:
@@ -79,14 +79,14 @@ class Witness(RobotProxy):
 
     def sense(self, now_s: float) -> SensorReadings:
         """A tick begins: from here on its decision ages."""
-        self._sensed_at_s = self._place.time.now_s()
+        self._sensed_at_s = self._rig.time.now_s()
         return self._robot.sense(now_s)
 
     def close(self) -> None:
         """Left to the place."""
 
     def _note_put(self, number: int, payload: bytes) -> None:
-        now_s, latched = self._place.time.now_s(), self._place.robot.health.latched
+        now_s, latched = self._rig.time.now_s(), self._rig.robot.health.latched
         if latched is not None:
             if self.latched is None and now_s >= self._begin_s:
                 self.latched = (now_s, latched)
@@ -94,7 +94,7 @@ class Witness(RobotProxy):
         self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
 
     def _note_arrival(self, number: int, payload: bytes) -> None:
-        now_s = self._place.time.now_s()
+        now_s = self._rig.time.now_s()
         told = self.envelope.arrived(number, now_s, payload)
         if told is not None:
             self._arrivals.append((now_s, told.standing))

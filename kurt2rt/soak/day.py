@@ -28,7 +28,7 @@ from kurt2rt.soak.log import MinuteLog
 from kurt2rt.soak.meters import objects_by_type, used_mb
 from kurt2rt.soak.odometry import OdometryCheck
 from kurt2rt.soak.person import Person
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 from kurt2rt.soak.result import Check, CheckCode, SoakResult, Start
 from kurt2rt.soak.settings import SoakSettings
 from kurt2rt.soak.spool import Spool
@@ -48,7 +48,7 @@ class Day:
 
     def __init__(
         self,
-        place: SoakPlace,
+        rig: SoakRig,
         soak: SoakSettings,
         table: FaultTable,
         settings: RobotSettings,
@@ -60,18 +60,18 @@ class Day:
         by_module: bool = False,
     ) -> None:
         """`service`: with this soak's knowledge file. `by_module`: trace memory, which takes four times as long."""
-        self._place, self._soak, self._settings, self._task, self._service = place, soak, settings, task, service
+        self._rig, self._soak, self._settings, self._task, self._service = rig, soak, settings, task, service
         self._recording = recording
         self._seed = seed
         self._by_module = by_module
         self._period_s = settings.can.cycle_s
         self._chance = random.Random(f"day {soak.name}, seed {seed}")
-        self._witness = SoakWitness(place, table.envelope)
+        self._witness = SoakWitness(rig, table.envelope)
         actions = tuple(repertoire_of(task, settings))
         self._teacher = SoakTeacher(soak, task, settings, actions, seed)
-        self._faults = SoakFaults(place, self._witness, table, soak.fault_gap_s, seed)
-        self._person = Person(place, soak.picked_up_after_s, self._period_s)
-        self._odometry = OdometryCheck(place, settings.geometry.metres_per_tick)
+        self._faults = SoakFaults(rig, self._witness, table, soak.fault_gap_s, seed)
+        self._person = Person(rig, soak.picked_up_after_s, self._period_s)
+        self._odometry = OdometryCheck(rig, settings.geometry.metres_per_tick)
         self._log = MinuteLog()
         self._starts: Spool[Start] = Spool()
         self._unexpected: list[Complaint] = []
@@ -103,7 +103,7 @@ class Day:
     async def _run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
         begun_s = time.monotonic()
         end_s = hours * HOUR_S
-        clock = self._place.time
+        clock = self._rig.time
         if self._by_module:
             tracemalloc.start(1)
         while (
@@ -121,9 +121,9 @@ class Day:
     async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> Start:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
-        begun_s = self._place.time.now_s()
+        begun_s = self._rig.time.now_s()
         life = Life(
-            self._place,
+            self._rig,
             self._witness,
             self._teacher,
             self._settings,
@@ -145,12 +145,12 @@ class Day:
         # A program that is ended while its disk fails says what it could not save; that is no loss to look for here.
         await life.run(
             on_tick,
-            lambda: (self._cut_short or self._place.time.now_s() >= until_s) and self._faults.acting is None,
+            lambda: (self._cut_short or self._rig.time.now_s() >= until_s) and self._faults.acting is None,
         )
         expected = self._faults.expects_the_end
         self._faults.life = None
         if life.ended_by and not expected:
-            now_s = self._place.time.now_s()
+            now_s = self._rig.time.now_s()
             self._unexpected.append(complaint(ComplaintCode.ENDED_UNEXPECTEDLY, now_s, error=life.ended_by))
         try:
             lost = life.close()
@@ -165,11 +165,11 @@ class Day:
         if life.recorder.trouble and len(self._troubles) < 20:
             self._troubles.append(life.recorder.trouble)
         self._most_waiting = max(self._most_waiting, life.most_waiting)
-        lasted_s = self._place.time.now_s() - begun_s
+        lasted_s = self._rig.time.now_s() - begun_s
         return Start(begun_s, lasted_s, wire, life.ended_by, lost)
 
     def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
-        now_s = self._place.time.now_s()
+        now_s = self._rig.time.now_s()
         ledger = life.runtime.ledger
         missed = ledger.missed_ticks - self._missed_before
         self._missed_before = ledger.missed_ticks
@@ -211,8 +211,8 @@ class Day:
         counted = {
             "set down": self._person.set_down,
             "switched off and on": self._person.switched_on,
-            "controller crashes": self._place.crashes,
-            "collisions": self._place.collisions,
+            "controller crashes": self._rig.crashes,
+            "collisions": self._rig.collisions,
             "refused commands": self._refused,
             "commands": self._teacher.said,
             "old set points": witness.envelope.old_frames,

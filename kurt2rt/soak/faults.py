@@ -10,7 +10,7 @@ from kurt2rt.faults.place import Disturbance
 from kurt2rt.faults.recorder import FailingRecorder
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
 from kurt2rt.soak.life import Life
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 from kurt2rt.soak.spool import Spool
 from kurt2rt.soak.witness import SoakWitness
 
@@ -40,7 +40,7 @@ class FaultSeen(NamedTuple):
 class SoakFaults:
     """One fault at a time, each case of the table as often as any other."""
 
-    def __init__(self, place: SoakPlace, witness: SoakWitness, table: FaultTable, gap_s: float, seed: int) -> None:
+    def __init__(self, rig: SoakRig, witness: SoakWitness, table: FaultTable, gap_s: float, seed: int) -> None:
         self.seen: Spool[FaultSeen] = Spool()
         self.expects_the_end = False
         """Whether the program that runs may end by the fault that acts."""
@@ -49,7 +49,7 @@ class SoakFaults:
         """Of the newest fault."""
         self.life: Life | None = None
         """The program that runs; None while none does."""
-        self._place, self._witness, self._table = place, witness, table
+        self._rig, self._witness, self._table = rig, witness, table
         self._gap_s = gap_s
         self._chance = random.Random(f"faults, seed {seed}")
         self._deck: list[FaultCase] = []
@@ -63,10 +63,10 @@ class SoakFaults:
 
     def _plan(self) -> None:
         gap_s = _LEAST_GAP_S + self._chance.expovariate(1.0 / self._gap_s)
-        self._place.time.at(self._place.time.now_s() + gap_s, self._begin)
+        self._rig.time.at(self._rig.time.now_s() + gap_s, self._begin)
 
     def _begin(self) -> None:
-        time, life = self._place.time, self.life
+        time, life = self._rig.time, self.life
         if life is None or not life.ready:
             time.at(time.now_s() + _LOOKS_AGAIN_S, self._begin)
             return
@@ -86,7 +86,7 @@ class SoakFaults:
         self.expects_the_end = must.ends_by == "restart"
         self._witness.envelope.slew_share = must.slew_share
         self._witness.envelope.clock_is_wrong = case.target == "clock"
-        disturbance = self._disturbance = self._place.begin(
+        disturbance = self._disturbance = self._rig.begin(
             case.target, case.kind, begin_s=begin_s, end_s=end_s, period_s=must.period_s, delay_s=must.delay_s
         )
         match case.target:
@@ -102,7 +102,7 @@ class SoakFaults:
                     time.at(begin_s + number * every_s, self._on_life(Life.teach_what_is_known))
             case "recorder":
                 self._recorder = FailingRecorder(time, disturbance)
-                self._place.look_on(self._recorder)
+                self._rig.look_on(self._recorder)
             case "teacher_link":
                 life.take_by_hand(disturbance)
         if must.stop_said_after_s is not None:
@@ -123,7 +123,7 @@ class SoakFaults:
 
     def _look(self) -> None:
         """The fault is over in this moment."""
-        case, robot, witness = self.acting, self._place.robot, self._witness
+        case, robot, witness = self.acting, self._rig.robot, self._witness
         assert case is not None
         assert self._disturbance is not None
         begin_s = self._disturbance.begin_s
@@ -158,12 +158,12 @@ class SoakFaults:
         case, life, seen = self.acting, self.life, self._newest
         assert case is not None
         assert seen is not None
-        self._place.end()
+        self._rig.end()
         self._witness.envelope.slew_share = 1.0
         self._witness.envelope.clock_is_wrong = False
         self._witness.clock_is_wrong = False
         if self._recorder is not None:
-            self._place.look_on(None)
+            self._rig.look_on(None)
             self._recorder.close()
             uncounted = self._recorder.uncounted_frames()
             if uncounted is not None:

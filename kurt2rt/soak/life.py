@@ -19,7 +19,7 @@ from kurt2rt.service_settings import ServiceSettings
 from kurt2rt.soak.clock import SoakClock
 from kurt2rt.soak.knowledge import SoakKnowledge, open_soak_knowledge
 from kurt2rt.soak.level import SoakLevel
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 from kurt2rt.soak.teacher import NAME, SoakTeacher
 from kurt2rt.soak.witness import SoakWitness
 from kurt2rt.tasks.settings import TaskSettings
@@ -43,7 +43,7 @@ class Life:
 
     def __init__(
         self,
-        place: SoakPlace,
+        rig: SoakRig,
         witness: SoakWitness,
         teacher: SoakTeacher,
         settings: RobotSettings,
@@ -63,9 +63,9 @@ class Life:
         """Commands in the inbox when a tick took them."""
         self.ended_by = ""
         """The error that ended the program; empty when none did."""
-        self._place, self._witness, self._teacher = place, witness, teacher
+        self._rig, self._witness, self._teacher = rig, witness, teacher
         self._settings = settings
-        self._time = place.time
+        self._time = rig.time
         self._number = number
         self._presses = 0
         self._lessons_said = self._recorded_at = self._tended_at = 0
@@ -76,12 +76,12 @@ class Life:
         self._link: HandLink | None = None
         path = Path(service.knowledge)
         opened = open_soak_knowledge(path, settings, task)
-        self.knowledge = SoakKnowledge(path, opened, place.time)
-        robot = place.start_driver(wire)
+        self.knowledge = SoakKnowledge(path, opened, rig.time)
+        robot = rig.start_driver(wire)
         witness.look_at(robot, settings.can.cycle_s)
         teacher.program_started()
-        self.clock = SoakClock(place.time)
-        self.level = SoakLevel(place.time)
+        self.clock = SoakClock(rig.time)
+        self.level = SoakLevel(rig.time)
         self.runtime: Runtime = build_runtime(
             witness,
             settings,
@@ -98,7 +98,7 @@ class Life:
         self.runtime.school.stop(STARTED)
         screen = Screen(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
         circumstances = Circumstances(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
-        started = _FIRST_DAY + timedelta(seconds=place.time.now_s())
+        started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
         self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)
         self.recorder.tend()
@@ -145,7 +145,7 @@ class Life:
     def close(self) -> Complaint | None:
         """Save statistics, end the driver, close the file and compare it with the lessons. Raises KnowledgeError."""
         self.runtime.scheduler.end()
-        self._place.end_driver()
+        self._rig.end_driver()
         if not self.ended_by:
             self._rounds.save_statistics()
         self.recorder.close()

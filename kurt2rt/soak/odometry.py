@@ -1,16 +1,16 @@
 """What the encoders counted on a sound bus, against what the wheels turned."""
 
 from hal.robot import SensorReadings
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 
 
 class OdometryCheck:
     """From one look to the next; looks with a fault between them, or a hand that picked the robot up, say nothing."""
 
-    def __init__(self, place: SoakPlace, metres_per_tick: float) -> None:
+    def __init__(self, rig: SoakRig, metres_per_tick: float) -> None:
         self.worst_m = 0.0
         """The greatest difference of any side between two looks."""
-        self._place = place
+        self._rig = rig
         self._metres_per_tick = metres_per_tick
         self._ticks = [0, 0]
         self._turned_m = [0.0, 0.0]
@@ -28,8 +28,8 @@ class OdometryCheck:
     def look(self) -> None:
         """Compare, and begin anew."""
         if self._valid:
-            for ticks, turned_m, before_m in zip(self._ticks, self._place.turned_m, self._turned_m, strict=True):
+            for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):
                 self.worst_m = max(self.worst_m, abs(ticks * self._metres_per_tick - (turned_m - before_m)))
         self._ticks = [0, 0]
-        self._turned_m = list(self._place.turned_m)
+        self._turned_m = list(self._rig.turned_m)
         self._valid = True

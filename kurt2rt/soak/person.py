@@ -3,7 +3,7 @@
 import math
 
 from kurt2rt.layers.decision import Cause
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 from kurt2rt.teaching.commands import Resume
 from kurt2rt.tick import TickRecord
 
@@ -17,13 +17,13 @@ class Person:
     Where that does not help he switches it off and on: a frame of noise may have switched its motors off.
     """
 
-    def __init__(self, place: SoakPlace, after_s: float, period_s: float) -> None:
+    def __init__(self, rig: SoakRig, after_s: float, period_s: float) -> None:
         self.set_down = self.switched_on = 0
         """How often."""
-        self._place = place
+        self._rig = rig
         self._most_ticks = round(after_s / period_s)
         self._ticks = 0
-        self._from_m = place.position_m
+        self._from_m = rig.position_m
         self._has_moved = True
         self._go_in_vain = False
 
@@ -35,7 +35,7 @@ class Person:
             self._go_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
         if (record.grant.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
             return False
-        here_m = self._place.position_m
+        here_m = self._rig.position_m
         if math.dist(here_m, self._from_m) > _WAY_M:
             self._from_m, self._ticks = here_m, 0
             self._has_moved = True
@@ -44,11 +44,11 @@ class Person:
         if self._ticks < self._most_ticks:
             return False
         if not self._has_moved:
-            self._place.switch_on()
+            self._rig.switch_on()
             self.switched_on += 1
         self._has_moved = self._go_in_vain = False
-        self._place.set_down()
-        self._from_m, self._ticks = self._place.position_m, 0
+        self._rig.set_down()
+        self._from_m, self._ticks = self._rig.position_m, 0
         self.set_down += 1
         return True
 

@@ -9,7 +9,7 @@ from kurt2rt.faults.place import Disturbance, SimulatedTime
 from kurt2rt.faults.table import Kind
 
 
-class SoakPlace(Protocol):
+class SoakRig(Protocol):
     """Robot, bus and driver, one driver after another."""
 
     on_put: Callable[[int, bytes], None]

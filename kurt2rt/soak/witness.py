@@ -8,7 +8,7 @@ from kurt2rt.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.faults.envelope import Envelope
 from kurt2rt.faults.table import EnvelopeSettings
 from kurt2rt.layers.decision import Cause
-from kurt2rt.soak.place import SoakPlace
+from kurt2rt.soak.place import SoakRig
 from kurt2rt.teaching.commands import Resume
 from kurt2rt.tick import TickRecord
 from kurt2rt.timing.ledger import Ledger
@@ -35,7 +35,7 @@ class Complaints:
 class SoakWitness:
     """Sees what drivers say, what arrives at the robot, and each tick's record (and is, for the tick, the robot)."""
 
-    def __init__(self, place: SoakPlace, limits: EnvelopeSettings) -> None:
+    def __init__(self, rig: SoakRig, limits: EnvelopeSettings) -> None:
         self.envelope = Envelope(limits)
         self.complaints = Complaints()
         """Of the motion envelope, of standing, and of accounting."""
@@ -47,7 +47,7 @@ class SoakWitness:
         """How often the robot was told to drive on, and might."""
         self.clock_is_wrong = False
         """While the program's clock itself fails, deadlines by it say nothing."""
-        self._place = place
+        self._rig = rig
         self._robot: Robot | None = None
         self._limits = limits
         self._sensed_at_s = 0.0
@@ -59,8 +59,8 @@ class SoakWitness:
         self._must_stand = ""
         self._begun_s: float | None = None
         self._period_s = 0.0
-        place.on_put = self._note_put
-        place.on_control = self._note_arrival
+        rig.on_put = self._note_put
+        rig.on_control = self._note_arrival
 
     def look_at(self, robot: Robot, period_s: float) -> None:
         """A program was started anew: it must stand until it is told to drive."""
@@ -71,7 +71,7 @@ class SoakWitness:
 
     def note(self, record: TickRecord, ledger: Ledger, begun_s: float) -> None:
         """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
-        now_s = self._place.time.now_s()
+        now_s = self._rig.time.now_s()
         moves = record.grant.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
             self.complaints.add(complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause))
@@ -113,11 +113,11 @@ class SoakWitness:
 
     @property
     def _silent(self) -> bool:
-        return self._place.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
+        return self._rig.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
 
     def sense(self, now_s: float) -> SensorReadings:
         """A tick begins: from here on its decision ages."""
-        self._sensed_at_s = self._place.time.now_s()
+        self._sensed_at_s = self._rig.time.now_s()
         assert self._robot is not None
         senses = self._robot.sense(now_s)
         self.envelope.off_a_bumper = senses.bumpers != 0
@@ -142,7 +142,7 @@ class SoakWitness:
         """Left to the place."""
 
     def _note_put(self, number: int, payload: bytes) -> None:
-        now_s, robot = self._place.time.now_s(), self._place.robot
+        now_s, robot = self._rig.time.now_s(), self._rig.robot
         latched = robot is not None and robot.health.latched is not None
         self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched)
 

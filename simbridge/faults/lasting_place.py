@@ -31,7 +31,7 @@ from simbridge.world_loading import load_world
 
 
 class LongRunRig:
-    """Robot, bus and driver in simulated time (kurt2rt.soak.place.SoakPlace).
+    """Robot, bus and driver in simulated time (kurt2rt.soak.place.SoakRig).
 
     Ticks, controller cycles and watchdog polls have independent phases. Events of simulated time replace the
     watchdog's thread.

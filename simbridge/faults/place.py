@@ -25,7 +25,7 @@ from simbridge.simulated_robot import SimulatedRobot
 
 
 class SimulatedFaultRig:
-    """Robot, bus and driver in simulated time (kurt2rt.faults.place.Place).
+    """Robot, bus and driver in simulated time (kurt2rt.faults.place.FaultRig).
 
     Ticks, controller cycles and watchdog polls have independent phases. Events of simulated time replace the
     watchdog's thread.
