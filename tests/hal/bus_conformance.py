@@ -97,7 +97,7 @@ class BusConformance:
         self.carry()
         return end.drain()
 
-    def test_frames_arrive_once_in_their_order_and_nobody_hears_itself(self, ends: Ends) -> None:
+    def test_frames_arrive_once_in_order_at_all_other_ends(self, ends: Ends) -> None:
         robot_end, far_end = ends
         send(far_end, map(numbered, range(150)))
         assert numbers(self.heard(robot_end)) == list(range(150))
@@ -118,7 +118,7 @@ class BusConformance:
         assert numbers(self.heard(robot_end)) == list(range(0, 100, 2))
         assert numbers(self.heard(far_end)) == list(range(1, 100, 2))
 
-    def test_who_joins_hears_what_is_sent_from_then_on(self, ends: Ends, join: Join) -> None:
+    def test_late_end_receives_only_later_frames(self, ends: Ends, join: Join) -> None:
         robot_end, far_end = ends
         send(far_end, [numbered(1)])
         self.heard(robot_end)
@@ -126,7 +126,7 @@ class BusConformance:
         send(far_end, [numbered(2)])
         assert numbers(self.heard(late)) == [2]
 
-    def test_both_directions_carry_what_the_robot_and_its_controller_say(self, ends: Ends) -> None:
+    def test_robot_and_controller_exchange_frames_both_ways(self, ends: Ends) -> None:
         robot_end, far_end = ends
         control = robot_end.control_port()
         for counts in range(5):
@@ -162,7 +162,7 @@ class BusConformance:
             can.Message(arbitration_id=0x09, is_extended_id=False, is_remote_frame=True, dlc=9),
         ],
     )
-    def test_what_is_not_classic_can_is_refused(self, ends: Ends, sent: can.Message) -> None:
+    def test_frame_that_is_not_classic_can_is_refused(self, ends: Ends, sent: can.Message) -> None:
         robot_end, far_end = ends
         with pytest.raises(ValueError, match="frame 0x9 is not of classic CAN"):
             send(far_end, [sent])
@@ -187,7 +187,7 @@ class BusConformance:
         send(far_end, cycle())
         assert [frame.arbitration_id for frame in self.heard(robot_end)] == [CONTROL_ID]
 
-    def test_what_waits_already_is_filtered_as_well(self, ends: Ends, join: Join) -> None:
+    def test_waiting_frames_pass_a_new_filter_too(self, ends: Ends, join: Join) -> None:
         robot_end, far_end = ends
         watcher = join()
         send(far_end, [Frame(0x08, b""), Frame(0x09, b"")])
@@ -271,7 +271,7 @@ class BusConformance:
         send(far_end, [numbered(1)])
         assert numbers(self.heard(other)) == [1]
 
-    def test_a_reopened_end_hears_what_it_listened_to_and_its_ports_stay_good(self, ends: Ends) -> None:
+    def test_reopened_end_keeps_filter_and_ports(self, ends: Ends) -> None:
         robot_end, far_end = ends
         port, control = robot_end.telemetry_port(), robot_end.control_port()
         robot_end.set_id_filter({0x09})
@@ -285,7 +285,7 @@ class BusConformance:
         assert [bytes(frame.data) for frame in self.heard(robot_end)] == [b"x"]
         assert [frame.arbitration_id for frame in self.heard(far_end)] == [_NUMBERED_ID, CONTROL_ID]
 
-    def test_a_bus_that_goes_away_is_told_in_one_line_until_it_is_reopened(self, ends: Ends) -> None:
+    def test_lost_bus_raises_one_line_until_reopened(self, ends: Ends) -> None:
         robot_end, far_end = ends
         pull_the_plug(robot_end)
         for _ in range(2):

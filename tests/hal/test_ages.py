@@ -75,7 +75,7 @@ def test_a_robot_with_old_feelings_stands(ride: Ride, old: slice, ago_s: float, 
     assert ride.decide().reasons == (reason,)
 
 
-def test_after_a_hang_it_stands_until_fresh_frames_come_however_many_old_ones_wait(ride: Ride) -> None:
+def test_ages_after_hang_stand_until_fresh_frames(ride: Ride) -> None:
     for _ in range(40):  # so many cycles the kernel keeps, and no more
         ride.sleep(TICK_S)
         ride.desk.arrive(*ride.frames())
@@ -86,7 +86,7 @@ def test_after_a_hang_it_stands_until_fresh_frames_come_however_many_old_ones_wa
     assert ride.tick(0.01, 0.01).reasons == ()
 
 
-def test_a_runtime_whose_clock_ran_backwards_does_not_take_old_frames_for_new(ends: tuple[CanBus, CanBus]) -> None:
+def test_ages_after_clock_ran_backwards_are_infinite(ends: tuple[CanBus, CanBus]) -> None:
     robot = Kurt2(ROBOT, ends[0])
     send(ends[1], cycle())
     robot.sense(1000.0)

@@ -26,7 +26,7 @@ def stopped(reason: GuardReason) -> GuardResult:
 
 
 @pytest.mark.parametrize("frame", [FORWARD, encode_brake(), Frame(0x01, b"")], ids=["drive", "stop", "junk"])
-def test_another_sender_of_control_stops_the_robot_in_the_same_tick(ride: Ride, frame: Frame) -> None:
+def test_foreign_control_stops_the_robot_in_the_same_tick(ride: Ride, frame: Frame) -> None:
     ride.desk.arrive(frame)
     ride.kurt2.sense(ride.now_s)
     assert ride.sent() == [BRAKE]  # before anybody has decided anything
@@ -48,7 +48,7 @@ def test_it_stops_again_after_a_resume_while_the_other_goes_on(ride: Ride) -> No
     assert ride.kurt2.health.foreign_control == 3
 
 
-def test_its_own_frames_are_no_alarm_and_extended_or_remote_ones_are_no_control(ride: Ride) -> None:
+def test_own_extended_and_remote_frames_raise_no_alarm(ride: Ride) -> None:
     ride.drive_for(0.1)
     extended = can.Message(arbitration_id=0x01, is_extended_id=True, data=bytes(8))
     remote = can.Message(arbitration_id=0x01, is_extended_id=False, is_remote_frame=True)
@@ -57,14 +57,14 @@ def test_its_own_frames_are_no_alarm_and_extended_or_remote_ones_are_no_control(
     assert ride.kurt2.health.foreign_control == 0
 
 
-def test_what_slips_past_the_filter_is_neither(ride: Ride) -> None:
+def test_frames_that_slip_past_the_filter_raise_no_alarm(ride: Ride) -> None:
     ride.desk.set_id_filter(frozenset({0x123}))
     ride.desk.arrive(Frame(0x123, bytes(8)))
     assert not ride.decide().latched
     assert (ride.kurt2.health.foreign_control, ride.kurt2.health.junk) == (0, 0)
 
 
-def test_what_stopped_it_first_is_what_is_told(ride: Ride) -> None:
+def test_first_alarm_stays_the_reported_one(ride: Ride) -> None:
     ride.kurt2.emergency_stop(GuardReason.SERVICE_ENDS)
     ride.desk.arrive(FORWARD)
     assert ride.tick() == stopped(GuardReason.SERVICE_ENDS)
@@ -74,7 +74,7 @@ def test_what_stopped_it_first_is_what_is_told(ride: Ride) -> None:
 # A bus that does not carry
 
 
-def test_a_blocked_bus_gets_no_set_point_put_behind_others_but_brakes(ride: Ride) -> None:
+def test_blocked_bus_gets_brakes_but_no_set_points(ride: Ride) -> None:
     ride.desk.carries = False
     assert not ride.tick().latched
     assert not ride.tick().latched
@@ -100,7 +100,7 @@ def test_a_bus_that_carries_again_stays_stopped_until_released(ride: Ride) -> No
     assert not ride.drive_for(0.05).latched
 
 
-def test_released_too_early_it_is_blocked_again_after_two_slow_set_points(ride: Ride) -> None:
+def test_early_release_blocks_again_after_two_set_points(ride: Ride) -> None:
     ride.desk.carries = False
     ride.drive_for(0.05)
     ride.kurt2.release()
@@ -109,7 +109,7 @@ def test_released_too_early_it_is_blocked_again_after_two_slow_set_points(ride: 
     assert third == stopped(GuardReason.BUS_BLOCKED)
 
 
-def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride: Ride) -> None:
+def test_silently_lost_frames_do_not_hinder_a_resume(ride: Ride) -> None:
     ride.desk.carries = False
     ride.drive_for(0.05)
     ride.desk.lose()
@@ -119,7 +119,7 @@ def test_what_was_lost_without_a_word_does_not_stand_in_the_way_of_a_resume(ride
     assert not ride.drive_for(0.05).latched
 
 
-def test_frames_from_before_a_resume_that_are_carried_after_it_are_still_its_own(ride: Ride) -> None:
+def test_own_frames_carried_after_a_resume_raise_no_alarm(ride: Ride) -> None:
     ride.desk.carries = False
     ride.drive_for(0.05)
     ride.kurt2.release()
@@ -131,7 +131,7 @@ def test_frames_from_before_a_resume_that_are_carried_after_it_are_still_its_own
     assert ride.openings == 1  # the kernel takes the frames of a closed socket for somebody else's
 
 
-def test_a_resume_after_another_stop_forgets_nothing_of_what_waits(ride: Ride) -> None:
+def test_resume_after_another_stop_keeps_waiting_frames(ride: Ride) -> None:
     ride.kurt2.emergency_stop(GuardReason.SERVICE_ENDS)
     ride.desk.carries = False
     ride.drive_for(0.05)
@@ -159,7 +159,7 @@ def test_bus_off_stops_and_says_how_to_come_back(ride: Ride) -> None:
     assert "ip link set can0 type can restart" in health.trouble
 
 
-def test_who_resumes_while_the_bus_is_off_gains_nothing(ride: Ride) -> None:
+def test_resume_while_bus_is_off_stays_stopped(ride: Ride) -> None:
     ride.desk.arrive(OFF)
     ride.decide()
     ride.kurt2.release()
@@ -167,7 +167,7 @@ def test_who_resumes_while_the_bus_is_off_gains_nothing(ride: Ride) -> None:
 
 
 @pytest.mark.parametrize("sign", [RESTARTED, *cycle()[:1]], ids=["restarted", "a frame"])
-def test_the_trouble_ends_with_a_sign_of_life_and_the_stop_with_a_resume(ride: Ride, sign: Frame) -> None:
+def test_bus_off_ends_by_traffic_and_its_stop_by_resume(ride: Ride, sign: Frame) -> None:
     ride.desk.arrive(OFF)
     ride.decide()
     ride.desk.arrive(sign)
@@ -190,7 +190,7 @@ def test_off_and_back_between_two_ticks_is_a_stop_all_the_same(ride: Ride) -> No
 
 
 @pytest.mark.parametrize("status", [0x04, 0x08, 0x10, 0x20])
-def test_an_adapter_that_warns_or_is_passive_drives_on_and_is_shown(ride: Ride, status: int) -> None:
+def test_warning_or_passive_adapter_drives_on_and_is_shown(ride: Ride, status: int) -> None:
     ride.desk.arrive(error_frame(0x204, status=status, sending=130, receiving=1))
     assert ride.drive_for(0.5) == GuardResult(WheelSpeeds(0.3, 0.3), (), latched=False)
     assert "130 errors sending and 1 receiving" in ride.kurt2.health.trouble
@@ -223,7 +223,7 @@ def test_a_lost_bus_is_told_before_other_troubles(ride: Ride) -> None:
     assert "receiving failed" in ride.kurt2.health.trouble
 
 
-def test_who_resumes_while_the_bus_is_lost_gains_nothing(ride: Ride, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_resume_while_bus_is_lost_stays_stopped(ride: Ride, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_: float | None) -> None:
         raise can.CanOperationError("the interface was down for a moment")
 
@@ -276,9 +276,7 @@ def frozen_but(ride: Ride, *alive: str) -> list[can.Message]:
         (("ADC08_11",), "second controller (BDC*)"),
     ],
 )
-def test_a_board_that_repeats_itself_for_a_second_stops_the_robot(
-    ride: Ride, alive: tuple[str, ...], board: str
-) -> None:
+def test_board_frozen_for_a_second_stops_the_robot(ride: Ride, alive: tuple[str, ...], board: str) -> None:
     grants = []
     for _ in range(105):
         ride.desk.arrive(*frozen_but(ride, *alive))
@@ -299,7 +297,7 @@ def test_one_sensor_of_each_board_that_lives_is_enough(ride: Ride) -> None:
         assert not ride.decide().latched
 
 
-def test_channels_without_a_distance_sensor_do_not_keep_a_board_alive(ride: Ride) -> None:
+def test_unused_channels_do_not_keep_a_board_alive(ride: Ride) -> None:
     message = CODEC.message("ADC08_11")
     for n in range(105):
         frames = [frame for frame in frozen_but(ride, "BDC00_03") if frame.arbitration_id != message.frame_id]
@@ -309,7 +307,7 @@ def test_channels_without_a_distance_sensor_do_not_keep_a_board_alive(ride: Ride
     assert grant == stopped(GuardReason.INFRARED_FROZEN)
 
 
-def test_a_robot_that_stands_may_wait_on_a_still_board_and_drives_a_second_with_it(ride: Ride) -> None:
+def test_still_board_at_standstill_allows_a_second_of_driving(ride: Ride) -> None:
     latched = []
     for wanted_m_s, seconds in ((0.0, 3.0), (0.3, 0.5), (0.0, 3.0), (0.3, 1.0)):
         for _ in range(round(seconds / TICK_S)):
@@ -319,7 +317,7 @@ def test_a_robot_that_stands_may_wait_on_a_still_board_and_drives_a_second_with_
     assert 699 <= latched.index(True) <= 702  # a second in two parts
 
 
-def test_a_second_in_which_nobody_looked_is_no_second_of_a_still_board(ride: Ride) -> None:
+def test_pause_of_a_second_does_not_count_as_frozen(ride: Ride) -> None:
     for _ in range(10):
         ride.tick()
     ride.sleep(1.5)
@@ -328,7 +326,7 @@ def test_a_second_in_which_nobody_looked_is_no_second_of_a_still_board(ride: Rid
     assert ride.tick().reasons != (GuardReason.INFRARED_FROZEN,)
 
 
-def test_after_a_resume_a_frozen_board_stops_it_at_once_and_one_that_lives_does_not(ride: Ride) -> None:
+def test_resume_with_frozen_board_stops_at_once(ride: Ride) -> None:
     latched = []
     for _ in range(120):
         ride.desk.arrive(*frozen_but(ride))
@@ -344,7 +342,7 @@ def test_after_a_resume_a_frozen_board_stops_it_at_once_and_one_that_lives_does_
     assert not ride.drive_for(2.0).latched
 
 
-def test_a_robot_with_sensors_on_one_controller_only_has_one_board(ends: tuple[CanBus, CanBus]) -> None:
+def test_sensors_on_one_controller_make_one_board(ends: tuple[CanBus, CanBus]) -> None:
     sensors = tuple(sensor for sensor in ROBOT.infrared.sensors if sensor.channel.startswith("ADC"))
     infrared = ROBOT.infrared.model_copy(update={"sensors": sensors})
     robot = Kurt2(ROBOT.model_copy(update={"infrared": infrared}), ends[0])

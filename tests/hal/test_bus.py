@@ -23,7 +23,7 @@ class TestInProcessBus(ErrorFrameConformance):
             yield join
 
 
-def test_every_listener_gets_a_frame_of_its_own_with_the_payload_shared(ends: Ends) -> None:
+def test_each_end_gets_its_own_frame_with_shared_payload(ends: Ends) -> None:
     robot_end, far_end = ends
     listener = open_bus(robot_end.name)
     frame = cycle()[0]
@@ -45,7 +45,7 @@ def test_a_copied_frame_is_the_same_frame() -> None:
         assert twin.equals(frame)
 
 
-def test_the_bus_in_this_process_holds_4096_frames_for_a_listener(ends: Ends) -> None:
+def test_in_process_bus_holds_4096_frames_per_end(ends: Ends) -> None:
     robot_end, far_end = ends
     port = far_end.telemetry_port()
     frame = CODEC.message("ENCODER").pack(1, 1)

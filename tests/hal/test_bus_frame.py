@@ -66,12 +66,12 @@ def test_data_frames_are_the_kind_whose_payload_never_changes() -> None:
         can.Message(arbitration_id=1, is_remote_frame=True, dlc=9),
     ],
 )
-def test_what_classic_can_does_not_have_is_refused(frame: can.Message) -> None:
+def test_packing_a_frame_that_is_not_classic_can_is_refused(frame: can.Message) -> None:
     with pytest.raises(ValueError, match="frame 0x1 is not of classic CAN"):
         pack_bus_frame(frame)
 
 
-def test_a_listener_hears_its_standard_identifiers_and_all_errors() -> None:
+def test_filter_passes_its_identifiers_and_all_errors() -> None:
     assert is_heard(EXTENDED, None)
     assert is_heard(REMOTE, frozenset({REMOTE.arbitration_id}))
     assert not is_heard(REMOTE, frozenset())

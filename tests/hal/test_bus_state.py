@@ -101,12 +101,12 @@ def test_a_restarted_controller_is_back(state: BusState) -> None:
     assert (state.off, state.trouble) == (False, "")
 
 
-def test_who_went_off_again_while_restarting_is_off(state: BusState) -> None:
+def test_bus_off_during_restart_stays_off(state: BusState) -> None:
     state.note(error_frame(0x140))
     assert state.off
 
 
-def test_frames_that_flow_prove_that_it_is_back_but_not_that_it_is_well(state: BusState) -> None:
+def test_traffic_ends_bus_off_but_not_a_warning(state: BusState) -> None:
     state.note(error_frame(0x040))
     state.note_traffic()
     assert state.controller == "error-active"

@@ -49,7 +49,7 @@ async def test_no_frame_reaches_the_tick_as_an_exception(kind: str, seed: int, f
 @pytest.mark.deep
 @pytest.mark.parametrize("seed", range(100, 120))
 @pytest.mark.parametrize("kind", ["virtual", "shared"])
-async def test_no_frame_of_ten_million_reaches_the_tick_as_an_exception(kind: str, seed: int) -> None:
+async def test_no_frame_of_ten_million_raises_in_the_tick(kind: str, seed: int) -> None:
     robot = await fuzz(kind, seed, 250_000)
     assert robot.bad_frames >= 250_000
     assert robot.onlooker.moved > 3000
@@ -100,5 +100,5 @@ def test_no_control_frame_breaks_the_simulated_controller() -> None:
 
 @pytest.mark.deep
 @pytest.mark.parametrize("seed", range(100, 110))
-def test_no_control_frame_of_a_million_breaks_the_simulated_controller(seed: int) -> None:
+def test_no_control_frame_of_a_million_breaks_the_simulator(seed: int) -> None:
     assert tell_the_controller(seed, 2000).junk_frames > 10_000

@@ -31,7 +31,7 @@ def messages_with_values(draw: st.DrawFn) -> tuple[Message, dict[str, int]]:
 
 
 @given(messages_with_values())
-def test_any_values_are_packed_as_cantools_packs_them_and_come_back(case: tuple[Message, dict[str, int]]) -> None:
+def test_any_values_pack_as_in_cantools_and_come_back(case: tuple[Message, dict[str, int]]) -> None:
     message, values = case
     codec = CODEC.message(message.name)
     frame = codec.pack(*(values[name] for name in codec.signals))

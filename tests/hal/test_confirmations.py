@@ -105,7 +105,7 @@ def test_a_frame_that_is_back_before_sending_returns_counts(end: HeldEnd, bus: C
 
 
 @pytest.mark.parametrize("report", [BUS_OFF, RESTARTED])
-def test_what_a_controller_forgot_is_not_waited_for(
+def test_frames_lost_by_a_controller_reset_are_not_awaited(
     end: HeldEnd, bus: CanBus, port: FramePort, report: can.Message
 ) -> None:
     port.send(encode_brake())
@@ -129,7 +129,7 @@ def test_confirmations_that_were_lost_are_not_waited_for(end: HeldEnd, bus: CanB
     assert port.unconfirmed == 1
 
 
-def test_what_was_lost_without_a_word_can_be_forgotten(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+def test_silently_lost_frames_can_be_forgotten(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
     port.send(encode_brake())
     end.held.clear()
@@ -142,9 +142,7 @@ def test_what_was_lost_without_a_word_can_be_forgotten(end: HeldEnd, bus: CanBus
     assert port.unconfirmed == 0
 
 
-def test_what_was_forgotten_and_comes_after_all_confirms_nothing_newer_for_good(
-    end: HeldEnd, bus: CanBus, port: FramePort
-) -> None:
+def test_late_forgotten_frame_confirms_no_newer_frame(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
     port.forget_unconfirmed()
     for _ in range(3):
@@ -156,9 +154,7 @@ def test_what_was_forgotten_and_comes_after_all_confirms_nothing_newer_for_good(
     assert port.unconfirmed == 1
 
 
-def test_brakes_that_come_late_are_not_taken_for_the_set_points_that_were_sent_after_them(
-    end: HeldEnd, bus: CanBus, port: FramePort
-) -> None:
+def test_late_brakes_do_not_confirm_later_set_points(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     for _ in range(6):
         port.send(encode_brake())
     port.forget_unconfirmed()
@@ -174,9 +170,7 @@ def test_brakes_that_come_late_are_not_taken_for_the_set_points_that_were_sent_a
     assert port.unconfirmed == 2
 
 
-def test_once_a_newer_one_has_come_nothing_that_was_forgotten_is_waited_for(
-    end: HeldEnd, bus: CanBus, port: FramePort
-) -> None:
+def test_newer_confirmation_ends_the_wait_for_forgotten_frames(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     for _ in range(6):
         port.send(encode_brake())
     end.held.clear()
@@ -188,7 +182,7 @@ def test_once_a_newer_one_has_come_nothing_that_was_forgotten_is_waited_for(
         assert port.unconfirmed == 0
 
 
-def test_a_frame_that_the_bus_did_not_take_is_not_the_first_since(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
+def test_refused_frame_is_not_the_first_since_forgetting(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
     port.forget_unconfirmed()
     end.is_full = True
@@ -203,9 +197,7 @@ def test_a_frame_that_the_bus_did_not_take_is_not_the_first_since(end: HeldEnd, 
     assert port.unconfirmed == 0
 
 
-def test_what_was_forgotten_twice_with_nothing_sent_between_confirms_nothing(
-    end: HeldEnd, bus: CanBus, port: FramePort
-) -> None:
+def test_frames_forgotten_twice_confirm_nothing(end: HeldEnd, bus: CanBus, port: FramePort) -> None:
     port.send(encode_brake())
     port.forget_unconfirmed()
     port.forget_unconfirmed()
@@ -219,7 +211,7 @@ def test_what_was_forgotten_twice_with_nothing_sent_between_confirms_nothing(
 
 
 @pytest.mark.parametrize("happens", ["restarted", "lost", "reopened"])
-def test_after_a_controller_began_anew_nothing_forgotten_is_waited_for(
+def test_controller_reset_ends_the_wait_for_forgotten_frames(
     end: HeldEnd, bus: CanBus, port: FramePort, happens: str
 ) -> None:
     port.send(encode_brake())

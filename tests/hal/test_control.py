@@ -96,7 +96,7 @@ def test_wheel_speeds_are_encoded_in_each_mode() -> None:
     assert encode_control(SpeedMode.RAW, half_drive, MOTORS).data == bytes.fromhex("0000000200000200")
 
 
-def test_speeds_are_truncated_toward_zero_but_not_below_what_was_meant() -> None:
+def test_set_point_truncates_toward_zero_without_rounding_errors() -> None:
     assert set_point(SpeedMode.SPEED_CM, WheelSpeeds(0.009, -0.019), MOTORS) == SpeedControl(Mode.SPEED_CM, 0, -1)
     assert set_point(SpeedMode.SPEED_CM, WheelSpeeds(0.29, -0.57), MOTORS) == SpeedControl(Mode.SPEED_CM, 29, -57)
 
@@ -107,14 +107,14 @@ def test_per_cent_and_drive_end_at_full() -> None:
     assert full == RawControl(RawSide(960), RawSide(960, backward=True))
 
 
-def test_standing_in_raw_mode_brakes_for_nothing_else_would_hold_the_robot() -> None:
+def test_standstill_in_raw_mode_brakes() -> None:
     stand = set_point(SpeedMode.RAW, WheelSpeeds(0.0, 0.0), MOTORS)
     assert stand == RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
     assert stand.wheel_speeds(MOTORS) == (0.0, 0.0)
 
 
 @given(SPEEDS, SPEEDS, st.sampled_from(SpeedMode))
-def test_what_is_sent_is_never_faster_than_meant_nor_much_slower(left: float, right: float, mode: SpeedMode) -> None:
+def test_sent_speed_is_never_faster_nor_much_slower(left: float, right: float, mode: SpeedMode) -> None:
     wanted = WheelSpeeds(left, right)
     control = decode_control(encode_control(mode, wanted, MOTORS).data)
     assert not isinstance(control, SystemControl)

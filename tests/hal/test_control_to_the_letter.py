@@ -45,7 +45,7 @@ def test_a_drive_turns_as_the_curve_says_unless_it_is_braked(side: RawSide, spee
     assert RawControl(side, RawSide(0, brake=True)).wheel_speeds(STEEP) == pytest.approx((speed_m_s, 0.0))
 
 
-def test_the_ends_of_the_curve_are_what_the_settings_say_to_the_bit() -> None:
+def test_curve_ends_equal_the_settings_exactly() -> None:
     assert RawControl(RawSide(100), RawSide(1000)).wheel_speeds(STEEP) == (0.1, 0.9)
 
 

@@ -101,7 +101,7 @@ def test_a_careless_guard_is_found_out(careless: str, some: list[tuple[Streams, 
     )
 
 
-def test_what_fails_is_told_in_a_few_ticks(some: list[tuple[Streams, Played]]) -> None:
+def test_violation_shrinks_to_a_few_ticks(some: list[tuple[Streams, Played]]) -> None:
     make_guard, rule = CARELESS["trusts the future"]
     breaks = [(streams, found) for streams, _ in some[:4] for found in violations(streams, play(streams, make_guard))]
     streams, found = max((each for each in breaks if each[1].rule == rule), key=lambda each: each[1].tick)

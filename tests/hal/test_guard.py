@@ -97,7 +97,7 @@ def test_the_curve_is_kept_when_the_speed_is_not(driver: Driver) -> None:
 
 
 @pytest.mark.parametrize("odd", [math.nan, math.inf, -math.inf])
-def test_what_is_not_a_number_stands(driver: Driver, odd: float) -> None:
+def test_nan_or_infinite_speed_stands(driver: Driver, odd: float) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     for wanted in ((odd, 0.3), (0.3, odd)):
         assert driver.drive(*wanted) == GuardResult(STANDSTILL, (GuardReason.NOT_A_NUMBER,), latched=False)
@@ -260,14 +260,14 @@ def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) 
     assert driver.last_sent() == BRAKE
 
 
-def test_a_robot_that_was_stopped_and_released_between_two_ticks_starts_from_zero(driver: Driver) -> None:
+def test_stop_and_release_between_ticks_start_from_zero(driver: Driver) -> None:
     driver.drive_for(1.0, 0.3, 0.3)
     driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     driver.guard.release()
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
 
-def test_a_robot_that_was_stopped_by_a_signal_in_the_middle_of_its_approach_starts_from_zero(driver: Driver) -> None:
+def test_stop_by_signal_during_drive_starts_from_zero(driver: Driver) -> None:
     class Interrupted(float):
         """A signal handler of the same thread runs while the guard looks at this speed."""
 

@@ -41,14 +41,14 @@ def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:
     )
 
 
-def test_a_stop_that_is_over_before_the_next_tick_starts_from_zero_too(driver: Driver) -> None:
+def test_short_stop_before_the_next_tick_starts_from_zero(driver: Driver) -> None:
     driver.drive_for(1.0, 0.5, -0.5)
     driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     driver.guard.release()
     assert driver.drive(0.5, -0.5).wheel_speeds == (0.01, -0.01)
 
 
-def test_the_bus_gives_no_trouble_before_it_fails_nor_after_a_release(driver: Driver, ends: Ends) -> None:
+def test_bus_trouble_is_empty_before_failure_and_after_release(driver: Driver, ends: Ends) -> None:
     assert driver.guard.bus_trouble == ""
     ends[0].shutdown()
     driver.drive(0.1, 0.1)
@@ -65,7 +65,7 @@ class RefusesOne(SlowBus):
         super().send(msg, timeout)
 
 
-def test_a_frame_that_was_refused_is_told_of_though_its_brake_went_out() -> None:
+def test_refused_frame_is_reported_though_its_brake_was_sent() -> None:
     end = RefusesOne(receives_own_frames=False)
     guard = Guard(ROBOT, CanBus("slow", lambda _: end))
     assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (GuardReason.BUS_LOST,)
@@ -90,7 +90,7 @@ def test_the_silence_that_is_allowed_is_allowed_to_its_end(ends: Ends) -> None:
     assert watchdog.check(100.125 + 1e-9)
 
 
-def test_the_watchdog_is_a_thread_that_has_a_name_and_ends_with_the_program(ends: Ends) -> None:
+def test_watchdog_thread_has_a_name_and_is_a_daemon(ends: Ends) -> None:
     with Watchdog(Guard(ROBOT, ends[0]), 0.1) as watchdog:
         (thread,) = [thread for thread in threading.enumerate() if thread.name == "watchdog"]
         assert thread.daemon

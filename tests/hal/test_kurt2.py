@@ -110,7 +110,7 @@ def test_bumpers_that_fall_silent_age_until_the_robot_stands(robot: Kurt2, ends:
     assert robot.sense(now_s).bumper_age_s == 0.0
 
 
-def test_counts_of_no_10_bit_converter_keep_the_old_value_and_let_it_age(robot: Kurt2, ends: Ends) -> None:
+def test_counts_above_10_bits_keep_the_old_value_and_age(robot: Kurt2, ends: Ends) -> None:
     send(ends[1], cycle(counts=200))
     robot.sense(1.0)
     send(ends[1], [CODEC.message("ADC04_07").pack(300, 300, 1024, 300), *cycle(counts=200)[2:]])
@@ -122,7 +122,7 @@ def test_counts_of_no_10_bit_converter_keep_the_old_value_and_let_it_age(robot: 
     assert robot.sense(1.05).infrared_counts == (1023,) * 18
 
 
-def test_what_it_does_not_read_it_does_not_hear(robot: Kurt2, ends: Ends) -> None:
+def test_unused_identifiers_are_filtered_out(robot: Kurt2, ends: Ends) -> None:
     send(ends[1], [CODEC.message("GYRO_MC1").pack(1, 2), CODEC.message("ADC12_15").pack(1, 2, 3, 4)])
     send(ends[1], [can.Message(arbitration_id=0x02, is_extended_id=False, data=b"12345678")])
     send(ends[1], [can.Message(arbitration_id=0x09, is_extended_id=True, data=b"12345678")])
@@ -293,7 +293,7 @@ def test_one_bus_has_one_robot(robot: Kurt2, ends: Ends) -> None:
         Kurt2(ROBOT, ends[0])
 
 
-def test_a_loop_that_comes_back_late_does_not_drive_on_as_if_nothing_had_been(ends: Ends) -> None:
+def test_late_loop_stays_stopped_by_the_watchdog(ends: Ends) -> None:
     clock_s = 50.0
     kurt2 = Kurt2(ROBOT, ends[0], lambda: clock_s)
     with kurt2.watchdog:

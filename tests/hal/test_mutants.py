@@ -36,7 +36,7 @@ def test_a_new_survivor_and_a_forgotten_entry_are_told() -> None:
     assert gone.startswith("is killed now")
 
 
-def test_every_known_one_has_a_reason_and_names_code_that_is_there() -> None:
+def test_known_mutants_have_a_reason_and_existing_code() -> None:
     for mutant in equivalents():
         module, _, _ = mutant.place.partition(".")
         names = mutant.place.split(".")

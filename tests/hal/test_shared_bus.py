@@ -201,7 +201,7 @@ def test_a_flood_of_what_is_not_heard_does_not_hold_up_a_look(ends: Ends) -> Non
     assert [frame.arbitration_id for frame in robot_end.drain()] == [0x11]
 
 
-def test_what_no_end_has_written_is_passed_over_and_counted(name: str) -> None:
+def test_foreign_records_are_skipped_and_counted(name: str) -> None:
     bus, other = SharedBus(name), SharedBus(name)
     other.send(Frame(0x10, payload(0)))
     with file_of(name).open("ab") as file:
@@ -233,7 +233,7 @@ def test_the_bus_is_gone_with_its_last_end_and_stays_until_then(name: str) -> No
     assert not file_of(name).exists()
 
 
-def test_what_killed_processes_left_behind_goes_when_somebody_leaves_any_bus(name: str) -> None:
+def test_shutdown_removes_files_of_killed_processes(name: str) -> None:
     with writing(name, 0x10) as last:
         listener = SharedBus(name)
         assert listener.recv(20.0) is not None
@@ -250,7 +250,7 @@ def drain_often(bus: CanBus) -> None:
         assert bus.drain() == []
 
 
-def test_an_end_whose_file_was_removed_says_so_and_meets_the_others_at_the_new_one(name: str, ends: Ends) -> None:
+def test_end_with_removed_file_fails_until_reopened(name: str, ends: Ends) -> None:
     robot_end, _ = ends
     file_of(name).unlink()
     newcomer = SharedBus(name)
@@ -264,7 +264,7 @@ def test_an_end_whose_file_was_removed_says_so_and_meets_the_others_at_the_new_o
     newcomer.shutdown()
 
 
-def test_a_new_bus_waits_for_the_end_of_the_old_one_and_no_longer(name: str) -> None:
+def test_new_bus_waits_for_removal_of_the_old_file(name: str) -> None:
     path = file_of(name)
     SharedBus(name).shutdown()
     with path.open("wb") as leaving:  # killed by nobody, stopped while it removes the file
@@ -317,7 +317,7 @@ class TestNobodyElseGetsIn:
 
     @pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
     @pytest.mark.parametrize("what", ["folder", "file"])
-    def test_what_belongs_to_somebody_else_is_refused(self, folder: Path, what: str) -> None:
+    def test_file_of_another_user_is_refused(self, folder: Path, what: str) -> None:
         folder.mkdir(mode=0o700)
         (folder / "x").touch(mode=0o600)
         os.chown(folder if what == "folder" else folder / "x", 12345, 12345)

@@ -57,7 +57,7 @@ class StampedBus(InProcessBus):
         return frame
 
 
-def test_a_frame_is_as_old_as_the_clock_of_its_bus_says_and_never_negative() -> None:
+def test_tapped_age_follows_the_bus_clock_and_is_never_negative() -> None:
     opened: list[StampedBus] = []
 
     def open_stamped(name: str) -> CanInterface:

@@ -22,7 +22,7 @@ class VirtualClock:
         return self.now_s
 
 
-def test_it_watches_from_the_first_beat_and_allows_the_given_silence(ends: Ends) -> None:
+def test_watchdog_allows_the_silence_from_the_first_beat(ends: Ends) -> None:
     clock = VirtualClock()
     watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, clock)
     assert not watchdog.check(1e9)
@@ -77,7 +77,7 @@ def _wait_for(looks: threading.Semaphore, count: int) -> None:
         assert looks.acquire(timeout=60)
 
 
-def test_who_watches_can_be_told_from_other_threads_while_it_does(ends: Ends) -> None:
+def test_watchdog_exposes_its_thread_while_running(ends: Ends) -> None:
     watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, VirtualClock())
     assert watchdog.thread is None
     with watchdog:

@@ -46,7 +46,7 @@ class Watched:
         (0.01, -0.6, 0.0039, 0.0041),  # it comes to rest before it turns back
     ],
 )
-def test_the_slowest_obedient_side_is_known_to_the_tenth_of_a_millimetre(
+def test_band_of_the_slowest_side_is_exact_to_0_1_mm_s(
     from_m_s: float, told_m_s: float, within_m_s: float, off_m_s: float
 ) -> None:
     first, within, off = (round(speed / FINE) for speed in (from_m_s, within_m_s, off_m_s))
@@ -78,7 +78,7 @@ def test_an_error_as_large_as_is_tolerated_is_tolerated(ticks: int) -> None:
     assert watched.turn(0.5, further, HALF).startswith("left")
 
 
-def test_wheels_are_taken_as_they_are_only_after_more_silence_than_ticks_may_have() -> None:
+def test_band_restarts_only_after_a_pause_longer_than_allowed() -> None:
     for silence_s, said in ((2**-3, "left"), (2**-3 + 2**-7, "")):
         assert Watched(EXACT, HALF).turn(0.5, 0, 0, silence_s)[:4] == said
 
@@ -89,7 +89,7 @@ def test_two_looks_at_the_same_time_forget_nothing() -> None:
     assert watched.turn(0.5, HALF - 33, HALF).startswith("left")
 
 
-def test_a_board_is_frozen_after_just_the_time_it_may_repeat_itself() -> None:
+def test_board_is_frozen_exactly_at_the_limit() -> None:
     watch = InfraredWatch(("ADC00", "BDC00"), 1.0)
     assert watch.check_frozen(50.0, driving=False) == ""
     assert watch.check_frozen(50.5, driving=True) == ""

@@ -129,7 +129,7 @@ def test_ticks_that_were_missed_are_no_disobedience(orders: list[tuple[float, fl
 
 
 @pytest.mark.parametrize("mode", SpeedMode)
-def test_what_a_mode_cannot_say_is_no_disobedience(trial: Trial, mode: SpeedMode) -> None:
+def test_speed_resolution_of_a_mode_is_no_disobedience(trial: Trial, mode: SpeedMode) -> None:
     def said(told: WheelSpeeds) -> WheelSpeeds:
         return set_point(mode, told, ROBOT.motors).wheel_speeds(ROBOT.motors)
 
@@ -154,7 +154,7 @@ def test_lost_encoder_frames_take_their_ticks_along(trial: Trial) -> None:
         assert trial.cycle(slewed(trial.told.left_m_s, speed_m_s), 0.0, lost=chance.random() < 0.1) == ""
 
 
-def test_wheels_that_were_stopped_by_somebody_else_during_a_pause_start_anew(driving: Trial) -> None:
+def test_wheels_stopped_during_a_pause_restart_the_band(driving: Trial) -> None:
     for _ in range(30):
         driving.wheels.turn(0.0, 0.0, True, True)
     driving.wheels.take_ticks()
@@ -172,7 +172,7 @@ def test_encoders_that_come_back_find_the_wheels_as_they_are(driving: Trial) -> 
     assert driving.drive(1.0, 0.0, 0.0) == ""
 
 
-def test_a_controller_that_is_slow_by_itself_is_judged_by_its_own_cycles(trial: Trial) -> None:
+def test_slow_controller_is_judged_by_its_own_cycles(trial: Trial) -> None:
     """A simulation on a busy machine: two of three cycles do not take place."""
     for tick in range(600):
         trial.told = WheelSpeeds(*(slewed(m_s, (-0.3, 0.3)[tick // 100 % 2]) for m_s in trial.told))
@@ -200,7 +200,7 @@ def test_a_clock_that_ran_backwards_starts_anew(driving: Trial) -> None:
     assert driving.drive(2.0, 0.3, 0.2) == ""
 
 
-def test_a_robot_that_is_set_down_standing_while_it_drives_is_forgiven(driving: Trial) -> None:
+def test_robot_set_down_while_driving_raises_no_alarm(driving: Trial) -> None:
     driving.wheels.halt()
     assert driving.drive(2.0, 0.3, 0.2) == ""
 
