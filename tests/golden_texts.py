@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, outcomes, standing, verdicts
+from tests.texts import complaints, health, outcomes, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -27,11 +27,13 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "outcomes of commands": outcomes.on_page,
         "standing": standing.on_page,
         "stops": standing.stops,
+        "troubles": health.troubles,
     },
     "terminal": {
         "outcomes of commands": outcomes.in_terminal,
         "standing": standing.in_terminal,
         "stops": standing.stops,
+        "troubles": health.troubles,
     },
     "reports": {
         "complaints of fault drill and soak": complaints.complaints,
@@ -45,6 +47,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "outcomes of commands": outcomes.in_log,
         "standing": standing.in_log,
         "stops": standing.stops,
+        "troubles": health.troubles,
     },
 }
 """Listings by surface and title of their section."""

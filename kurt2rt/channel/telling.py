@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.mid_telling import mid_state, surprise_state
 from kurt2rt.channel.state import MidState, State, SurpriseState
-from kurt2rt.health.report import SENSORS, HealthReport
+from kurt2rt.health.report import HealthReport
+from kurt2rt.health.trouble_code import TroubleCode
 from kurt2rt.layers.decision import Cause
 from kurt2rt.rla.rla import ASK, BASIC, Rla
 from kurt2rt.runtime import Runtime
@@ -14,6 +15,7 @@ from kurt2rt.teaching.active_stop import ActiveStop, StopReason
 from kurt2rt.teaching.question import FeatureDifference, ask
 from kurt2rt.tick import TickRecord
 
+_SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)
 _LATENESS_EVERY = 20
 """Pictures; percentiles cost more than a picture."""
 
@@ -134,7 +136,8 @@ class Telling:
         """What else the teacher should know at once, such as a disk without room; it may be a second old."""
         health = self._health()
         # Sensors that are silent are told by the cause, without delay.
-        urgent = () if health is None else (each for each in health.troubles if each.urgent and each.about != SENSORS)
+        troubles = () if health is None else health.troubles
+        urgent = (each for each in troubles if each.urgent and each.code not in _SENSORS)
         return next((f"{each.what}; {each.to_do}" for each in urgent), "")
 
     def _radius(self, level: str) -> float:

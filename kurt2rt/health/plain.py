@@ -13,12 +13,45 @@ from kurt2rt.health.report import (
     SensorAges,
     Trouble,
 )
+from kurt2rt.health.trouble_code import TroubleCode
+from kurt2rt.health.trouble_text import numbers_of
 from kurt2rt.teaching.progress import Progress
 
 MOST_ROWS = 16
 """Of troubles, disks and queues; more are not told."""
 
 _TIME = Real(1e12)
+
+
+def _trouble(
+    about: str,
+    what: str,
+    since_s: float,
+    to_do: str,
+    urgent: bool,
+    code: str = "",
+    name: str = "",
+    numbers: tuple[float, ...] = (),
+    line: str = "",
+) -> Trouble:
+    """Return the trouble that was told; by its text if the robot is older, or has codes that are not known here."""
+    if code in TroubleCode.__members__.values() and len(numbers) >= numbers_of(TroubleCode(code)):
+        return Trouble(TroubleCode(code), since_s, urgent, name, numbers, line)
+    return Trouble(TroubleCode.OTHER, since_s, urgent, about, (), f"{what}; {to_do}" if to_do else what)
+
+
+_TROUBLE = MapOf(
+    _trouble,
+    about=NAME,
+    what=LINE,
+    since_s=_TIME,
+    to_do=LINE,
+    urgent=Flag(),
+    code=MayLack(NAME),
+    name=MayLack(NAME),
+    numbers=MayLack(ManyOf(_TIME, most=4)),
+    line=MayLack(LINE),
+)
 
 _MILLISECONDS = dict.fromkeys(("newest_ms", "median_ms", "p99_ms", "worst_ms", "took_p99_ms"), _TIME)
 _REPORT = MapOf(
@@ -60,7 +93,7 @@ _REPORT = MapOf(
         discharging=Flag(),
     ),
     drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
-    troubles=ManyOf(MapOf(Trouble, about=NAME, what=LINE, since_s=_TIME, to_do=LINE, urgent=Flag()), most=MOST_ROWS),
+    troubles=ManyOf(_TROUBLE, most=MOST_ROWS),
     progress=MayLack(MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT)),
 )
 

@@ -2,25 +2,40 @@
 
 from dataclasses import dataclass
 
+from kurt2rt.health.trouble_code import TroubleCode
+from kurt2rt.health.trouble_text import trouble_text
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
-
-SENSORS = "sensors"
-"""What a trouble with them is about."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
-    """Something that is not as it should be, in words for the teacher."""
+    """A fault of the robot, its program or its machine."""
 
-    about: str
-    """The subject: lateness, ticks, sensors, bus, lessons, disk, queues, machine, or program for the rest."""
-    what: str
+    code: TroubleCode
     since_s: float
-    """For how long it has been so."""
-    to_do: str
-    """Empty where nobody can do anything but wait."""
+    """Duration so far."""
     urgent: bool
     """The robot stands because of it, or lessons are at risk."""
+    name: str = ""
+    """Sensor, folder, queue or part, as the code says."""
+    numbers: tuple[float, ...] = ()
+    line: str = ""
+    """`what is wrong; what to do`, of codes without a text of their own."""
+
+    @property
+    def about(self) -> str:
+        """Subject: lateness, ticks, sensors, bus, lessons, disk, queues, machine, or program for the rest."""
+        return self.code.about or self.name
+
+    @property
+    def what(self) -> str:
+        """Text of the fault."""
+        return trouble_text(self.code, self.name, self.numbers, self.line)[0]
+
+    @property
+    def to_do(self) -> str:
+        """Text of the remedy; empty if only waiting helps."""
+        return trouble_text(self.code, self.name, self.numbers, self.line)[1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,14 @@
-"""What is not as it should be, in words: what, since when, what to do."""
+"""Judgement of health reports: their troubles, and how long each has lasted."""
 
 import math
 from collections import deque
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.health.report import SENSORS, DiskSpace, Machine, Punctuality, Trouble
+from kurt2rt.health.report import DiskSpace, Machine, Punctuality, Trouble
 from kurt2rt.health.snapshot import Snapshot
+from kurt2rt.health.trouble_code import TroubleCode
 
 LATELY_S = 60
 """Counters are judged by how they grew in so many seconds, one report each."""
@@ -26,12 +27,16 @@ EMPTY_BATTERY = 0.07
 
 
 class _Found(NamedTuple):
-    about: str
-    key: str
-    """Stays the same while the words change with the numbers."""
-    what: str
-    to_do: str
-    urgent: bool
+    code: TroubleCode
+    urgent: bool = False
+    name: str = ""
+    numbers: tuple[float, ...] = ()
+    line: str = ""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Identity across reports: a sensor or disk keeps it when its code changes."""
+        return self.code.about, self.name or self.code
 
 
 class Counted:
@@ -80,7 +85,7 @@ class TroubleBook:
         """`tolerates_stalls`: of a robot that stalls with this program; late ticks are then no trouble."""
         self._settings = settings
         self._tolerates_stalls = tolerates_stalls
-        self._since_s: dict[str, float] = {}
+        self._since_s: dict[tuple[str, str], float] = {}
         self._writes = _Writes()
 
     def judge(
@@ -100,12 +105,13 @@ class TroubleBook:
             *self._of_ticks(punctuality),
             *_of_machine(machine),
             *_of_drops(snapshot, counted),
-            *(_said(part, line) for part, line in snapshot.says.items()),
+            *(_Found(TroubleCode.PROGRAM, name=part, line=line) for part, line in snapshot.says.items()),
         ]
         now_s = snapshot.now_s
         self._since_s = {each.key: self._since_s.get(each.key, now_s) for each in found}
         troubles = [
-            Trouble(each.about, each.what, now_s - self._since_s[each.key], each.to_do, each.urgent) for each in found
+            Trouble(each.code, now_s - self._since_s[each.key], each.urgent, each.name, each.numbers, each.line)
+            for each in found
         ]
         return tuple(sorted(troubles, key=lambda each: (not each.urgent, -each.since_s)))
 
@@ -116,24 +122,29 @@ class TroubleBook:
             ("encoders", snapshot.encoder_age_s, guard.stale_encoder_s),
             ("bumpers", snapshot.bumper_age_s, guard.stale_bumper_s),
         ):
-            if age_s <= stale_s:
-                continue
-            silent = "have never been heard" if math.isinf(age_s) else f"are silent, the newest is {age_s:.1f} s old"
-            to_do = "look whether the robot is switched on and its CAN cable sits; the robot stands until they are back"
-            yield _Found(SENSORS, name, f"the {name} {silent}", to_do, True)
+            if math.isinf(age_s):
+                yield _Found(TroubleCode.SENSORS_UNHEARD, True, name)
+            elif not age_s <= stale_s:  # a NaN, too
+                yield _Found(TroubleCode.SENSORS_SILENT, True, name, (age_s,))
 
     def _of_ticks(self, punctuality: Punctuality) -> Iterator[_Found]:
-        to_do = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"
         lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.can.cycle_s))
         if self._tolerates_stalls and punctuality.missed_lately <= TOLERATED_SHARE * lately_ticks:
             return
         if punctuality.missed_lately:
-            what = f"{_many(punctuality.missed_lately, 'tick')} missed in the last minute, {punctuality.missed} in all"
-            yield _Found("ticks", "missed", what, to_do, False)
+            yield _Found(TroubleCode.TICKS_MISSED, numbers=(punctuality.missed_lately, punctuality.missed))
         bound_ms = LATE_SHARE * self._settings.can.cycle_s * 1000
         if punctuality.p99_ms > bound_ms and not self._tolerates_stalls:
-            what = f"one tick in a hundred begins {punctuality.p99_ms:.1f} ms late or later"
-            yield _Found("lateness", "late", what, to_do, False)
+            yield _Found(TroubleCode.TICKS_LATE, numbers=(punctuality.p99_ms,))
+
+
+_COUNTERS: Final = {
+    "junk": TroubleCode.CAN_JUNK,
+    "error frames": TroubleCode.CAN_ERROR_FRAMES,
+    "send failures": TroubleCode.SEND_FAILURES,
+    "receive failures": TroubleCode.RECEIVE_FAILURES,
+    "foreign control": TroubleCode.FOREIGN_CONTROL,
+}
 
 
 def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
@@ -141,63 +152,36 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     if bus is None:
         return
     if bus.trouble:
-        yield _told("bus", "bus", bus.trouble, urgent=bus.latched is not None)
-    check = "check cable, termination and bit rate"
-    for name, what, to_do in (
-        ("junk", "CAN frames with junk in them", check),
-        ("error frames", "CAN error frames", check),
-        ("send failures", "CONTROL frames that the bus did not take", check),
-        ("receive failures", "times that the bus could not be read", check),
-        ("foreign control", "CONTROL frames of somebody else", "find the other sender and end it"),
-    ):
+        yield _Found(TroubleCode.BUS_ALARM, bus.latched is not None, line=bus.trouble)
+    for name, code in _COUNTERS.items():
         lately = counted.lately(name)
         if lately:
-            yield _Found("bus", name, f"{lately} {what} in the last minute", to_do, False)
+            yield _Found(code, numbers=(lately,))
 
 
 def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
     if snapshot.keeper_trouble:
-        yield _told("lessons", "keeper", snapshot.keeper_trouble, urgent=True)
+        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.keeper_trouble)
     if slowest_write_s is not None:
-        what = f"in the last minute the disk took up to {slowest_write_s:.1f} s to keep a lesson"
-        yield _Found("lessons", "slow disk", what, "end what else writes to it; kurt2rt doctor measures it", False)
+        yield _Found(TroubleCode.SLOW_DISK, numbers=(slowest_write_s,))
     for disk in disks:
         if disk.free_bytes is None:
-            what = f"the disk of {disk.of} does not answer"
-            yield _Found("disk", f"disk {disk.of}", what, "look at its health and its mount", True)
+            yield _Found(TroubleCode.DISK_SILENT, True, disk.of)
         elif disk.free_bytes < LITTLE_ROOM_BYTES:
-            what = f"only {disk.free_bytes / 10**6:.0f} MB are free for {disk.of}"
             urgent = disk.free_bytes < NO_ROOM_BYTES
-            yield _Found("disk", f"disk {disk.of}", what, "make room on that disk, or move old recordings away", urgent)
+            yield _Found(TroubleCode.LITTLE_ROOM, urgent, disk.of, (disk.free_bytes / 10**6,))
 
 
 def _of_machine(machine: Machine) -> Iterator[_Found]:
     if machine.battery is not None and machine.discharging and machine.battery < LOW_BATTERY:
-        what = f"this machine's battery has {machine.battery:.0%} left"
-        yield _Found("machine", "battery", what, "plug it in", machine.battery < EMPTY_BATTERY)
+        yield _Found(TroubleCode.LOW_BATTERY, machine.battery < EMPTY_BATTERY, numbers=(machine.battery,))
     available = machine.available_bytes
     if available is not None and available < LITTLE_MEMORY_BYTES:
-        what = f"this machine has {available / 10**6:.0f} MB of memory left"
-        yield _Found("machine", "memory", what, "end other programs", False)
+        yield _Found(TroubleCode.LITTLE_MEMORY, numbers=(available / 10**6,))
 
 
 def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     for queue in snapshot.drops:
         lately = counted.lately(f"drops {queue}")
         if lately:
-            what = f"{queue}: {lately} thrown away in the last minute, for they came quicker than they were taken"
-            yield _Found("queues", f"drops {queue}", what, "", False)
-
-
-def _said(part: str, line: str) -> _Found:
-    return _told("program", f"says {part}", line, urgent=False)
-
-
-def _told(about: str, key: str, line: str, *, urgent: bool) -> _Found:
-    """A line as all of this project are: what is wrong, and behind a semicolon what to do."""
-    what, _, to_do = line.partition("; ")
-    return _Found(about, key, what, to_do, urgent)
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+            yield _Found(TroubleCode.DROPS, name=queue, numbers=(lately,))

@@ -21,6 +21,7 @@ from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import decode_state, encode_state
 from kurt2rt.critic.settings import load_critic
 from kurt2rt.health.report import Trouble
+from kurt2rt.health.trouble_code import TroubleCode
 from kurt2rt.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.rla.rla import ASK, CRITIC, Phase
 from kurt2rt.standing import Standing, StandReason
@@ -55,9 +56,9 @@ def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(de
 
 
 def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: Desk) -> None:
-    full = Trouble("disk", "only 20 MB are free for knowledge", 3.0, "make room", urgent=True)
+    full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
     desk.health = replace(ILL, troubles=(*ILL.troubles, full))
-    assert picture(desk).trouble == "only 20 MB are free for knowledge; make room"
+    assert picture(desk).trouble == f"{full.what}; {full.to_do}"
     desk.bus_trouble = "the cable is out"
     assert picture(desk).trouble == "the cable is out"
     desk.bus_trouble, desk.health = "", ILL  # in which only the sensors are urgent: the cause says so

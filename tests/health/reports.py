@@ -13,6 +13,7 @@ from kurt2rt.health.report import (
     SensorAges,
     Trouble,
 )
+from kurt2rt.health.trouble_code import TroubleCode
 
 WELL = HealthReport(
     version="0.1.0",
@@ -35,10 +36,8 @@ WELL = HealthReport(
     drops=(Drops("lines for the terminal", 0),),
     troubles=(),
 )
-SILENT = Trouble(
-    "sensors", "the infra-red sensors are silent, the newest is 2.5 s old", 2.4, "look whether its cable sits", True
-)
-LATE = Trouble("ticks", "3 ticks missed in the last minute, 7 in all", 185.0, "end other work on this machine", False)
+SILENT = Trouble(TroubleCode.SENSORS_SILENT, 2.4, True, "infra-red sensors", (2.5,))
+LATE = Trouble(TroubleCode.TICKS_MISSED, 185.0, False, numbers=(3, 7))
 ILL = replace(
     WELL,
     doing="stands: blind",

@@ -9,7 +9,8 @@ import pytest
 from kurt2rt.channel.schema import WireError
 from kurt2rt.channel.wire import decode_answer, encode_answer
 from kurt2rt.health.plain import MOST_ROWS, plain_of, report_of
-from kurt2rt.health.report import HealthReport
+from kurt2rt.health.report import HealthReport, Trouble
+from kurt2rt.health.trouble_code import TroubleCode
 from kurt2rt.teaching.progress import Progress
 from tests.health.reports import ILL, LATE, WELL
 
@@ -32,10 +33,29 @@ def test_report_of_a_robot_without_progress_is_understood() -> None:
 
 
 def test_an_error_message_of_any_shape_costs_nobody_the_report() -> None:
-    odd = replace(LATE, what="first line\nsecond\t" + "x" * 1000)
+    odd = Trouble(TroubleCode.PROGRAM, 1.0, False, "channel", (), "first line\nsecond\t" + "x" * 1000)
     told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))
     assert len(told.troubles) == MOST_ROWS
     assert told.troubles[0].what.startswith("first line second x")
+
+
+def test_report_of_older_robot_keeps_the_texts() -> None:
+    plain = plain_of(ILL)
+    for each in plain["troubles"]:
+        for key in ("code", "name", "numbers", "line"):
+            del each[key]
+    told = report_of(plain).troubles
+    assert {each.code for each in told} == {TroubleCode.OTHER}
+    assert [(each.about, each.what, each.to_do) for each in told] == [
+        (each.about, each.what, each.to_do) for each in ILL.troubles
+    ]
+
+
+def test_report_of_too_few_numbers_keeps_the_text() -> None:
+    plain = plain_of(replace(ILL, troubles=(LATE,)))
+    plain["troubles"][0]["numbers"] = [3]
+    (told,) = report_of(plain).troubles
+    assert (told.code, told.what) == (TroubleCode.OTHER, LATE.what)
 
 
 @pytest.mark.parametrize(

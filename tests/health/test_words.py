@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import pytest
 
+from kurt2rt.health.report import Trouble
+from kurt2rt.health.trouble_code import TroubleCode
 from kurt2rt.health.words import URGENT, WARNS, headline, lasting, lines_of, rows_of, size, trouble_in
 from kurt2rt.teaching.progress import NO_PROGRESS, Progress
 from tests.health.reports import ILL, LATE, WELL
@@ -24,11 +26,11 @@ def test_troubles_are_named_and_not_counted() -> None:
     assert headline(replace(ILL, troubles=(LATE, LATE))).startswith("ticks missed; ")
 
 
-def test_a_trouble_says_what_since_when_and_what_to_do() -> None:
-    told = "3 ticks missed in the last minute, 7 in all (for 3 min 5 s): end other work on this machine"
-    assert trouble_in(LATE) == told
-    assert trouble_in(replace(LATE, to_do="")) == told.rpartition(": ")[0]
-    assert f"! {told}" in lines_of(ILL)
+def test_trouble_in_appends_duration_and_remedy() -> None:
+    assert trouble_in(LATE) == f"{LATE.what} (for 3 min 5 s): {LATE.to_do}"
+    drops = Trouble(TroubleCode.DROPS, 185.0, False, "lines", (40,))
+    assert trouble_in(drops) == f"{drops.what} (for 3 min 5 s)"
+    assert f"! {trouble_in(LATE)}" in lines_of(ILL)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,37 @@
+"""Listing of the texts of `kurt2rt.health.trouble_text`."""
+
+from collections.abc import Iterator
+
+from kurt2rt.health.trouble_code import TroubleCode
+from kurt2rt.health.trouble_text import trouble_text
+
+_NUMBERS = {
+    TroubleCode.SENSORS_SILENT: (0.64,),
+    TroubleCode.TICKS_MISSED: (3, 7),
+    TroubleCode.TICKS_LATE: (2.14,),
+    TroubleCode.CAN_JUNK: (12,),
+    TroubleCode.CAN_ERROR_FRAMES: (12,),
+    TroubleCode.SEND_FAILURES: (12,),
+    TroubleCode.RECEIVE_FAILURES: (12,),
+    TroubleCode.FOREIGN_CONTROL: (12,),
+    TroubleCode.SLOW_DISK: (0.84,),
+    TroubleCode.LITTLE_ROOM: (499.2,),
+    TroubleCode.LOW_BATTERY: (0.15,),
+    TroubleCode.LITTLE_MEMORY: (50.4,),
+    TroubleCode.DROPS: (40,),
+}
+_NAMES = {
+    TroubleCode.SENSORS_UNHEARD: "bumpers",
+    TroubleCode.SENSORS_SILENT: "infra-red sensors",
+    TroubleCode.DISK_SILENT: "knowledge",
+    TroubleCode.LITTLE_ROOM: "recordings",
+    TroubleCode.DROPS: "lines for the terminal",
+}
+
+
+def troubles() -> Iterator[tuple[str, str]]:
+    """Yield what is wrong and what to do, for each code; the same on every surface."""
+    for code in TroubleCode:
+        what, to_do = trouble_text(code, _NAMES.get(code, ""), _NUMBERS.get(code, ()), "a line; a remedy")
+        yield code, f"{what}: {to_do}" if to_do else what
+    yield f"{TroubleCode.TICKS_MISSED}, one", trouble_text(TroubleCode.TICKS_MISSED, "", (1, 1), "")[0]
