@@ -1,4 +1,4 @@
-"""What every kind of bus does. A kind inherits the suite and says how to join its bus."""
+"""Conformance suite of all kinds of bus. Each kind inherits it and implements how to join."""
 
 import struct
 from collections.abc import Callable, Iterator
@@ -18,7 +18,7 @@ Join = Callable[[], CanBus]
 Ends = tuple[CanBus, CanBus]
 
 BUS_OFF = can.Message(arbitration_id=0x040, is_extended_id=False, is_error_frame=True, dlc=8, data=bytes(8))
-"""What a controller reports when it takes no more part in the bus, as Linux lays it out."""
+"""Error frame of a controller that went bus-off, in the layout of Linux."""
 RESTARTED = can.Message(arbitration_id=0x100, is_extended_id=False, is_error_frame=True, dlc=8, data=bytes(8))
 EXTENDED = can.Message(arbitration_id=0x1234_5678, is_extended_id=True, data=b"\x01\x02\x03")
 REMOTE = can.Message(arbitration_id=0x20, is_extended_id=False, is_remote_frame=True, dlc=5)
@@ -28,7 +28,7 @@ _NUMBERED_ID = 0x123
 
 
 class Behind(Enum):
-    """What becomes of frames for a listener that takes none."""
+    """Fate of frames for an end that does not read."""
 
     SENDER_IS_TOLD = auto()
     OLDEST_ARE_LOST = auto()
@@ -75,14 +75,14 @@ class BusConformance:
     """The behaviours of all kinds; `ends` are the robot's end and the controller's."""
 
     receives_own_frames: ClassVar[bool] = False
-    """Whether an end learns that its CONTROL was carried."""
+    """True if an end receives its own CONTROL frames."""
     behind: ClassVar[Behind] = Behind.SENDER_IS_TOLD
     too_many_frames: ClassVar[int] = 10_000
     """More than wait for a listener."""
 
     @pytest.fixture
     def join(self) -> Iterator[Join]:
-        """Opens one more end of a bus of its own."""
+        """Open one more end of a bus of its own."""
         raise NotImplementedError
 
     @pytest.fixture

@@ -211,4 +211,4 @@ CARELESS: dict[str, tuple[MakeGuard, str]] = {
     "drives the other way": (DrivesTheOtherWay, "away from what is wanted"),
     "drives back before it rests": (DrivesBackBeforeItRests, "not one frame a tick"),
 }
-"""What is careless about each, and a rule that it breaks."""
+"""Fault of each careless guard, and a rule that it breaks."""

@@ -9,7 +9,7 @@ from tests.hal.helpers import bus_pair
 
 @pytest.fixture
 def ends() -> Iterator[tuple[CanBus, CanBus]]:
-    """The robot's end of a bus and the controller's."""
+    """Return the robot's end of a bus and the controller's."""
     robot_end, far_end = bus_pair()
     yield robot_end, far_end
     robot_end.shutdown()
@@ -18,7 +18,7 @@ def ends() -> Iterator[tuple[CanBus, CanBus]]:
 
 @pytest.fixture
 def ride() -> Iterator[Ride]:
-    """A robot on a bus that lies in the test's hand, driving at 0.3 m/s."""
+    """Return a robot on a bus that the test controls, driving at 0.3 m/s."""
     ride = Ride()
     ride.drive_for(1.0)
     ride.sent()

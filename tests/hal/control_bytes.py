@@ -17,7 +17,7 @@ _SLACK_M_S = 1e-6
 
 
 class Side(NamedTuple):
-    """What frames tell one side, one number for each frame, in m/s."""
+    """Set points of one side in m/s, one number for each frame."""
 
     speed_m_s: Floats
     low_m_s: Floats
@@ -28,11 +28,11 @@ class Side(NamedTuple):
     """The side is told to stand, where a motor that nothing regulates is braked."""
 
     def of(self, frames: NDArray[np.int64]) -> "Side":
-        """The same of some frames, by number."""
+        """Return the set points of some frames, by number."""
         return Side(self.speed_m_s[frames], self.low_m_s[frames], self.high_m_s[frames], self.stands[frames])
 
     def where(self, told: Flags) -> "Side":
-        """The same where it is told, standing elsewhere."""
+        """Return the set points where the mask is true, standstill elsewhere."""
         speed_m_s, low_m_s, high_m_s = (np.where(told, speeds, 0.0) for speeds in self[:3])
         return Side(speed_m_s, low_m_s, high_m_s, self.stands | ~told)
 

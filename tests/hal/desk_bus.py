@@ -25,7 +25,7 @@ class DeskBus(InProcessBus):
         self.time_s = 1000.0
         """What its clock shows."""
         self.carries = True
-        """False: what is sent waits, as on a bus where nobody acknowledges."""
+        """False: sent frames wait, as on a bus without acknowledgement."""
         self._waiting: list[can.Message] = []
 
     def now_s(self) -> float | None:
@@ -42,14 +42,14 @@ class DeskBus(InProcessBus):
             self.carry()
 
     def carry(self) -> None:
-        """What waits goes over the bus, and is confirmed."""
+        """Carry the waiting frames and confirm them."""
         waiting, self._waiting = self._waiting, []
         for frame in waiting:
             super().send(frame)
             self._put(frame, is_rx=False, stamp_s=self.time_s)
 
     def lose(self) -> None:
-        """What waits is gone, and nobody is told."""
+        """Drop the waiting frames silently."""
         self._waiting.clear()
 
     def _put(self, frame: can.Message, *, is_rx: bool, stamp_s: float) -> None:
@@ -79,7 +79,7 @@ class Ride:
         return self.desk
 
     def frames(self) -> list[can.Message]:
-        """What the controller sends in a cycle."""
+        """Return the frames that the controller sends in a cycle."""
         left_m_s, right_m_s = self.granted
         return [*cycle(next(self._counts), ticks(left_m_s), ticks(right_m_s))]
 
@@ -89,13 +89,13 @@ class Ride:
         self.desk.time_s += seconds
 
     def tick(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:
-        """A cycle of the controller, and a tick of the runtime that wants these speeds."""
+        """Run a cycle of the controller, and a tick of the runtime that requests these speeds."""
         self.desk.arrive(*self.frames())
         self.sleep(TICK_S)
         return self.decide(left_m_s, right_m_s)
 
     def decide(self, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:
-        """A tick of the runtime with what waits on the bus."""
+        """Run a tick of the runtime with the waiting frames."""
         self.kurt2.sense(self.now_s)
         grant = self.kurt2.drive(WheelSpeeds(left_m_s, right_m_s), self.now_s, self.now_s)
         self.granted = grant.wheel_speeds
@@ -107,7 +107,7 @@ class Ride:
         return grant
 
     def sent(self) -> list[Control]:
-        """What the controller was told since the last look."""
+        """Return the CONTROL values since the last call."""
         return controls(self._far_end)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The motion envelope, said anew: what may never be seen on the bus, whatever the guard was asked and told.
+"""Motion envelope, written independently: rules for CONTROL frames under any requests and readings.
 
 Nothing here calls the guard, the watchdog or the codec of CONTROL. Every rule is about the frames that go out, given
 what came in. The guard's set points are known from its frames to their resolution only, so each side's is followed as
@@ -42,7 +42,7 @@ class Violation(NamedTuple):
 
 @np.errstate(invalid="ignore", over="ignore")  # none of a time less none of an age is meant
 def violations(streams: Streams, played: Played) -> list[Violation]:
-    """Where what was played left the envelope."""
+    """Return the places where a played stream left the envelope."""
     return _Rules(streams, played).check()
 
 
@@ -57,7 +57,7 @@ class _Moment(NamedTuple):
     front: Flags
     rear: Flags
     elapsed_s: Floats
-    """Since the last set point, at most two cycles."""
+    """Time since the last set point, at most two cycles."""
     first: Bytes
     """Number of the frame."""
 
@@ -66,21 +66,21 @@ class _Reached(NamedTuple):
     """One side after a tick."""
 
     told: Side
-    """What its frame says, where one does; standing elsewhere."""
+    """Set points of the frame; standstill without a frame."""
     sure_low_m_s: Floats
-    """From wherever the set point may have been it can be moved at least down to this."""
+    """Lowest speed that the set point can reach from each of its possible values."""
     sure_high_m_s: Floats
 
 
 class _Interval:
-    """Where one side's set point may be, in every stream, in m/s."""
+    """Interval of one side's set point in each stream, in m/s."""
 
     def __init__(self, streams: int) -> None:
         self.low = np.zeros(streams)
         self.high = np.zeros(streams)
 
     def stand(self, where: Flags) -> None:
-        """It is zero for certain."""
+        """Set the interval to zero."""
         self.low[where] = self.high[where] = 0.0
 
 
@@ -121,7 +121,7 @@ class _Rules:
         self._found.extend(Violation(int(stream), tick, rule) for stream in np.flatnonzero(where))
 
     def _check_stops(self, tick: int) -> None:
-        """A stop latches, and brakes at once; only a release ends it."""
+        """Check that a stop latches and brakes at once, and that only a release ends it."""
         streams, played = self._streams, self._played
         stop, again = streams.stop[:, tick], streams.stop_again[:, tick]
         silent_s = streams.watchdog_s[:, tick] - self._beat_s
@@ -168,7 +168,7 @@ class _Rules:
         self._last_s = np.where(tells & np.isfinite(now_s), now_s, self._last_s)
 
     def _latch(self, reason: str, where: Flags) -> None:
-        """The first reason stands; the wheels start from zero afterwards."""
+        """Check that the first reason stays, and that the wheels start from zero afterwards."""
         self._latched[where & (self._latched == "")] = reason
         for interval in self._intervals:
             interval.stand(where)
@@ -229,7 +229,7 @@ class _Rules:
         return _Reached(told, _lowest(high, up, down), _highest(low, up, down))
 
     def _check_grant(self, moment: _Moment, left: _Reached, right: _Reached, possible: dict[str, Flags]) -> None:
-        """What the guard says it granted is what the frame says, and why it is not what was wanted."""
+        """Check that the applied speeds equal those in the frame, and that differences have reasons."""
         played, tick = self._played, moment.tick
         granted = played.granted_left_m_s[:, tick], played.granted_right_m_s[:, tick]
         for speed_m_s, side in zip(granted, (left.told, right.told), strict=True):
@@ -253,7 +253,7 @@ class _Rules:
     def _check_approach(
         self, moment: _Moment, left: _Reached, right: _Reached, free: Flags, said: dict[str, Flags]
     ) -> None:
-        """Where nothing makes it stand, it goes as far as it may toward what is wanted, and says what holds it."""
+        """Check that the set point moves as far as the limits allow, and that the limits are given as reasons."""
         streams, tick = self._streams, moment.tick
         wanted = [np.where(free, speeds[:, tick], 0.0) for speeds in (streams.left_m_s, streams.right_m_s)]
         fastest = np.maximum(np.abs(wanted[0]), np.abs(wanted[1]))
@@ -287,7 +287,7 @@ class _Rules:
 
 
 def _reasons_to_stand(streams: Streams, last_s: Floats, tick: int, slack_s: float) -> dict[str, Flags]:
-    """For each reason the streams in which this tick gives it; `last_s` is the time of the last set point.
+    """Return for each reason the streams in which this tick gives it; `last_s` is the time of the last set point.
 
     Limits are exceeded by more than the slack; with a negative one they may also be missed by so much.
     """
@@ -313,7 +313,7 @@ def _reasons_to_stand(streams: Streams, last_s: Floats, tick: int, slack_s: floa
 
 
 def _highest(from_m_s: Floats, up_m_s: Floats, down_m_s: Floats) -> Floats:
-    """The most that a tick may make of a set point: faster forwards, or slower backwards as far as zero."""
+    """Return the highest set point after a tick: faster forward, or slower backward down to zero."""
     return np.where(from_m_s >= 0.0, from_m_s + up_m_s, np.minimum(from_m_s + down_m_s, 0.0))
 
 

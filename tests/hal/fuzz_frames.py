@@ -10,7 +10,7 @@ from hal.frame import Frame
 from tests.hal.helpers import CODEC
 
 FD_LENGTHS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64)
-"""What the lengths 0 to 15 of a frame's head stand for in CAN FD."""
+"""Payload lengths in bytes of the codes 0 to 15 of CAN FD."""
 CONTROL_MODES = (0, 1, 2, 0xFF00, 0xFF01, 0xFF02, 0xFF03, 0xFF04, 0xFF05, 0xFFFF)
 _KNOWN = tuple(CODEC.by_id.values())
 _STATES = (0x00, 0x04, 0x08, 0x0C, 0x10, 0x20, 0x30, 0x40, 0x03)
@@ -37,7 +37,7 @@ class FuzzFrames:
         )
 
     def spells(self) -> Iterator[list[can.Message]]:
-        """What comes in one tick, for ever: spells of one kind and of all, quiet ones, and floods now and then."""
+        """Yield the frames of each tick: spells of one kind, of all kinds, of silence, and floods."""
         chance = self._chance
         while True:
             kinds = chance.choice([self._kinds, (chance.choice(self._kinds),), (self.known_frame, self.cut_frame)])
@@ -50,7 +50,7 @@ class FuzzFrames:
                 yield [chance.choice(kinds)() for _ in range(count)]
 
     def for_control(self) -> can.Message:
-        """What may come to whoever listens to CONTROL: most of it CONTROL, and some of it whole."""
+        """Yield frames for a receiver of CONTROL: most are CONTROL, some valid."""
         kinds = (self.control_frame, self.control_frame, self.control_frame, *self._kinds)
         return self._chance.choice(kinds)()
 
@@ -59,7 +59,7 @@ class FuzzFrames:
         return self._frame(self._chance.getrandbits(11), self._bytes(self._chance.randint(0, 8)))
 
     def known_frame(self) -> can.Message:
-        """An identifier of the database with a payload that may be right, nearly right, or not at all."""
+        """Return an identifier of the database with a payload that may be right, nearly right, or not at all."""
         message = self._chance.choice(_KNOWN)
         kind = self._chance.random()
         if kind < 0.4:
@@ -71,14 +71,14 @@ class FuzzFrames:
         return self._frame(message.frame_id, data)
 
     def cut_frame(self) -> can.Message:
-        """An identifier of the database and fewer bytes than it needs; the length in the head may say otherwise."""
+        """Return an identifier of the database and fewer bytes than it needs; the length code may differ."""
         frame = self._frame(self._chance.choice(_KNOWN).frame_id, self._bytes(self._chance.randint(0, 7)))
         if self._fd and self._chance.random() < 0.3:
             frame.dlc = 8
         return frame
 
     def extended_frame(self) -> can.Message:
-        """A wide identifier, often one whose lower bits are those of a good frame."""
+        """Return a 29-bit identifier, often one whose lower bits are those of a good frame."""
         wide = self._chance.getrandbits(29)
         if self._chance.random() < 0.5:
             wide = (wide & ~0x7FF) | self._chance.choice([CONTROL_ID, *CODEC.by_id])
@@ -87,7 +87,7 @@ class FuzzFrames:
         return self._frame(wide, self._bytes(8), is_extended_id=True)
 
     def remote_frame(self) -> can.Message:
-        """Somebody asks for a frame."""
+        """Return a remote frame."""
         frame_id = self._chance.choice([CONTROL_ID, *CODEC.by_id])
         return can.Message(
             arbitration_id=frame_id, is_extended_id=False, is_remote_frame=True, dlc=self._chance.randint(0, 8)
@@ -102,7 +102,7 @@ class FuzzFrames:
         return self._frame(classes, bytes(data), is_extended_id=classes > 0x7FF, is_error_frame=True)
 
     def control_frame(self) -> can.Message:
-        """Somebody else's CONTROL, whole or not."""
+        """Return another node's CONTROL, valid or not."""
         mode = self._chance.choice(CONTROL_MODES) if self._chance.random() < 0.8 else self._chance.getrandbits(16)
         speeds = self._chance.choice(
             [self._bytes(6), bytes(6), b"\x00\x14\x00\x14\x00\x01", b"\x01\x03\xff\x01\x03\xff"]
@@ -111,7 +111,7 @@ class FuzzFrames:
         return self._frame(CONTROL_ID, (mode.to_bytes(2, "big") + speeds)[:length])
 
     def fd_frame(self) -> can.Message:
-        """A frame of CAN FD with its flags, of any length."""
+        """Return a frame of CAN FD with its flags, of any length."""
         chance = self._chance
         return can.Message(
             arbitration_id=chance.choice([CONTROL_ID, *CODEC.by_id, chance.getrandbits(11)]),

@@ -1,4 +1,4 @@
-"""A whole robot in simulated time, with somebody on its bus who sends what he likes."""
+"""Robot in simulated time, with a fuzzing node on its bus."""
 
 import itertools
 import math
@@ -79,7 +79,7 @@ class FuzzedRobot:
         for frame in frames:
             self._stranger.send(frame, 0)
         self.bad_frames += len(frames)
-        while self._stranger.recv(0) is not None:  # nobody else's queue may fill up
+        while self._stranger.recv(0) is not None:  # the queue of this end must not fill up
             pass
         if self._chance.random() < 0.3:
             self.kurt2.release()

@@ -35,12 +35,12 @@ def cycle(counts: int = 200, left_ticks: int = 0, right_ticks: int = 0, bumpers:
 
 
 def ticks(speed_m_s: float) -> int:
-    """What an encoder counts in a cycle at that speed."""
+    """Return the encoder ticks of a cycle at this speed."""
     return round(speed_m_s * TICK_S / ROBOT.geometry.metres_per_tick)
 
 
 def error_frame(classes: int, *, status: int = 0, sending: int = 0, receiving: int = 0) -> can.Message:
-    """What an adapter says of itself: classes of linux/can/error.h, status of the controller, and its counters."""
+    """Return an error frame of an adapter: classes of linux/can/error.h, status of the controller, and its counters."""
     data = bytes((0, status, 0, 0, 0, 0, sending, receiving))
     return can.Message(
         arbitration_id=classes, is_extended_id=classes > 0x7FF, is_error_frame=True, data=data, check=True
@@ -54,7 +54,7 @@ def send(bus: CanBus, frames: Iterable[can.Message]) -> None:
 
 
 def controls(bus: CanBus) -> list[Control]:
-    """What the controller was told since the last look."""
+    """Return the CONTROL values since the last call."""
     return [decode_control(message.data) for message in bus.drain()]
 
 
@@ -69,12 +69,12 @@ def fresh(
 
 
 def robot_with(**limits: float) -> RobotSettings:
-    """The shipped robot with other guard settings."""
+    """Return the shipped robot with other guard settings."""
     guard = GuardSettings(**{**ROBOT.guard.model_dump(), **limits})
     return ROBOT.model_copy(update={"guard": guard})
 
 
 def pull_the_plug(bus: CanBus) -> None:
-    """The adapter goes away: python-can's bus fails from now on, and CanBus has not been told."""
+    """Remove the adapter: python-can's bus fails from now on, unknown to CanBus."""
     assert bus._can_interface is not None
     bus._can_interface.shutdown()

@@ -3,7 +3,7 @@
 `make mutants` runs mutmut over the guard, its frames, the watchdog and what they stand on: one small change at a time,
 and the tests of hal have to fail. mutmut 3 because it is kept up, forks a process in which everything is imported
 already, and runs only the tests that reach the changed function: five mutants a second on an idle machine. cosmic-ray
-starts pytest anew for each, which is seconds for one. mutmut leaves out what stands behind a decorator, properties for
+starts pytest again for each, which takes seconds. mutmut leaves out what stands behind a decorator, properties for
 instance.
 """
 
@@ -46,7 +46,7 @@ def place_of(name: str) -> str:
 
 
 def mutant_of(name: str, diff: str) -> Mutant:
-    """A mutant from its name and its difference in the unified format."""
+    """Return a mutant from its name and its difference in the unified format."""
     lines = [line for line in diff.splitlines() if not line.startswith(("---", "+++", "@@", "#"))]
     was, became = ([" ".join(line[1:].split()) for line in lines if line.startswith(sign)] for sign in "-+")
     return Mutant(place_of(name), " / ".join(was), " / ".join(became))
@@ -64,7 +64,7 @@ def equivalents(path: Path = EQUIVALENT) -> dict[Mutant, str]:
 
 
 def verdict(living: Iterable[Mutant], known: Iterable[Mutant]) -> list[str]:
-    """What is wrong, in lines: mutants that live and should not, and known ones that are not there any more."""
+    """Return lines about mutants that live and should not, and known ones that are gone."""
     living, known = set(living), set(known)
     return [
         *(f"no test notices: {mutant}" for mutant in sorted(living - known)),

@@ -1,4 +1,4 @@
-"""Who looks on at the robot's end of a bus and judges, by the frames alone, whether it should stand."""
+"""Observer at the robot's end of a bus that judges by the frames alone whether the robot should stand."""
 
 import math
 

@@ -46,7 +46,7 @@ class SlowBus:
         self.waiting = 0
 
     def forget(self) -> None:
-        """What waits counts no more, though it is carried one day."""
+        """Forget the waiting frames, which may still be carried later."""
         self.waiting = 0
 
     def now_s(self) -> float | None:
@@ -98,7 +98,7 @@ def _is_control(msg: can.Message) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class Played:
-    """What came of streams; arrays are (streams, ticks), those of frames (frames, 8) and (frames,)."""
+    """Results of streams; arrays are (streams, ticks), those of frames (frames, 8) and (frames,)."""
 
     payloads: NDArray[np.uint8]
     """Every frame that was to go out, in order."""
@@ -120,18 +120,17 @@ class Played:
     """Numbers of `reasons_of`."""
     reasons_of: list[tuple[str, ...]]
     latched: Flags
-    """What the grants say."""
+    """Latched state in each guard result."""
     latched_because: NDArray[np.object_]
-    """What the guard says after each tick; empty where it is not latched."""
+    """Reason of the latched stop after each tick; empty if not latched."""
     send_failures: list[int]
-    """What the guard says after each stream."""
+    """Send failures of the guard after each stream."""
     strange: list[can.Message]
     """Frames that are no classic data frames of CONTROL's identifier and length; they have a payload of noughts."""
 
 
 _Noted = tuple[int, int, int, int, bool, str]
-"""Beside a grant: the tick's frames (first, first of drive, end), how many wait, whether an early signal came, why the
-guard is latched."""
+"""Frames of the tick (first, first of drive, end), waiting frames, early signal, and reason of the latched stop."""
 
 
 def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:

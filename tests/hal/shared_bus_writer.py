@@ -10,7 +10,7 @@ NUMBERED = struct.Struct(">II")
 
 
 def payload(number: int) -> bytes:
-    """The number twice over, the second time turned round: half a frame shows."""
+    """Return the number and its complement, so that half a frame is detected."""
     return NUMBERED.pack(number, number ^ 0xFFFF_FFFF)
 
 

@@ -1,4 +1,4 @@
-"""From a stream that leaves the envelope to the few ticks of it that still do."""
+"""Shrinking of a stream that leaves the envelope to the few ticks that still leave it."""
 
 import dataclasses
 
@@ -11,7 +11,7 @@ from tests.hal.streams import Streams
 
 
 def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = Guard) -> Streams:
-    """The stream of the violation, with ticks taken out by halves as long as it still breaks the same rule."""
+    """Return the stream of the violation without the ticks that are not needed to break the same rule."""
     ticks = np.arange(violation.tick + 1)
     size = len(ticks)
     while size > 1:
@@ -27,7 +27,7 @@ def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = Guard
 
 
 def told(streams: Streams, make_guard: MakeGuard = Guard) -> str:
-    """A short stream in words: settings, and for every tick what came in and what went out."""
+    """Return the text of a short stream: settings, and inputs and outputs of each tick."""
     played = play(streams, make_guard)
     lines = [f"{streams.robot.can.speed_mode}, {streams.robot.can.cycle_s} s, {streams.robot.guard}"]
     for tick in range(streams.shape[1]):

@@ -126,15 +126,15 @@ class _Chance:
         self.shape = shape
 
     def streams(self, share: float) -> Flags:
-        """True for whole streams."""
+        """Return a mask of whole streams."""
         return self.generator.random((self.shape[0], 1)) < share
 
     def ticks(self, share: float) -> Flags:
-        """True for single ticks."""
+        """Return a mask of single ticks."""
         return self.generator.random(self.shape) < share
 
     def spells(self, share: float, *, starts: float, ends: float) -> Flags:
-        """In a share of the streams: spells that start and end with these chances a tick."""
+        """Return spells in a share of the streams, which start and end with these chances per tick."""
         changes = np.where(self.ticks(starts), 1, np.where(self.ticks(ends), -1, 0))
         last_change = np.maximum.accumulate(np.where(changes != 0, np.arange(self.shape[1]), 0), axis=1)
         return self.streams(share) & (np.take_along_axis(changes, last_change, axis=1) > 0)
@@ -146,14 +146,14 @@ class _Chance:
         return np.take_along_axis(drawn, last_change, axis=1).astype(float)
 
     def pick(self, *choices: tuple[float, Floats]) -> Floats:
-        """For each stream one of several arrays, by weight."""
+        """Pick one of several arrays for each stream, by weight."""
         weights = np.array([weight for weight, _ in choices])
         which = self.generator.choice(len(choices), size=(self.shape[0], 1), p=weights / weights.sum())
         arrays = [np.broadcast_to(array, self.shape) for _, array in choices]
         return np.choose(np.broadcast_to(which, self.shape), arrays)
 
     def rarely(self, share: float, array: Floats, *, otherwise: float) -> Floats:
-        """The array in single ticks only."""
+        """Return the array in single ticks only."""
         return np.where(self.ticks(share), array, otherwise)
 
     def near(self, limit_s: float) -> Floats:
@@ -164,7 +164,7 @@ class _Chance:
 
 
 def _robot(generator: np.random.Generator) -> RobotSettings:
-    """The shipped robot in one of its modes, or one with other limits, another cycle and other bumpers."""
+    """Return the shipped robot in one of its modes, or one with other limits, another cycle and other bumpers."""
     modes = list(SpeedMode)
     mode = modes[generator.integers(len(modes))]
     if generator.random() < 0.4:
@@ -195,7 +195,7 @@ def _robot(generator: np.random.Generator) -> RobotSettings:
 
 
 def _times(chance: _Chance, cycle_s: float) -> tuple[Floats, Floats]:
-    """Times of the ticks, and by how much each was set back."""
+    """Return the times of the ticks, and how far each was set back."""
     generator = chance.generator
     steps_s = chance.pick(
         (0.5, np.full(chance.shape, cycle_s)),
@@ -211,7 +211,7 @@ def _times(chance: _Chance, cycle_s: float) -> tuple[Floats, Floats]:
 
 
 def _spoiled(chance: _Chance, times_s: Floats) -> Floats:
-    """Times of which a few are none, or lie ahead."""
+    """Return times of which a few are missing or in the future."""
     odd = chance.generator.choice([np.nan, np.inf, -np.inf, 1e300], size=chance.shape)
     ahead = times_s + chance.generator.choice([1e-6, 0.01, 10.0], size=chance.shape)
     spoiled = np.where(chance.ticks(0.5), odd, ahead)

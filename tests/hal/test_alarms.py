@@ -1,4 +1,4 @@
-"""What stops the robot by itself, before anything is decided, until a teacher says resume."""
+"""Alarms that stop the robot before a decision, until a teacher resumes."""
 
 import can
 import pytest
@@ -114,7 +114,7 @@ def test_silently_lost_frames_do_not_hinder_a_resume(ride: Ride) -> None:
     ride.drive_for(0.05)
     ride.desk.lose()
     ride.desk.carries = True
-    assert ride.drive_for(0.05) == stopped(GuardReason.BUS_BLOCKED)  # nobody can tell it from a bus that is late
+    assert ride.drive_for(0.05) == stopped(GuardReason.BUS_BLOCKED)  # not distinguishable from a late bus
     ride.kurt2.release()
     assert not ride.drive_for(0.05).latched
 
@@ -128,7 +128,7 @@ def test_own_frames_carried_after_a_resume_raise_no_alarm(ride: Ride) -> None:
     ride.desk.carries = True
     assert not ride.drive_for(0.05).latched
     assert ride.kurt2.health.foreign_control == 0
-    assert ride.openings == 1  # the kernel takes the frames of a closed socket for somebody else's
+    assert ride.openings == 1  # the kernel delivers frames of a closed socket as those of another program
 
 
 def test_resume_after_another_stop_keeps_waiting_frames(ride: Ride) -> None:
@@ -234,7 +234,7 @@ def test_resume_while_bus_is_lost_stays_stopped(ride: Ride, monkeypatch: pytest.
     for _ in range(10):
         assert ride.tick() == stopped(GuardReason.BUS_LOST)
     ride.sleep(1.0)
-    ride.tick()  # opens the bus anew
+    ride.tick()  # opens the bus again
     assert ride.tick() == stopped(GuardReason.BUS_LOST)
     ride.kurt2.release()
     assert not ride.tick().latched
@@ -262,7 +262,7 @@ def test_wheels_that_do_not_follow_stop_the_robot(ride: Ride) -> None:
 
 
 def frozen_but(ride: Ride, *alive: str) -> list[can.Message]:
-    """A cycle in which the infra-red frames of these names change and the others do not."""
+    """Return a cycle in which only the infra-red frames of these names change."""
     still = [CODEC.message(name).pack(333, 333, 333, 333) for name in INFRARED_FRAMES if name not in alive]
     repeated = {frame.arbitration_id for frame in still}
     return [*still, *(frame for frame in ride.frames() if frame.arbitration_id not in repeated)]

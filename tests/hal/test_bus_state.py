@@ -1,4 +1,4 @@
-"""What the adapter says in its error frames, as a line for a person."""
+"""State of the adapter from its error frames, and its one-line text."""
 
 import can
 import pytest

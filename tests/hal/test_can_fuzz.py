@@ -56,7 +56,7 @@ async def test_no_frame_of_ten_million_raises_in_the_tick(kind: str, seed: int) 
 
 
 def is_whole_control(frame: can.Message) -> bool:
-    """Whether the controller can make sense of a frame."""
+    """Return whether the controller can decode a frame."""
     special = frame.is_extended_id or frame.is_remote_frame or frame.is_error_frame
     mode = int.from_bytes(frame.data[:2], "big")
     return frame.arbitration_id == CONTROL_ID and not special and len(frame.data) >= 8 and mode in CONTROL_MODES

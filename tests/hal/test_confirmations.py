@@ -1,4 +1,4 @@
-"""What the guard knows of its own frames on a bus that confirms: how many it sent that the bus has not carried."""
+"""Count of own CONTROL frames that the bus has not carried yet."""
 
 from collections import deque
 

@@ -1,4 +1,4 @@
-"""The small print of CONTROL: motors whose curve has no level ends, brakes, and numbers beside the point."""
+"""Edge cases of CONTROL: curves without level ends, brakes, and unused numbers."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Whatever a teacher wants and the sensors say, the motion envelope holds.
+"""Motion envelope under any requests and sensor readings.
 
 Counted are ticks: a stream is a hundred of them, against a guard of its own. The fast suite plays 10 000 ticks
 (100 streams) and 480 shorter streams of 16 robots, the deep one 120 000 (1200 streams) and 10^8 (10^6 streams). Every

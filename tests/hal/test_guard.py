@@ -1,4 +1,4 @@
-"""Whatever is decided, only what is safe reaches the wheels."""
+"""Guard: only safe set points reach the wheels, for any decision."""
 
 import math
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ LIMITS = ROBOT.guard
 
 
 class Driver:
-    """Somebody who drives tick by tick, and the controller that listens."""
+    """Driver of a guard tick by tick, with the receiving controller."""
 
     def __init__(self, ends: Ends, robot: RobotSettings = ROBOT) -> None:
         self.guard = Guard(robot, ends[0])
@@ -352,7 +352,7 @@ def histories(draw: st.DrawFn) -> Iterator[tuple[float, float, int, float]]:
 
 @given(histories())
 def test_no_history_of_wishes_breaks_a_limit(history: Iterator[tuple[float, float, int, float]]) -> None:
-    """After any wishes, bumpers and time steps: within speed, slew and bumper limits, and one frame a tick."""
+    """Any requests, bumpers and time steps stay within speed, slew and bumper limits, and one frame a tick."""
     ends = bus_pair()
     guard = Guard(ROBOT, ends[0])
     now_s, before = 0.0, STANDSTILL

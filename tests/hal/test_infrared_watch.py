@@ -69,7 +69,7 @@ def test_a_clock_that_runs_backwards_takes_nothing_back(watch: InfraredWatch) ->
 
 def test_a_robot_with_sensors_on_one_board_has_no_other() -> None:
     watch = InfraredWatch(("BDC01", "BDC02"), FROZEN_S)
-    assert watch.check_frozen(5.0, driving=True) == ""  # of the time before nobody knows
+    assert watch.check_frozen(5.0, driving=True) == ""  # the time before is unknown
     assert "second controller" in watch.check_frozen(5.0 + FROZEN_S, driving=True)
     watch.board_of("BDC02").still_s = 0.0
     assert watch.check_frozen(5.0 + FROZEN_S, driving=True) == ""

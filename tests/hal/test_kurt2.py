@@ -248,7 +248,7 @@ def test_a_bus_that_goes_away_stops_the_robot_until_released(robot: Kurt2, ends:
     assert "receiving failed" in health.bus_trouble
     assert (health.latched, health.receive_failures, health.send_failures) == (GuardReason.BUS_LOST, 2, 2)
 
-    robot.sense(2.02)  # a second later it opens the bus anew
+    robot.sense(2.02)  # a second later it opens the bus again
     send(ends[1], cycle(counts=300))
     assert robot.sense(2.03).infrared_counts == (300,) * 18
     assert robot.drive(WheelSpeeds(0.3, 0.3), 2.03, 2.03).latched

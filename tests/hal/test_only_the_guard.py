@@ -57,7 +57,7 @@ def names_in(source: str) -> Iterator[str]:
 
 @cache
 def names_by_file() -> dict[str, set[str]]:
-    """Of the files in which something stands that is looked for: only those are worth the parsing."""
+    """Return the names in each file that may hold one of the forbidden names."""
     files = (path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py")))
     texts = ((path.relative_to(ROOT).as_posix(), path.read_text(encoding="utf-8")) for path in files)
     return {name: set(names_in(text)) for name, text in texts if WORTH_PARSING.search(text)}

@@ -1,4 +1,4 @@
-"""The bus across processes: as every bus, whatever happens to the other processes, and for nobody else."""
+"""Bus across processes: conformance, failures of other processes, and access rights."""
 
 import fcntl
 import itertools
@@ -38,7 +38,7 @@ def file_of(name: str) -> Path:
 
 @contextmanager
 def writing(name: str, frame_id: int, *, child: bool = False) -> Iterator["subprocess.Popen[bytes] | ForkedProcess"]:
-    """A process that writes as fast as it can; `child`: one of this process, that may be waited for when it stops."""
+    """Return a process that writes as fast as it can; `child`: a child process, which can be waited for."""
     writer: subprocess.Popen[bytes] | ForkedProcess
     if there_is_a_nursery() and not child:
         writer = ForkedProcess(WRITER, (name, str(frame_id)), ROOT, os.environ, (0, 1, 2))
@@ -64,7 +64,7 @@ class Listener:
         self._newest: dict[int, int] = {}
 
     def take(self) -> int:
-        """Who sent the next frame; waits for it."""
+        """Wait for the next frame and return its sender."""
         frame = self._bus.recv(20.0)
         assert frame is not None
         number, turned = NUMBERED.unpack(frame.data)
@@ -267,7 +267,7 @@ def test_end_with_removed_file_fails_until_reopened(name: str, ends: Ends) -> No
 def test_new_bus_waits_for_removal_of_the_old_file(name: str) -> None:
     path = file_of(name)
     SharedBus(name).shutdown()
-    with path.open("wb") as leaving:  # killed by nobody, stopped while it removes the file
+    with path.open("wb") as leaving:  # not killed, but stopped while it removes the file
         path.chmod(0o600)
         fcntl.flock(leaving, fcntl.LOCK_EX)
         with pytest.raises(BusError, match=rf"bus 'shared:{name}': cannot be opened .*is being removed; try again"):

@@ -1,4 +1,4 @@
-"""Who looks on at a bus sees what this end takes from it and gives to it, and how old it is."""
+"""Tap: sees each frame received and sent by its end, with its age."""
 
 import can
 

@@ -15,7 +15,7 @@ FINE = 0.0001
 
 
 def measured_finely(metres_per_tick: float = 1e-6, cycle_s: float = 0.01, **limits: Any) -> RobotSettings:
-    """The shipped robot, watched without tolerance, with encoders of another resolution."""
+    """Shipped robot, watched without tolerance, with encoders of another resolution."""
     least = {"wheel_error_m_s": 0.004, "wheel_error_share": 0.0, "wheel_error_s": 0.001}
     robot = robot_with(**{**least, **limits})
     geometry = robot.geometry.model_copy(update={"metres_per_tick": metres_per_tick})

@@ -20,7 +20,7 @@ NO_TOLERANCE = robot_with(wheel_error_m_s=0.004, wheel_error_share=0.0, wheel_er
 
 
 def wheels_like(acceleration: float = 1.0, braking: float = 1.0, loop_time: float = 1.0) -> Wheels:
-    """The simulated motors with other answers, as shares of what the settings say."""
+    """Return the simulated motors with other responses, as fractions of the settings."""
     motors = ROBOT.motors
     changed = motors.model_copy(
         update={
@@ -33,7 +33,7 @@ def wheels_like(acceleration: float = 1.0, braking: float = 1.0, loop_time: floa
 
 
 class Trial:
-    """Wheels, somebody who tells them what to do, and the watch."""
+    """Wheels, their set points, and the watch."""
 
     def __init__(self, robot: RobotSettings = ROBOT, wheels: Wheels | None = None) -> None:
         self.watch = WheelWatch(robot)
@@ -65,7 +65,7 @@ class Trial:
         return said
 
     def found_out_after_s(self, left_m_s: float, right_m_s: float, within_s: float = 3.0) -> float:
-        """How long it takes from now; infinite when it is not found out."""
+        """Return the time in s until detection; infinite without detection."""
         for cycles in range(1, round(within_s / TICK_S) + 1):
             if self.drive(TICK_S, left_m_s, right_m_s):
                 return cycles * TICK_S
@@ -102,7 +102,7 @@ speeds = st.floats(-0.9, 0.9)
 def test_motors_half_or_twice_as_quick_are_never_off_the_band(
     quickness: tuple[float, float, float], orders: list[tuple[float, float, bool, int]]
 ) -> None:
-    """Whatever set points they get, slewed or not, braked or not: no tolerance is needed for how quick they are."""
+    """Slewed or not, braked or not: no set point needs a tolerance for the motors' speed of response."""
     trial = Trial(NO_TOLERANCE, wheels_like(*quickness))
     for left_m_s, right_m_s, brake, cycles in orders:
         for _ in range(cycles):
@@ -241,7 +241,7 @@ def test_a_motor_that_turns_the_other_way(driving: Trial) -> None:
 
 def test_sides_that_were_swapped_show_in_the_first_turn(trial: Trial) -> None:
     trial.obey = lambda told: WheelSpeeds(told.right_m_s, told.left_m_s)
-    assert trial.drive(2.0, 0.3, 0.3) == ""  # straight ahead nobody can tell
+    assert trial.drive(2.0, 0.3, 0.3) == ""  # straight ahead not detectable
     assert trial.found_out_after_s(-0.2, 0.2) <= 0.6
 
 
