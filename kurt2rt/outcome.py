@@ -147,6 +147,12 @@ class RefusalCode(StrEnum):
     # On the teacher's side.
     MALFORMED = "malformed"
     STOPPED_MEANWHILE = "stopped meanwhile"
+    NO_PICTURE = "no picture"
+    """No press begins, for no state of the robot came lately."""
+    PICTURE_LOST = "picture lost"
+    """A press ended, for no state of the robot came any more."""
+    RESTARTED_MEANWHILE = "restarted meanwhile"
+    NOT_UNDERSTOOD = "not understood"
 
 
 Code = ResultCode | RefusalCode

@@ -146,6 +146,10 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.UPLOAD_INCOMPLETE: "the file did not arrive whole (SHA-256); upload it again",
     RefusalCode.MALFORMED: "{says}",
     RefusalCode.STOPPED_MEANWHILE: "{command} was stopped meanwhile",
+    RefusalCode.NO_PICTURE: "no picture of the robot: nothing is sent to it",
+    RefusalCode.PICTURE_LOST: "no picture of the robot: the press is over",
+    RefusalCode.RESTARTED_MEANWHILE: "the robot program was started again: the press is over",
+    RefusalCode.NOT_UNDERSTOOD: "the robot is not understood: {says}",
 }
 
 _ONLY_BEHAVIOUR = "the only behaviour"

@@ -10,6 +10,8 @@ import anyio
 import anyio.abc
 
 from kurt2rt.channel.state import State
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.outcome_text import Surface, text_of
 from kurt2rt.page.attention import Attention
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow, Why
 from kurt2rt.page.orders import carry_out, ends_run, lets_drive, oldest_picture_s
@@ -32,8 +34,8 @@ _MOST_ORDERS = 8
 
 _NOT_YOURS = "another page has the pad; press Take to have it here"
 _NO_PICTURE = "the page showed no picture of the robot as it runs now; look, and press again"
-_OLD_PICTURE = "given on an old picture; look at the robot, then say it again"
-_STOPPED_MEANWHILE = "the robot was stopped meanwhile; look at the robot, then say it again"
+_OLD_PICTURE = text_of(Outcome(RefusalCode.OLD_PICTURE), Surface.PAGE)
+_STOPPED_MEANWHILE = text_of(Outcome(RefusalCode.STOPPED_SINCE), Surface.PAGE)
 _BUSY = "the robot has not answered the last ones yet; wait"
 _NOBODY_LOOKED = "nobody saw the robot on this page: it was stopped; GO lets it drive on"
 
@@ -174,7 +176,7 @@ class Bridge:
         if visitor.grip.is_on(press.hold) and not self._robot.pressing:
             # The robot refused it, or was stopped: going on would be a new press that nobody made.
             visitor.grip.release()
-            visitor.tell({"kind": "let_go", "text": self._robot.refused}, about="let_go")
+            visitor.tell({"kind": "let_go", "text": self._why_refused()}, about="let_go")
         elif visitor.grip.press(press.hold, age_s, now_s):
             self._robot.press(press.left_m_s, press.right_m_s)
 
@@ -259,6 +261,10 @@ class Bridge:
             self._ending += 1
             self._spawn(self._end_press)
 
+    def _why_refused(self) -> str:
+        refusal = self._robot.refusal
+        return "" if refusal is None else refusal.text_on(Surface.PAGE) or refusal.why
+
     async def _end_press(self) -> None:
         self._ending -= 1
         try:
@@ -332,7 +338,7 @@ class Bridge:
             self._newest = state
             self._look()
             self._rarely.see(state, watched=bool(self._visitors))
-            view = state_view(state, self._robot.link, self._robot.state_age_s, self._robot.refused, self._rarely.words)
+            view = state_view(state, self._robot.link, self._robot.state_age_s, self._why_refused(), self._rarely.words)
             for visitor in self._visitors.values():
                 visitor.show(state.boot, view)
 

@@ -54,8 +54,8 @@ class RobotLink(Protocol):
         ...
 
     @property
-    def refused(self) -> str:
-        """Why the last press was not begun, or ended by itself; empty while all is well."""
+    def refusal(self) -> Answer | None:
+        """Why the last press was not begun, or ended by itself; None while all is well."""
         ...
 
     def press(self, left_m_s: float, right_m_s: float) -> bool:

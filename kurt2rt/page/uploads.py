@@ -8,6 +8,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
 from kurt2rt.channel.requests import MOST_UPLOAD_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.outcome_text import Surface
 from kurt2rt.page.access import Access
 from kurt2rt.page.robot_link import RobotLink
 from kurt2rt.teaching.answer import NoAnswerError, RefusedError
@@ -53,7 +54,7 @@ class Uploads:
         try:
             await self._robot.upload(upload, bytes(content))
         except RefusedError as error:
-            return PlainTextResponse(str(error), 409)
+            return PlainTextResponse(error.text_on(Surface.PAGE), 409)
         except NoAnswerError as error:
             return PlainTextResponse(str(error), 504)
         return JSONResponse({"upload": upload.hex(), "sha256": hashlib.sha256(content).hexdigest()})

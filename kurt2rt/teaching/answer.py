@@ -13,10 +13,6 @@ class NoAnswerError(UserError):
     """No answer came in time. It is not known whether the command counted: look at the lessons."""
 
 
-class RefusedError(UserError):
-    """The robot does not take what the scripted teacher cannot do without. One line."""
-
-
 @dataclass(frozen=True, slots=True)
 class Answer:
     """The robot's answer. A refusal is one, too."""
@@ -42,6 +38,19 @@ class Answer:
 def local_refusal(why: str, outcome: Outcome) -> Answer:
     """Return the refusal of a command that was not sent to the robot, or was withdrawn."""
     return Answer(False, why, text_of(outcome), -1, outcome=outcome)
+
+
+class RefusedError(UserError):
+    """The robot refuses a command or a file that the caller cannot do without."""
+
+    def __init__(self, what: str, answer: Answer | None = None) -> None:
+        """Keep the robot's `answer`, if it is the robot that refuses."""
+        super().__init__(what)
+        self.answer = answer
+
+    def text_on(self, surface: Surface) -> str:
+        """Return the sentence for a surface."""
+        return str(self) if self.answer is None else self.answer.text_on(surface) or self.answer.why
 
 
 _OWN_KEYS = ("t", "ok", "text", "why", "code", "fields")

@@ -102,7 +102,8 @@ class Charge(Sight):
 def _part_of(response: Response) -> FilePart:
     """Raises RefusedError where the robot says why not, WireError."""
     if not response.successful:
-        raise RefusedError(answer_to(response).text or response.code)
+        answer = answer_to(response)
+        raise RefusedError(answer.text or response.code, answer)
     body = facts_of(response)
     content = body.get("part")
     if not isinstance(content, bytes) or len(content) > PART_BYTES:

@@ -134,7 +134,7 @@ class TeacherClient(Lessons, Goals, Charge, Moving):
         try:
             await self.upload(upload, content)
         except RefusedError as error:
-            return Answer(False, "refused", str(error), -1)
+            return error.answer or Answer(False, "refused", str(error), -1)
         return await self.load_upload(upload, hashlib.sha256(content).digest())
 
     async def upload(self, upload: bytes, content: bytes) -> None:
@@ -145,7 +145,7 @@ class TeacherClient(Lessons, Goals, Charge, Moving):
             began_s = self._now()
             answer = await self._asking.ask(UploadRequest(state.boot, upload, offset, part))
             if not answer.accepted:
-                raise RefusedError(answer.text or answer.why)
+                raise RefusedError(answer.text or answer.why, answer)
             # More requests a second than this the robot throws away.
             await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))
 

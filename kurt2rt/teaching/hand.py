@@ -8,7 +8,8 @@ from functools import partial
 from kurt2rt.channel.requests import DriveRequest, StreamRequest, WatchRequest
 from kurt2rt.channel.state import State
 from kurt2rt.channel.wire import WireError, decode_answer, encode_request
-from kurt2rt.teaching.answer import answer_of
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.teaching.answer import Answer, answer_of, local_refusal
 from kurt2rt.teaching.link import LinkMeter
 from kurt2rt.teaching.oscore_requests import Exchange, OscoreRequests, Response
 from kurt2rt.teaching.pictures import Pictures
@@ -57,8 +58,8 @@ class Hand:
         """`name` is the teacher's; `now` is a monotonic clock in seconds; `on_begin` is called as a press begins."""
         self.watching = True
         """Whether the teacher looks at the robot."""
-        self.refused = ""
-        """Why the last press was not begun, or ended by itself; empty while all is well."""
+        self.refusal: Answer | None = None
+        """Why the last press was not begun, or ended by itself; None while all is well."""
         self.meter = LinkMeter()
         self._name = name
         self._pictures = pictures
@@ -85,7 +86,7 @@ class Hand:
         """
         state = self._fresh_picture()
         if state is None:
-            self.end("no picture of the robot: nothing is sent to it")
+            self.end(local_refusal("stale", Outcome(RefusalCode.NO_PICTURE)))
             return False
         press = self._press
         begins = press is None
@@ -95,15 +96,15 @@ class Hand:
         press.left_m_s, press.right_m_s = left_m_s, right_m_s
         if begins:
             self._on_begin()
-            self.refused = ""
+            self.refusal = None
             self._press = press
             self.beat()
         return self.pressing
 
-    def end(self, because: str = "") -> None:
-        """End the press; nothing more of it is sent. `because` is for one that ends by itself."""
+    def end(self, because: Answer | None = None) -> None:
+        """End the press; nothing more of it is sent. `because`: why a press ends by itself."""
         self._press = None
-        self.refused = because
+        self.refusal = because
 
     def beat(self) -> None:
         """Send what is due; call it every BEAT_S."""
@@ -114,15 +115,15 @@ class Hand:
             if state is not None and self.watching and state.teacher == self._name:
                 self._send_watch(state)
         elif state is None:
-            self.end("no picture of the robot: the press is over")
+            self.end(local_refusal("stale", Outcome(RefusalCode.PICTURE_LOST)))
         elif state.boot != press.boot:
-            self.end("the robot program was started anew: the press is over")
+            self.end(local_refusal("boot", Outcome(RefusalCode.RESTARTED_MEANWHILE)))
         else:
             self._send_drive(press)
 
     def forget(self) -> None:
         """End the press, and wait for no answer any more."""
-        self.end(self.refused)
+        self.end(self.refusal)
         while self._under_way:
             self._end_exchange(self._under_way.popleft())
 
@@ -146,7 +147,7 @@ class Hand:
         try:
             answer = answer_of(response.code, decode_answer(response.payload) if response.payload else {})
         except WireError as error:
-            self.end(f"the robot is not understood: {error}")
+            self.end(local_refusal("malformed", Outcome.of(RefusalCode.NOT_UNDERSTOOD, says=str(error))))
             return
         if answer.accepted:
             self._pictures.hear(sent.boot, answer.tick)
@@ -157,7 +158,7 @@ class Hand:
             press.taken = max(press.taken, sent.number)
         # One that was late on its way is refused, too; the press goes on while newer ones are taken.
         elif sent.number > press.taken and answer.why != "old":
-            self.end(answer.text or answer.why)
+            self.end(answer)
 
     def _forget_old_ones(self) -> None:
         before_s = self._now() - _FORGOTTEN_AFTER_S

@@ -69,7 +69,13 @@ class Moving(Sight):
     @property
     def refused(self) -> str:
         """Why the last press was not begun, or ended by itself; empty while all is well."""
-        return self._hand.refused
+        refusal = self._hand.refusal
+        return "" if refusal is None else refusal.text or refusal.why
+
+    @property
+    def refusal(self) -> Answer | None:
+        """Why the last press was not begun, or ended by itself, with its code; None while all is well."""
+        return self._hand.refusal
 
     def press(self, left_m_s: float, right_m_s: float) -> bool:
         """Begin a press or change its speeds; whether one is on. It ends by itself when the robot refuses it, or when

@@ -18,7 +18,10 @@ class Wheel:
     @property
     def ended(self) -> str:
         """Why the press ended by itself, in a sentence; empty while it is on, or not begun."""
-        return "" if self._hold is None or self._hand.hold == self._hold else self._hand.refused or "let go"
+        if self._hold is None or self._hand.hold == self._hold:
+            return ""
+        refusal = self._hand.refusal
+        return "let go" if refusal is None else refusal.text or refusal.why
 
     def set(self, left_m_s: float, right_m_s: float) -> bool:
         """New speeds; whether the press is on. Raises WireError for speeds that no robot takes."""

@@ -97,7 +97,7 @@ class FakeRobot:
     refuses: str = ""
     watching: bool = False
     pressing: bool = False
-    refused: str = ""
+    refusal: Answer | None = None
     trouble: str = ""
     state_age_s: float = math.inf
     state: State | None = None

@@ -9,16 +9,20 @@ import anyio
 import anyio.lowlevel
 import pytest
 
+from kurt2rt.outcome import Outcome, RefusalCode
+from kurt2rt.outcome_text import Surface, text_of
 from kurt2rt.page.bridge import Bridge
 from kurt2rt.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
 from kurt2rt.page.visitor import Visitor
 from kurt2rt.rla.rla import Phase
 from kurt2rt.teaching.active_stop import ActiveStop, StopReason
+from kurt2rt.teaching.answer import local_refusal
 from tests.page.clock import Clock
 from tests.page.fake_robot import A_PLACE, FakeRobot
 
 NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over", "pursue")
-STALE = "given on an old picture; look at the robot, then say it again"
+STALE = text_of(Outcome(RefusalCode.OLD_PICTURE), Surface.PAGE)
+STOPPED = Outcome.of(RefusalCode.STOPPED_BY, teachers=("anna",))
 
 
 async def settled() -> None:
@@ -260,9 +264,9 @@ async def test_a_press_that_the_robot_ended_does_not_begin_again_by_itself() -> 
         page = Page(hall)
         await page.see(teacher="phone")
         page.press(hold=1)
-        hall.robot.pressing, hall.robot.refused = False, "anna stopped the robot"
+        hall.robot.pressing, hall.robot.refusal = False, local_refusal("stopped", STOPPED)
         page.press(hold=1)
-        assert page.last("let_go")["text"] == "anna stopped the robot"
+        assert page.last("let_go")["text"] == text_of(STOPPED, Surface.PAGE)
         page.press(hold=1)
         assert len(hall.told("press")) == 1
         page.press(hold=2)
