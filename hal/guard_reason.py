@@ -5,7 +5,7 @@ from typing import Final
 
 
 class GuardReason(StrEnum):
-    """Code for a difference between the wanted and the granted wheel speeds, or for a latched stop."""
+    """Code for a difference between the wanted and the applied wheel speeds, or for a latched stop."""
 
     NOT_A_NUMBER = "not a number"
     COMMAND_TOO_OLD = "command too old"

@@ -144,11 +144,11 @@ class Kurt2:
         if self.watchdog.ticks_ceased:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
             self._guard.emergency_stop(GuardReason.TICKS_CEASED)
-        grant = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
-        self._command = grant.wheel_speeds
-        self._wheel_watch.set_command(grant.wheel_speeds)
+        result = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
+        self._command = result.wheel_speeds
+        self._wheel_watch.set_command(result.wheel_speeds)
         self.watchdog.beat()
-        return grant
+        return result
 
     def emergency_stop(self, reason: GuardReason) -> None:
         """Brake now and stay stopped until `release`."""

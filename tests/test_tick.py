@@ -52,11 +52,11 @@ class CorridorRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         self.command_ages_s.append(now_s - decided_at_s)
         self.latched = self.latched or self.relatches
-        granted, reasons = (STANDSTILL, (GuardReason.OTHER,)) if self.latched else (wanted, ())
-        if self.touches_in_front and max(granted) > 0.0:
-            granted, reasons = WheelSpeeds(min(granted[0], 0.0), min(granted[1], 0.0)), (GuardReason.FRONT_BUMPER,)
-        self.driven.append(granted)
-        return GuardResult(granted, reasons, self.latched)
+        applied, reasons = (STANDSTILL, (GuardReason.OTHER,)) if self.latched else (wanted, ())
+        if self.touches_in_front and max(applied) > 0.0:
+            applied, reasons = WheelSpeeds(min(applied[0], 0.0), min(applied[1], 0.0)), (GuardReason.FRONT_BUMPER,)
+        self.driven.append(applied)
+        return GuardResult(applied, reasons, self.latched)
 
     def emergency_stop(self, reason: GuardReason) -> None:
         assert reason

@@ -44,7 +44,7 @@ class Drive:
     """While the order held."""
     after: Heard
     """From then on, until they rested."""
-    granted: WheelSpeeds
+    applied: WheelSpeeds
     """Set points of the last frame of the order."""
     reasons: tuple[GuardReason, ...]
     """The guard's, of that frame."""

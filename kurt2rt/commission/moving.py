@@ -36,7 +36,7 @@ def why_it_stood(drive: Drive) -> str | None:
     """Why the guard let nothing through; None when it did."""
     if drive.stopped_by is not None:
         return drive.stopped_by
-    if drive.granted == WheelSpeeds(0.0, 0.0):
+    if drive.applied == WheelSpeeds(0.0, 0.0):
         return ", ".join(drive.reasons) or "set point too small for this mode"
     return None
 

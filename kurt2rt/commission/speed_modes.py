@@ -78,7 +78,7 @@ class _Trial:
     def share(self, robot: RobotSettings) -> float:
         """Measured speed of the faster side against the set point's."""
         measured_m_s = sum(_fastest_m_s(drive, robot) for drive in self.drives) / len(self.drives)
-        return measured_m_s / abs(self.drives[0].granted.left_m_s)
+        return measured_m_s / abs(self.drives[0].applied.left_m_s)
 
     def full_speed_m_s(self, robot: RobotSettings) -> float:
         """What 100 % are, where the mode is SPEED."""
@@ -92,7 +92,7 @@ class _Trial:
         if not self.answers(robot):
             one_way = any(_fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives)
             return f"{self.mode}: " + ("answers in one direction only" if one_way else "no answer")
-        told_m_s = abs(self.drives[0].granted.left_m_s)
+        told_m_s = abs(self.drives[0].applied.left_m_s)
         said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
 

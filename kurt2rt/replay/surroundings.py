@@ -32,7 +32,7 @@ class Replayed:
         """What was sensed (Robot)."""
         return self._entry.senses
 
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as granted then
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as applied then
         """What the guard let through then, whatever is wanted now: the robot is where it was (Robot)."""
         return self._entry.grant
 

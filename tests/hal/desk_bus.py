@@ -68,7 +68,7 @@ class Ride:
         self.kurt2 = Kurt2(ROBOT, CanBus("can0", self._open))
         self._far_end = open_bus(f"virtual:{self._name}")
         self.now_s = 50.0
-        self.granted = STANDSTILL
+        self.applied = STANDSTILL
         self._counts = itertools.cycle((200, 201))
 
     def _open(self, _: str) -> DeskBus:
@@ -80,7 +80,7 @@ class Ride:
 
     def frames(self) -> list[can.Message]:
         """Return the frames that the controller sends in a cycle."""
-        left_m_s, right_m_s = self.granted
+        left_m_s, right_m_s = self.applied
         return [*cycle(next(self._counts), ticks(left_m_s), ticks(right_m_s))]
 
     def sleep(self, seconds: float) -> None:
@@ -98,7 +98,7 @@ class Ride:
         """Run a tick of the runtime with the waiting frames."""
         self.kurt2.sense(self.now_s)
         grant = self.kurt2.drive(WheelSpeeds(left_m_s, right_m_s), self.now_s, self.now_s)
-        self.granted = grant.wheel_speeds
+        self.applied = grant.wheel_speeds
         return grant
 
     def drive_for(self, seconds: float, left_m_s: float = 0.3, right_m_s: float = 0.3) -> GuardResult:

@@ -231,8 +231,8 @@ class _Rules:
     def _check_grant(self, moment: _Moment, left: _Reached, right: _Reached, possible: dict[str, Flags]) -> None:
         """Check that the applied speeds equal those in the frame, and that differences have reasons."""
         played, tick = self._played, moment.tick
-        granted = played.granted_left_m_s[:, tick], played.granted_right_m_s[:, tick]
-        for speed_m_s, side in zip(granted, (left.told, right.told), strict=True):
+        applied = played.applied_left_m_s[:, tick], played.applied_right_m_s[:, tick]
+        for speed_m_s, side in zip(applied, (left.told, right.told), strict=True):
             says = np.where(self._latched == "", side.speed_m_s, 0.0)
             self._never("it grants something else than it sends", ~(np.abs(speed_m_s - says) <= _SLACK_M_S), tick)
         latched = self._latched != ""

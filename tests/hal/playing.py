@@ -114,8 +114,8 @@ class Played:
     """Frames that wait unconfirmed when the tick comes to drive."""
     interrupted: Flags
     """An early signal came, for the guard read the bumpers."""
-    granted_left_m_s: Floats
-    granted_right_m_s: Floats
+    applied_left_m_s: Floats
+    applied_right_m_s: Floats
     reasons: Bytes
     """Numbers of `reasons_of`."""
     reasons_of: list[tuple[str, ...]]
@@ -141,7 +141,7 @@ def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
     send_failures = [_play_one(streams, at, end, make_guard, grants, noted) for at in range(streams.shape[0])]
 
     shape = streams.shape
-    granted = np.array([grant.wheel_speeds for grant in grants], dtype=float)
+    applied = np.array([grant.wheel_speeds for grant in grants], dtype=float)
     numbers: dict[tuple[str, ...], int] = {}
     reasons = [numbers.setdefault(grant.reasons, len(numbers)) for grant in grants]
     counts = np.array([note[:5] for note in noted], dtype=np.int64).reshape(*shape, 5)
@@ -157,8 +157,8 @@ def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
         end=counts[:, :, 2],
         waiting=counts[:, :, 3],
         interrupted=counts[:, :, 4] != 0,
-        granted_left_m_s=granted[:, 0].reshape(shape),
-        granted_right_m_s=granted[:, 1].reshape(shape),
+        applied_left_m_s=applied[:, 0].reshape(shape),
+        applied_right_m_s=applied[:, 1].reshape(shape),
         reasons=np.array(reasons, dtype=np.int64).reshape(shape),
         reasons_of=list(numbers),
         latched=np.array([grant.latched for grant in grants]).reshape(shape),

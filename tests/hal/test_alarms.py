@@ -346,11 +346,11 @@ def test_sensors_on_one_controller_make_one_board(ends: tuple[CanBus, CanBus]) -
     sensors = tuple(sensor for sensor in ROBOT.infrared.sensors if sensor.channel.startswith("ADC"))
     infrared = ROBOT.infrared.model_copy(update={"sensors": sensors})
     robot = Kurt2(ROBOT.model_copy(update={"infrared": infrared}), ends[0])
-    granted = STANDSTILL
+    applied = STANDSTILL
     for tick in range(300):
         now_s = 10.0 + tick * TICK_S
-        send(ends[1], cycle(200 + tick % 2, ticks(granted.left_m_s), ticks(granted.right_m_s)))
+        send(ends[1], cycle(200 + tick % 2, ticks(applied.left_m_s), ticks(applied.right_m_s)))
         robot.sense(now_s)
-        granted = robot.drive(WheelSpeeds(0.3, 0.3), now_s, now_s).wheel_speeds
-    assert granted == (0.3, 0.3)
+        applied = robot.drive(WheelSpeeds(0.3, 0.3), now_s, now_s).wheel_speeds
+    assert applied == (0.3, 0.3)
     robot.close()

@@ -77,7 +77,7 @@ def test_every_reason_is_met_and_most_ticks_drive(some: list[tuple[Streams, Play
                 met[reason] = met.get(reason, 0) + int(count)
     latches = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.TICKS_CEASED, SIGNAL}
     assert {reason for reason, count in met.items() if count >= 50} >= {*STANDS_FOR, *APPROACHES_FOR, *latches}
-    moves = [(played.granted_left_m_s != 0.0) | (played.granted_right_m_s != 0.0) for _, played in some]
+    moves = [(played.applied_left_m_s != 0.0) | (played.applied_right_m_s != 0.0) for _, played in some]
     assert np.mean(moves) > 0.4
 
 
