@@ -9,8 +9,9 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from enum import StrEnum
 from types import FrameType, TracebackType
-from typing import Self
+from typing import Final, Self
 
 from kurt2rt.signals import Hearing
 
@@ -28,6 +29,31 @@ _STDERR = 2
 Act = Callable[[], object]
 
 
+class ShutdownStage(StrEnum):
+    """Part of the program that its end waits for."""
+
+    START = "start"
+    RUNTIME = "runtime"
+    LOOP = "loop"
+    CHANNEL = "channel"
+    LESSONS = "lessons"
+    RECORDING = "recording"
+    BUS_AND_LOGS = "bus and logs"
+    DISK = "disk"
+
+
+_STAGES: Final = {
+    ShutdownStage.START: "its start",
+    ShutdownStage.RUNTIME: "its runtime",
+    ShutdownStage.LOOP: "its loop",
+    ShutdownStage.CHANNEL: "the teachers' channel",
+    ShutdownStage.LESSONS: "the newest lessons",
+    ShutdownStage.RECORDING: "the end of the recording",
+    ShutdownStage.BUS_AND_LOGS: "the robot's bus and its logs",
+    ShutdownStage.DISK: "a thread that waits for the disk",
+}
+
+
 class Ending:
     """Hears signals in a thread of its own: also while the loop, or whatever it waits for, hangs.
 
@@ -36,11 +62,14 @@ class Ending:
     """
 
     def __init__(
-        self, *, others: Mapping[signal.Signals, Act] | None = None, give_up: Callable[[str], None] | None = None
+        self,
+        *,
+        others: Mapping[signal.Signals, Act] | None = None,
+        give_up: Callable[[ShutdownStage], None] | None = None,
     ) -> None:
         """`others`: what other signals ask for, done in this thread, too; they end nothing.
 
-        `give_up` is called when the time is over, with what was waited for; it ends the process. None: nobody does.
+        `give_up` ends the process when the time is over; it takes the stage that did not end. None: wait for ever.
         """
         self._others: dict[int, Act] = {int(number): act for number, act in (others or {}).items()}
         self._give_up = give_up
@@ -53,8 +82,8 @@ class Ending:
         self._bell, self._ear = socket.socketpair()
         self._bell.setblocking(False)
         self._thread = threading.Thread(target=self._listen, name="ending", daemon=True)
-        self.waits_for = "its start"
-        """What the program is busy with, for the last word when the time is over."""
+        self.stage = ShutdownStage.START
+        """Part of the program at work, for the last word when the time is over."""
 
     @property
     def thread(self) -> threading.Thread:
@@ -110,7 +139,7 @@ class Ending:
         while True:
             left_s = self._deadline_s - time.monotonic()
             if left_s <= 0 and self._give_up is not None:
-                self._give_up(self.waits_for)
+                self._give_up(self.stage)
                 return
             self._ear.settimeout(left_s if 0 < left_s < math.inf else None)
             try:
@@ -143,12 +172,16 @@ class Ending:
                 self._failures.append(error)
 
 
-def leave(waited_for: str) -> None:
+def last_word(stage: ShutdownStage) -> str:
+    """Return the line for the log of a program whose end took too long."""
+    return f"kurt2rt: ended without {_STAGES[stage]}, which did not end in time; look at disk and network"
+
+
+def leave(stage: ShutdownStage) -> None:
     """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
-    line = f"kurt2rt: ended without {waited_for}, which did not end in time; look at disk and network\n"
     # A terminal may hang as well; one that takes something takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
-        os.write(_STDERR, line.encode())
+        os.write(_STDERR, f"{last_word(stage)}\n".encode())
     os._exit(2)
 
 

@@ -18,7 +18,7 @@ from kurt2rt.channel.requests import BOOT_BYTES, FASTEST
 from kurt2rt.channel.simulation import RunControl
 from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
-from kurt2rt.ending import Ending
+from kurt2rt.ending import Ending, ShutdownStage
 from kurt2rt.exchange.given import package_knowledge
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.plain import plain_of
@@ -190,21 +190,21 @@ async def serve(
                 # The wheels first, also where the loop hangs.
                 stop_wheels = partial(robot.emergency_stop, GuardReason.SERVICE_ENDS)
                 acts = (stop_wheels, runtime.scheduler.end, upkeep.notifier.stopping)
-                ending.waits_for = "its loop"
+                ending.stage = ShutdownStage.LOOP
                 with quiet_gc(), short_turns(), watch, ending.first(*acts):
                     try:
                         await runtime.scheduler.run(ticks, after_tick)
                     finally:
                         stop_wheels()
-                ending.waits_for = "the teachers' channel"
+                ending.stage = ShutdownStage.CHANNEL
                 tasks.cancel_scope.cancel()
             rounds.save_statistics()
-            ending.waits_for = "the newest lessons"
+            ending.stage = ShutdownStage.LESSONS
         for acknowledgement in writer.acknowledged():
             if recorder is not None:
                 recorder.acknowledged(acknowledgement)
             screen.settled(acknowledgement)
-        ending.waits_for = "the end of the recording"
+        ending.stage = ShutdownStage.RECORDING
     return rounds.last
 
 

@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, health, outcomes, standing, verdicts
+from tests.texts import complaints, health, outcomes, shutdown, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -48,6 +48,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "standing": standing.in_log,
         "stops": standing.stops,
         "troubles": health.troubles,
+        "shutdown": shutdown.stages,
     },
 }
 """Listings by surface and title of their section."""

@@ -8,13 +8,13 @@ import threading
 
 import pytest
 
-from kurt2rt.ending import ENDING, Ending
+from kurt2rt.ending import ENDING, Ending, ShutdownStage, last_word
 
 HANGS = """
 import ctypes, time
-from kurt2rt.ending import Ending, leave
+from kurt2rt.ending import Ending, ShutdownStage, leave
 with Ending(give_up=leave) as ending:
-    ending.waits_for = "a nap"
+    ending.stage = ShutdownStage.LESSONS
     with ending.first(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
         print("begun", flush=True)
         {body}
@@ -78,16 +78,16 @@ def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
 
 
 @pytest.mark.parametrize(
-    ("body", "act", "exit_code", "last_word"),
+    ("body", "act", "exit_code", "says"),
     [
-        ("time.sleep(1000)", "None", 2, "kurt2rt: ended without a nap"),
-        ("while True: pass", "None", 2, "kurt2rt: ended without a nap"),
+        ("time.sleep(1000)", "None", 2, last_word(ShutdownStage.LESSONS)),
+        ("while True: pass", "None", 2, last_word(ShutdownStage.LESSONS)),
         # The interpreter as a whole, as soon as the signal was heard: the kernel ends it.
         ("time.sleep(1000)", "ctypes.PyDLL(None).sleep(1000)", -signal.SIGALRM, ""),
     ],
     ids=["asleep", "busy", "stuck"],
 )
-def test_what_hangs_is_left_behind_and_named(body: str, act: str, exit_code: int, last_word: str) -> None:
+def test_what_hangs_is_left_behind_and_named(body: str, act: str, exit_code: int, says: str) -> None:
     command = [sys.executable, "-c", HANGS.format(body=body, act=act)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
         assert program.stdout is not None
@@ -95,5 +95,5 @@ def test_what_hangs_is_left_behind_and_named(body: str, act: str, exit_code: int
         program.send_signal(signal.SIGTERM)
         out, err = program.communicate()
     assert out == "wheels\nloop\n"
-    assert err.startswith(last_word)
+    assert err.startswith(says)
     assert program.returncode == exit_code

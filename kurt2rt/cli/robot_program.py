@@ -26,7 +26,7 @@ from kurt2rt.channel.port import require_port
 from kurt2rt.cli.companions import Companions
 from kurt2rt.cli.printer import Printer
 from kurt2rt.cli.status_line import status_line
-from kurt2rt.ending import Ending, leave
+from kurt2rt.ending import Ending, ShutdownStage, leave
 from kurt2rt.health.instruments import Instruments
 from kurt2rt.health.status_socket import socket_of, tell_waiting
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -128,7 +128,7 @@ class RobotProgram:
         screen: ProgramScreen,
         *,
         opening: Opening = open_robot,
-        give_up: Callable[[str], None] | None = leave,
+        give_up: Callable[[ShutdownStage], None] | None = leave,
         again_s: float = AGAIN_S,
     ) -> None:
         """`read`: the runtime settings, as the command line changes them. `opening` gives the robot.
@@ -174,8 +174,8 @@ class RobotProgram:
             around.callback(self._printer.put, self._screen.close)
             last = anyio.run(self._serve)
             service = self._service
-            ending.waits_for = "the robot's bus and its logs"
-        ending.waits_for = "a thread that waits for the disk"
+            ending.stage = ShutdownStage.BUS_AND_LOGS
+        ending.stage = ShutdownStage.DISK
         # Else the interpreter walks all that there is once more, a third of a second, before the process ends.
         gc.freeze()
         count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
@@ -222,7 +222,7 @@ class RobotProgram:
                 self._pair()
         opened = self._opened
         assert opened is not None
-        ending.waits_for = "its runtime"
+        ending.stage = ShutdownStage.RUNTIME
         if self._service.priority:  # not before the second guard is there
             self._say(take_real_time_priority(self._service.priority, self._guards()))
         self._upkeep.notifier.ping()  # the next one comes from the first tick

@@ -8,16 +8,17 @@ import anyio.to_thread
 import can
 import pytest
 
+from kurt2rt.ending import ShutdownStage, last_word
 from tests.cli.helpers import started
 from tests.cli.three_programs import brakes, is_control, onlooker
 
 SAYS = {
-    "start": "ended without a thread that waits for the disk",
+    "start": last_word(ShutdownStage.DISK),
     "disk": "disk does not answer; look at its health; closed with 0 lessons not written",
     "recorder": "recording: the disk does not answer; the end is missing",
-    "keys": "ended without a thread that waits for the disk",
-    "network": "ended without the teachers' channel",
-    "loop": "ended without its loop",
+    "keys": last_word(ShutdownStage.DISK),
+    "network": last_word(ShutdownStage.CHANNEL),
+    "loop": last_word(ShutdownStage.LOOP),
 }
 RARE = {"start", "recorder", "keys"}
 

@@ -1,0 +1,11 @@
+"""Listing of the last words of `kurt2rt.ending`."""
+
+from collections.abc import Iterator
+
+from kurt2rt.ending import ShutdownStage, last_word
+
+
+def stages() -> Iterator[tuple[str, str]]:
+    """Yield the last line of a program that ended without each stage."""
+    for stage in ShutdownStage:
+        yield stage, last_word(stage)
