@@ -11,11 +11,10 @@ from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, quiet
 
 
 @pytest.mark.parametrize(("distance_m", "counts"), [(0.10, 550), (0.15, 388), (0.30, 189), (0.50, 95), (0.60, 70)])
-def test_the_law_of_the_reference(distance_m: float, counts: int) -> None:
-    with Rig(robot=quiet_robot()) as rig:
-        rig.robot.place(facing_wall(distance_m))
-        rig.run(0.1, STAND)
-        assert [rig.reading(sensor) for sensor in ("s9", "s10", "s11")] == pytest.approx([counts] * 3, abs=1)
+def test_the_law_of_the_reference(distance_m: float, counts: int, quiet_rig: Rig) -> None:
+    quiet_rig.robot.place(facing_wall(distance_m))
+    quiet_rig.run(0.1, STAND)
+    assert [quiet_rig.reading(sensor) for sensor in ("s9", "s10", "s11")] == pytest.approx([counts] * 3, abs=1)
 
 
 def test_thirty_centimetres_read_189_give_or_take_gain_and_noise() -> None:
@@ -54,28 +53,25 @@ def test_without_a_robot_seed_the_run_says_which_robot() -> None:
     assert hashes[0] == hashes[1]
 
 
-def test_a_touching_wall_looks_far_because_readings_fold_back() -> None:
-    with Rig(robot=quiet_robot()) as rig:
-        readings = {}
-        for distance_m in (0.08, 0.05, 0.03, 0.005):
-            rig.robot.place(facing_wall(distance_m))
-            rig.run(0.1, STAND)
-            readings[distance_m] = rig.reading("s11")
-        assert readings == pytest.approx({0.08: 550, 0.05: 425, 0.03: 300, 0.005: 144}, abs=2)
+def test_a_touching_wall_looks_far_because_readings_fold_back(quiet_rig: Rig) -> None:
+    readings = {}
+    for distance_m in (0.08, 0.05, 0.03, 0.005):
+        quiet_rig.robot.place(facing_wall(distance_m))
+        quiet_rig.run(0.1, STAND)
+        readings[distance_m] = quiet_rig.reading("s11")
+    assert readings == pytest.approx({0.08: 550, 0.05: 425, 0.03: 300, 0.005: 144}, abs=2)
 
 
-def test_pressed_against_a_wall_it_still_sees_the_wall() -> None:
-    with Rig(robot=quiet_robot()) as rig:
-        rig.robot.place(facing_wall(0.1))
-        rig.drive(30, 30, 2.0)
-        assert rig.robot.touching
-        assert rig.reading("s11") == pytest.approx(144, abs=10)
+def test_pressed_against_a_wall_it_still_sees_the_wall(quiet_rig: Rig) -> None:
+    quiet_rig.robot.place(facing_wall(0.1))
+    quiet_rig.drive(30, 30, 2.0)
+    assert quiet_rig.robot.touching
+    assert quiet_rig.reading("s11") == pytest.approx(144, abs=10)
 
 
-def test_nothing_in_view_reads_the_floor() -> None:
-    with Rig(robot=quiet_robot()) as rig:
-        rig.run(0.1, STAND)
-        assert {rig.reading(sensor.name) for sensor in ROBOT.infrared.sensors} == {70}
+def test_nothing_in_view_reads_the_floor(quiet_rig: Rig) -> None:
+    quiet_rig.run(0.1, STAND)
+    assert {quiet_rig.reading(sensor.name) for sensor in ROBOT.infrared.sensors} == {70}
 
 
 def test_every_sensor_looks_where_the_table_says() -> None:
@@ -95,19 +91,18 @@ def test_every_sensor_looks_where_the_table_says() -> None:
             assert rig.reading(sensor.name) == pytest.approx(294, abs=1)
 
 
-def test_readings_repeat_for_about_four_cycles_and_each_sensor_has_its_own_rhythm() -> None:
-    with Rig() as rig:
-        rig.robot.place(facing_wall(0.15))
-        changes = {"s9": 0, "s10": 0, "s11": 0}
-        before = dict.fromkeys(changes, 0)
-        for _ in range(400):
-            rig.step(STAND)
-            for sensor in changes:
-                changes[sensor] += rig.reading(sensor) != before[sensor]
-                before[sensor] = rig.reading(sensor)
-        # 4 s at 28.7 to 47.9 ms, less the few new measurements that happen to equal the last.
-        assert all(70 <= count <= 140 for count in changes.values())
-        assert len(set(changes.values())) > 1
+def test_readings_repeat_for_about_four_cycles_and_each_sensor_has_its_own_rhythm(rig: Rig) -> None:
+    rig.robot.place(facing_wall(0.15))
+    changes = {"s9": 0, "s10": 0, "s11": 0}
+    before = dict.fromkeys(changes, 0)
+    for _ in range(400):
+        rig.step(STAND)
+        for sensor in changes:
+            changes[sensor] += rig.reading(sensor) != before[sensor]
+            before[sensor] = rig.reading(sensor)
+    # 4 s at 28.7 to 47.9 ms, less the few new measurements that happen to equal the last.
+    assert all(70 <= count <= 140 for count in changes.values())
+    assert len(set(changes.values())) > 1
 
 
 def test_noise_has_the_size_of_the_reference() -> None:
@@ -192,11 +187,10 @@ def test_rays_do_not_slip_through_corners() -> None:
         assert sight.distance_m(2.0, 2.0, dx / length_m, dy / length_m, 6.0) == pytest.approx(length_m)
 
 
-def test_place_gives_fresh_readings_at_once() -> None:
-    with Rig(robot=quiet_robot()) as rig:
-        rig.robot.place(half_turn(facing_wall(0.30)))
-        rig.step(STAND)
-        assert rig.reading("s14") == pytest.approx(189, abs=1)
-        rig.robot.place(Pose(2.0, 2.0, 0.0))
-        rig.step(STAND)
-        assert rig.reading("s14") == 70
+def test_place_gives_fresh_readings_at_once(quiet_rig: Rig) -> None:
+    quiet_rig.robot.place(half_turn(facing_wall(0.30)))
+    quiet_rig.step(STAND)
+    assert quiet_rig.reading("s14") == pytest.approx(189, abs=1)
+    quiet_rig.robot.place(Pose(2.0, 2.0, 0.0))
+    quiet_rig.step(STAND)
+    assert quiet_rig.reading("s14") == 70

@@ -1,4 +1,4 @@
-"""Length of a frame in bits, against two other counts: can-utils' and one that writes the bits down as text."""
+"""Length of a frame in bits, against can-utils and against the bits written as text."""
 
 import can
 import pytest
@@ -23,7 +23,7 @@ def any_frame(draw: st.DrawFn) -> can.Message:
 
 
 def written_out(frame: can.Message) -> tuple[str, str]:
-    """Arbitration field, and all bits from the start bit to the CRC, as ones and zeros without stuff bits."""
+    """Return the arbitration field, and the bits from the start bit to the CRC, as text without stuff bits."""
     remote = "1" if frame.is_remote_frame else "0"
     if frame.is_extended_id:
         identifier = f"{frame.arbitration_id:029b}"
@@ -71,19 +71,19 @@ def stuffed(bits: str) -> str:
         (message(0x1FFFFFFF, extended=True, remote=True), 71),
     ],
 )
-def test_a_frame_is_as_long_as_can_utils_counts(frame: can.Message, bits: int) -> None:
+def test_frame_bits_equal_those_of_can_utils(frame: can.Message, bits: int) -> None:
     assert frame_bits(frame) == bits
 
 
 @given(any_frame())
-def test_a_frame_is_as_long_as_its_bits_written_out(frame: can.Message) -> None:
+def test_frame_bits_equal_the_bits_written_out(frame: can.Message) -> None:
     _, bits = written_out(frame)
     # CRC delimiter, ACK slot, ACK delimiter, seven bits of end of frame
     assert frame_bits(frame) == len(stuffed(bits)) + 1 + 1 + 1 + 7
 
 
 @given(any_frame())
-def test_a_frame_is_no_longer_than_the_literature_says(frame: can.Message) -> None:
+def test_frame_bits_stay_within_published_bounds(frame: can.Message) -> None:
     """Davis and Burns 2007: at most 55 + 10 n bits, for 29 bits of identifier 80 + 10 n, interframe space included."""
     bits = frame_bits(frame) + 3
     data_bytes = len(frame.data)
@@ -94,9 +94,7 @@ def test_a_frame_is_no_longer_than_the_literature_says(frame: can.Message) -> No
 
 
 @given(any_frame(), any_frame())
-def test_the_wire_is_won_by_the_first_zero_where_two_arbitration_fields_differ(
-    one: can.Message, other: can.Message
-) -> None:
+def test_arbitration_key_orders_by_the_first_zero(one: can.Message, other: can.Message) -> None:
     first, second = written_out(one)[0], written_out(other)[0]
     # A field of 11 bits is compared with the beginning of one of 29 bits: its IDE bit is the last that counts.
     differing = [(a, b) for a, b in zip(first, second, strict=False) if a != b]
@@ -107,7 +105,7 @@ def test_the_wire_is_won_by_the_first_zero_where_two_arbitration_fields_differ(
 
 
 @given(any_frame(), st.binary(max_size=8))
-def test_two_frames_of_one_identifier_part_where_their_bits_differ(one: can.Message, payload: bytes) -> None:
+def test_bits_to_difference_finds_the_first_different_bit(one: can.Message, payload: bytes) -> None:
     other = message(one.arbitration_id, payload, extended=one.is_extended_id)
     one.is_remote_frame = False
     first, second = written_out(one)[1], written_out(other)[1]

@@ -1,4 +1,4 @@
-"""An end of the wire behaves as every bus does, and keeps order between threads."""
+"""Ends of a wire: the conformance suite of buses, full queues, threads."""
 
 import threading
 from collections.abc import Iterator
@@ -10,9 +10,8 @@ import pytest
 from hal.bus import BusError, CanBus
 from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import NodeSettings, SendingOrder
-from simbridge.wire.wire import Wire
 from tests.hal.bus_conformance import Behind, BusConformance, Join, joining
-from tests.simbridge.wires import ends_on, frame, others_frames, quiet_wire, settings
+from tests.simbridge.wires import ends_on, frame, new_wire, numbered, others_frames
 
 DEEP = NodeSettings(order=SendingOrder.FIFO, queue_frames=256, restart_s=0.1)
 
@@ -24,7 +23,7 @@ class TestWireEnd(BusConformance):
 
     @pytest.fixture
     def join(self) -> Iterator[Join]:
-        wire = self.wire = quiet_wire()
+        wire = self.wire = new_wire()
         with joining(lambda: CanBus("wire", lambda _: WireInterface(wire, DEEP))) as join:
             yield join
 
@@ -32,15 +31,14 @@ class TestWireEnd(BusConformance):
         self.wire.advance(self.wire.now_s() + 0.05)
 
 
-def test_a_queue_holds_as_many_frames_as_it_is_set_to_and_then_says_so() -> None:
-    small = NodeSettings(order=SendingOrder.FIFO, queue_frames=10, restart_s=None)
-    wire = quiet_wire()
-    bus = CanBus("wire", lambda _: WireInterface(wire, small))
+def test_end_with_a_full_queue_raises_until_it_drains() -> None:
+    wire = new_wire()
+    bus = CanBus("wire", lambda _: WireInterface(wire, DEEP.model_copy(update={"queue_frames": 10})))
     (listener,) = ends_on(wire, 1)
     port = bus.telemetry_port()
     for _ in range(10):
         port.send(frame(0x09))
-    with pytest.raises(BusError, match=r"bus wire: sending failed \(transmit queue is full\)"):
+    with pytest.raises(BusError):
         port.send(frame(0x09))
     wire.advance(0.001)
     port.send(frame(0x0A))
@@ -48,19 +46,18 @@ def test_a_queue_holds_as_many_frames_as_it_is_set_to_and_then_says_so() -> None
     assert [message.arbitration_id for message in others_frames(listener)] == [0x09] * 10 + [0x0A]
 
 
-def test_an_end_that_is_shut_down_says_so() -> None:
-    (end,) = ends_on(quiet_wire(), 1)
+def test_end_after_shutdown_raises() -> None:
+    (end,) = ends_on(new_wire(), 1)
     end.shutdown()
-    with pytest.raises(can.CanOperationError, match="this end of the wire is shut down"):
+    with pytest.raises(can.CanOperationError):
         end.recv(0)
-    with pytest.raises(can.CanOperationError, match="this end of the wire is shut down"):
+    with pytest.raises(can.CanOperationError):
         end.send(frame(0x09))
 
 
-def test_threads_that_send_at_once_lose_nothing_and_keep_their_order() -> None:
-    wire = Wire(settings(bit_rate_bit_s=1_000_000_000), seed=1)
-    deep = NodeSettings(order=SendingOrder.FIFO, queue_frames=1000, restart_s=None)
-    senders = ends_on(wire, 3, deep)
+def test_ends_in_threads_lose_nothing_and_keep_order() -> None:
+    wire = new_wire(bit_rate_bit_s=1_000_000_000)
+    senders = ends_on(wire, 3, DEEP.model_copy(update={"queue_frames": 1000}))
     (listener,) = ends_on(wire, 1)
     ticks = iter(range(1_000_000))
     wire.follow(lambda: next(ticks) * 1e-6)  # each call is a microsecond later
@@ -68,7 +65,7 @@ def test_threads_that_send_at_once_lose_nothing_and_keep_their_order() -> None:
 
     def send_all(end: WireInterface, frame_id: int) -> None:
         for number in numbers:
-            end.send(frame(frame_id, f"{number:016x}"))
+            end.send(numbered(frame_id, number))
 
     threads = [threading.Thread(target=send_all, args=(end, at)) for at, end in enumerate(senders)]
     for thread in threads:

@@ -1,4 +1,4 @@
-"""No frame waits longer than the analysis of Davis, Burns, Bril and Lukkien allows (Real-Time Systems 35, 2007)."""
+"""Waiting times stay below the bound of Davis, Burns, Bril and Lukkien (Real-Time Systems 35, 2007)."""
 
 from dataclasses import dataclass
 from math import ceil
@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from hal.frame import Frame
 from simbridge.wire.wire import Wire
 from tests.examples import examples
-from tests.simbridge.wires import BY_IDENTIFIER, US, confirmations, ends_on, quiet_wire, stamp_us
+from tests.simbridge.wires import BY_IDENTIFIER, US, confirmations, ends_on, new_wire, stamp_us
 
 SPAN_US = 30_000
 
 
 @dataclass(frozen=True)
 class Stream:
-    """A frame that is queued again and again; microseconds, which are bits here."""
+    """Frame queued periodically; microseconds, which are bits here."""
 
     frame_id: int
     data_bytes: int
@@ -31,10 +31,7 @@ class Stream:
 
 
 def worst_response_us(stream: Stream, streams: list[Stream]) -> int:
-    """The longest from queueing to the end of the frame, over all its instances in the longest busy period.
-
-    Written down from the paper (equations 5 to 9, no jitter).
-    """
+    """Return the longest time from queueing to the end of a frame in the busy period (equations 5 to 9, no jitter)."""
     better = [each for each in streams if each.frame_id < stream.frame_id]
     blocking = max((each.longest_us for each in streams if each.frame_id > stream.frame_id), default=0)
     busy, before = stream.longest_us, 0
@@ -94,28 +91,26 @@ def longest_waits_us(wire: Wire, streams: list[Stream], payloads: st.DataObject)
 
 
 def check_waits(streams: list[Stream], payloads: st.DataObject) -> None:
-    longest_us = longest_waits_us(quiet_wire(), streams, payloads)
+    longest_us = longest_waits_us(new_wire(), streams, payloads)
     for stream in streams:
         assert longest_us[stream.frame_id] <= worst_response_us(stream, streams)
 
 
 @given(schedulable(), st.data())
-def test_no_frame_waits_longer_than_the_analysis_allows(streams: list[Stream], payloads: st.DataObject) -> None:
+def test_wire_waits_stay_below_the_analysed_bound(streams: list[Stream], payloads: st.DataObject) -> None:
     check_waits(streams, payloads)
 
 
 @pytest.mark.deep
 @examples(3000)
 @given(schedulable(), st.data())
-def test_no_frame_of_very_many_waits_longer_than_the_analysis_allows(
-    streams: list[Stream], payloads: st.DataObject
-) -> None:
+def test_wire_many_waits_stay_below_the_analysed_bound(streams: list[Stream], payloads: st.DataObject) -> None:
     check_waits(streams, payloads)
 
 
-def test_the_bound_is_met_where_everything_comes_at_once_and_is_stuffed_to_the_full() -> None:
-    """A check that could not fail would be none: the worst case comes within the stuffing of a few CRCs."""
-    wire = quiet_wire()
+def test_wire_worst_case_comes_close_to_the_bound() -> None:
+    """Proof that the check above can fail: the worst case is within the stuffing of a few CRCs of the bound."""
+    wire = new_wire()
     nodes = ends_on(wire, 4, BY_IDENTIFIER)
     streams = [Stream(frame_id, 8, 10_000, 0, 0) for frame_id in (0x000, 0x001, 0x002, 0x003)]
     nodes[3].send(Frame(0x00F, bytes(8)))
