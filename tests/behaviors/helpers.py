@@ -1,4 +1,4 @@
-"""What the robot senses in a test: distances become counts by the sensors' own law."""
+"""Sensor readings for tests; distances become counts by the infra-red law."""
 
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings, load_robot
@@ -8,11 +8,20 @@ SENSORS = ROBOT.infrared.names
 
 
 def counts(nothing_nearer_than_m: float = 0.6, **distances_m: float) -> tuple[int, ...]:
-    """Counts of a robot that sees walls at these distances from the faces of the named sensors, else nothing."""
+    """Return the counts of walls at these distances from the faces of the named sensors."""
     return tuple(round(ROBOT.infrared.counts_at(distances_m.get(name, nothing_nearer_than_m))) for name in SENSORS)
 
 
 def sensed(
     infrared_counts: tuple[int, ...] = (70,) * len(SENSORS), *, left_ticks: int = 0, right_ticks: int = 0
 ) -> SensorReadings:
-    return SensorReadings(0.0, infrared_counts, 0.0, left_ticks, right_ticks, 0.0, 0, 0.0)
+    return SensorReadings(
+        time_s=0.0,
+        infrared_counts=infrared_counts,
+        infrared_age_s=0.0,
+        encoder_left_ticks=left_ticks,
+        encoder_right_ticks=right_ticks,
+        encoder_age_s=0.0,
+        bumpers=0,
+        bumper_age_s=0.0,
+    )

@@ -1,4 +1,4 @@
-"""Keeping distance to a wall: it steers the right way, on either side."""
+"""Control loop along a wall, on either side."""
 
 import math
 
@@ -31,7 +31,7 @@ def driven(side: str, front_m: float, back_m: float) -> WheelSpeeds:
 
 
 def turn_towards_wall_m_s(side: str, front_m: float, back_m: float) -> float:
-    """How much faster the wheels on the far side run: positive turns the robot to the wall."""
+    """Return the excess speed of the far side; positive turns the robot to the wall."""
     speeds = driven(side, front_m, back_m)
     left_turn = speeds.right_m_s - speeds.left_m_s
     return left_turn if side == "left" else -left_turn
@@ -65,9 +65,7 @@ def test_left_and_right_are_mirror_images() -> None:
 
 
 @given(st.tuples(*[st.integers(0, 1023)] * 18), st.sampled_from(sorted(SIDES)))
-def test_whatever_the_sensors_show_no_wheel_runs_backwards_or_faster_than_twice(
-    infrared_counts: tuple[int, ...], side: str
-) -> None:
+def test_speeds_stay_between_zero_and_twice_the_set_speed(infrared_counts: tuple[int, ...], side: str) -> None:
     speeds = along(side).step(sensed(infrared_counts))
     assert all(math.isfinite(speed) and -1e-12 <= speed <= 0.6 + 1e-12 for speed in speeds)
     assert sum(speeds) == pytest.approx(2 * 0.30)
@@ -77,6 +75,6 @@ def test_whatever_the_sensors_show_no_wheel_runs_backwards_or_faster_than_twice(
     ("front", "back"),
     [("s1", "s1"), ("s2", "s1"), ("s1", "s6"), ("s9", "s12"), ("s9", "s10")],
 )
-def test_two_sensors_that_do_not_see_one_wall_beside_the_robot_are_refused(front: str, back: str) -> None:
-    with pytest.raises(ValueError, match=f"{front} and {back} must look to the same side, the first before the second"):
+def test_sensors_of_different_sides_are_refused(front: str, back: str) -> None:
+    with pytest.raises(ValueError, match=f"{front} and {back}"):
         along("left", front=front, back=back)

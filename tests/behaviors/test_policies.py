@@ -1,4 +1,4 @@
-"""What the reference policies say, as the shipped tasks set them; wall following has stories of its own."""
+"""Reference policies with the settings of the shipped tasks."""
 
 import pytest
 from hypothesis import assume, given
@@ -27,18 +27,18 @@ def said(task: str, distances_m: dict[str, float], behaviour: str = "") -> str:
     return POLICIES[task].choose(counts(**distances_m), behaviour)
 
 
-def beside(left_m: float = 0.6, right_m: float = 0.6) -> dict[str, float]:
-    """Walls along both sides."""
+def walls_at(left_m: float = 0.6, right_m: float = 0.6) -> dict[str, float]:
+    """Return the distances of walls along both sides."""
     return dict.fromkeys(LEFT, left_m) | dict.fromkeys(RIGHT, right_m)
 
 
 def mirrored_view(view: tuple[int, ...]) -> tuple[int, ...]:
-    """What a robot sees in the world's mirror image."""
+    """Return the view in the world's mirror image."""
     return tuple(view[SENSORS.index(_ACROSS.get(name, name))] for name in SENSORS)
 
 
 def mirrored(name: str) -> str:
-    """An action, or a taught behaviour, the other way round."""
+    """Return the mirror image of an action or a taught behaviour."""
     swapped = {"left": "right", "right": "left"}
     return "_".join(swapped.get(word, word) for word in name.split("_"))
 
@@ -49,9 +49,7 @@ def mirrored(name: str) -> str:
 @pytest.mark.parametrize("name", TASKS)
 @given(view=VIEWS, before=VIEWS)
 @examples(60)
-def test_each_names_an_action_of_the_repertoire_whatever_is_seen_and_was_seen(
-    name: str, view: tuple[int, ...], before: tuple[int, ...]
-) -> None:
+def test_policies_name_actions_and_have_no_memory(name: str, view: tuple[int, ...], before: tuple[int, ...]) -> None:
     task, policy = TASKS[name], POLICIES[name]
     for behaviour in task.behaviours:
         action = task.policy.build(ROBOT.infrared).choose(view, behaviour)
@@ -61,7 +59,7 @@ def test_each_names_an_action_of_the_repertoire_whatever_is_seen_and_was_seen(
             assert policy.choose(view, behaviour) == action
 
 
-def test_a_policy_is_found_by_its_name() -> None:
+def test_policy_settings_finds_kinds_by_name() -> None:
     assert policy_settings("wall_following") is WallFollowingSettings
     assert issubclass(policy_settings("streets"), PolicySettings)
     with pytest.raises(
@@ -83,17 +81,16 @@ def test_a_policy_is_found_by_its_name() -> None:
         ({"s16": 0.25}, "whirl_left"),  # the same way from either side
         ({"s15": 0.4}, "curve_right"),
         ({"s16": 0.4}, "curve_left"),
-        (beside(0.11, 0.11), "flee"),  # along the walls
+        (walls_at(0.11, 0.11), "flee"),  # along the walls
         (dict.fromkeys(("s12", "s13", "s14"), 0.1), "flee"),  # what is behind
     ],
 )
-def test_fleeing(distances_m: dict[str, float], action: str) -> None:
+def test_fleeing_policy(distances_m: dict[str, float], action: str) -> None:
     assert said("fleeing", distances_m) == action
 
 
 @given(view=VIEWS)
-def test_who_flees_turns_on_the_spot_to_one_side_only(view: tuple[int, ...]) -> None:
-    """Neighbouring RLAs that turn to either side would turn the robot to and fro for ever."""
+def test_fleeing_policy_spins_to_one_side_only(view: tuple[int, ...]) -> None:
     assert POLICIES["fleeing"].choose(view, "") in {"flee", "curve_left", "curve_right", "whirl_left"}
 
 
@@ -116,12 +113,12 @@ def test_who_flees_turns_on_the_spot_to_one_side_only(view: tuple[int, ...]) -> 
         ({"s4": 0.25, "s11": 0.12}, "curve_left"),  # it never looks ahead
     ],
 )
-def test_the_circle(distances_m: dict[str, float], action: str) -> None:
+def test_circle_policy(distances_m: dict[str, float], action: str) -> None:
     assert said("circle", distances_m) == action
 
 
 @given(view=VIEWS)
-def test_the_circle_turns_on_the_spot_until_the_object_is_on_the_left(view: tuple[int, ...]) -> None:
+def test_circle_policy_without_an_object_spins_left(view: tuple[int, ...]) -> None:
     unseen = tuple(70 if name in LEFT else seen for name, seen in zip(SENSORS, view, strict=True))
     assert POLICIES["circle"].choose(unseen, "") == "spin_left"
 
@@ -152,13 +149,13 @@ def test_the_circle_turns_on_the_spot_until_the_object_is_on_the_left(view: tupl
         ({"s10": 0.15, "s16": 0.30}, "spin_left"),
     ],
 )
-def test_the_eight(distances_m: dict[str, float], action: str) -> None:
+def test_eight_policy(distances_m: dict[str, float], action: str) -> None:
     assert said("eight", distances_m) == action
 
 
 @st.composite
 def columns(draw: st.DrawFn) -> dict[str, float]:
-    """One column to each side, or to one side alone, of which one lies farther ahead."""
+    """Draw one column per side, or one on one side alone; one of both lies farther ahead."""
     from_the_front = (("s15", "s16"), *zip(LEFT, RIGHT, strict=True), ("s17", "s18"), ())
     left, right = draw(st.permutations(from_the_front))[:2]
     distance_m = st.floats(0.11, 0.30)
@@ -167,10 +164,8 @@ def columns(draw: st.DrawFn) -> dict[str, float]:
 
 @given(seen=columns(), in_front=st.one_of(st.none(), st.tuples(*[st.floats(0.1, 0.6)] * 3)))
 @examples(200)
-def test_the_eight_is_the_same_to_either_side(
-    seen: dict[str, float], in_front: tuple[float, float, float] | None
-) -> None:
-    """But for two columns equally far ahead or equally near, of which one has to be chosen."""
+def test_eight_policy_is_symmetric(seen: dict[str, float], in_front: tuple[float, float, float] | None) -> None:
+    """One side is preferred only for two columns equally far ahead or equally near."""
     view = counts(**seen, **(dict(zip(("s9", "s11", "s10"), in_front, strict=True)) if in_front else {}))
     to_left, to_right = (
         max(view[SENSORS.index(name)] for name in names) for names in (("s15", *LEFT), ("s16", *RIGHT))
@@ -181,7 +176,7 @@ def test_the_eight_is_the_same_to_either_side(
 
 # Streets
 
-MIDDLE = beside(0.235, 0.235)
+MIDDLE = walls_at(0.235, 0.235)
 AT_A_CROSSING = MIDDLE | dict.fromkeys(("s1", "s3", "s5", "s7"), 0.6)
 ASKEW = {"s1": 0.19, "s3": 0.22, "s4": 0.25, "s2": 0.28}
 
@@ -191,12 +186,12 @@ ASKEW = {"s1": 0.19, "s3": 0.22, "s4": 0.25, "s2": 0.28}
     [
         ("straight_on", MIDDLE, "forward"),
         ("turn_left", MIDDLE, "forward"),
-        ("straight_on", beside(0.20, 0.27), "bear_right"),
-        ("straight_on", beside(0.27, 0.20), "bear_left"),
-        ("turn_right", beside(0.20, 0.27), "bear_right"),
-        ("straight_on", beside(0.35, 0.12), "sharp_left"),
-        ("straight_on", beside(left_m=0.21), "forward"),
-        ("straight_on", beside(left_m=0.19), "bear_right"),  # one wall is enough
+        ("straight_on", walls_at(0.20, 0.27), "bear_right"),
+        ("straight_on", walls_at(0.27, 0.20), "bear_left"),
+        ("turn_right", walls_at(0.20, 0.27), "bear_right"),
+        ("straight_on", walls_at(0.35, 0.12), "sharp_left"),
+        ("straight_on", walls_at(left_m=0.21), "forward"),
+        ("straight_on", walls_at(left_m=0.19), "bear_right"),  # one wall is enough
         ("straight_on", ASKEW, "sharp_right"),  # the nose turns to it
         ("straight_on", AT_A_CROSSING, "forward"),
         ("turn_left", AT_A_CROSSING, "sharp_left"),
@@ -211,16 +206,58 @@ ASKEW = {"s1": 0.19, "s3": 0.22, "s4": 0.25, "s2": 0.28}
         ("straight_on", {"s10": 0.15}, "spin_left"),
     ],
 )
-def test_the_streets(behaviour: str, distances_m: dict[str, float], action: str) -> None:
+def test_streets_policy(behaviour: str, distances_m: dict[str, float], action: str) -> None:
     assert said("streets", distances_m, behaviour) == action
 
 
 @pytest.mark.parametrize("behaviour", TASKS["streets"].behaviours)
 @given(view=st.one_of(VIEWS, st.tuples(*[st.integers(70, 550)] * 18)))
 @examples(200)
-def test_the_streets_are_the_same_to_either_side(behaviour: str, view: tuple[int, ...]) -> None:
-    """But for a wall dead ahead on the way straight on, where one side has to be chosen."""
+def test_streets_policy_is_symmetric(behaviour: str, view: tuple[int, ...]) -> None:
+    """One side is preferred only for a wall dead ahead on the way straight on."""
     ahead = [ROBOT.infrared.distance_m(view[SENSORS.index(name)]) for name in ("s9", "s10")]
     assume(behaviour != "straight_on" or ahead[0] != ahead[1])
     policy = POLICIES["streets"]
     assert policy.choose(mirrored_view(view), mirrored(behaviour)) == mirrored(policy.choose(view, behaviour))
+
+
+# Wall following
+
+
+def wall_on_the_left(front_m: float, back_m: float | None = None) -> dict[str, float]:
+    """Return the distances of the four left sensors along a straight wall."""
+    back_m = front_m if back_m is None else back_m
+    return {
+        name: front_m + (back_m - front_m) * share
+        for name, share in (("s1", 0), ("s3", 1 / 3), ("s4", 2 / 3), ("s2", 1))
+    }
+
+
+@pytest.mark.parametrize(
+    ("distances_m", "action"),
+    [
+        (wall_on_the_left(0.20), "forward"),
+        (wall_on_the_left(0.23), "bear_left"),
+        (wall_on_the_left(0.30), "curve_left"),
+        (wall_on_the_left(0.17), "bear_right"),
+        (wall_on_the_left(0.12), "curve_right"),
+        (wall_on_the_left(0.25, 0.20), "bear_left"),  # turned away from it
+        (wall_on_the_left(0.20, 0.26), "bear_right"),  # turned to it
+        (wall_on_the_left(0.20) | {"s11": 0.24}, "spin_right"),
+        (wall_on_the_left(0.20) | {"s9": 0.24}, "spin_right"),
+        (wall_on_the_left(0.20) | {"s10": 0.24}, "spin_right"),
+        (wall_on_the_left(0.20) | {"s11": 0.27}, "forward"),
+        (wall_on_the_left(0.20) | {"s15": 0.20}, "spin_right"),
+        (wall_on_the_left(0.20) | {"s15": 0.24}, "forward"),
+        (wall_on_the_left(0.20) | {"s4": 0.08}, "spin_right"),  # nearer than the sensors can tell
+        ({}, "curve_left"),  # nothing anywhere
+        (wall_on_the_left(0.20) | {"s1": 0.6}, "forward"),  # the wall ends at the nose: not yet
+        (wall_on_the_left(0.20) | {"s1": 0.6, "s3": 0.6}, "curve_left"),
+        (wall_on_the_left(0.20) | {"s1": 0.6, "s3": 0.6, "s15": 0.27}, "forward"),  # its corner is still near ahead
+        (wall_on_the_left(0.20) | {"s1": 0.6, "s3": 0.6, "s16": 0.12}, "spin_left"),  # no room for a curve
+        (wall_on_the_left(0.20) | {"s16": 0.12}, "forward"),
+        (wall_on_the_left(0.20) | dict.fromkeys(("s5", "s6", "s7", "s8", "s12"), 0.2), "forward"),
+    ],
+)
+def test_wall_following_policy(distances_m: dict[str, float], action: str) -> None:
+    assert said("wall_following", distances_m) == action

@@ -16,7 +16,7 @@ from tests.behaviors.helpers import ROBOT, counts, sensed
 BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
 
 
-def test_each_kind_of_action_is_built_in_the_order_of_the_file() -> None:
+def test_load_repertoire_builds_kinds_in_file_order() -> None:
     repertoire = load_repertoire("basic", ROBOT)
     assert list(repertoire)[:3] == ["forward", "bear_left", "bear_right"]
     assert type(repertoire["spin_left"]) is MotorPrimitive
@@ -24,7 +24,7 @@ def test_each_kind_of_action_is_built_in_the_order_of_the_file() -> None:
     assert type(repertoire["quarter_turn_left"]) is TurnByAngle
 
 
-def test_a_motor_primitive_drives_the_same_whatever_it_senses_and_however_long() -> None:
+def test_motor_primitive_ignores_the_senses() -> None:
     curve = load_repertoire("basic", ROBOT)["curve_left"]
     for infrared_counts in (counts(), counts(s9=0.1), (0,) * 18, (1023,) * 18):
         curve.start()
@@ -39,9 +39,7 @@ def test_a_motor_primitive_drives_the_same_whatever_it_senses_and_however_long()
         ("back_sensor: s2,", "back_sensor: s1,", "actions.14 (along_left_wall): s1 and s1 must look to the same side"),
     ],
 )
-def test_an_action_that_the_robot_cannot_do_is_refused_with_its_place(
-    old: str, new: str, told: str, tmp_path: Path
-) -> None:
+def test_load_repertoire_wrong_sensor_names_the_entry(old: str, new: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "repertoire.yaml"
     path.write_text(BASIC.replace(old, new, 1))
     with pytest.raises(SettingsError) as caught:

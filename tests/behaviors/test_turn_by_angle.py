@@ -1,4 +1,4 @@
-"""Turning on the spot by an angle, with wheels that do at once what they are told."""
+"""Turn on the spot by an angle, with wheels that follow their set points at once."""
 
 import math
 
@@ -19,7 +19,7 @@ def turn(angle_deg: float) -> TurnByAngle:
 
 
 def drive(behaviour: TurnByAngle, ticks: int, first: WheelSpeeds = STANDSTILL) -> tuple[float, WheelSpeeds]:
-    """Angle in degrees by which the robot has turned left, and its last set points; it comes in moving at `first`."""
+    """Return the angle turned to the left in deg and the last set points; `first`: initial wheel speeds."""
     moving, turned_m = first, 0.0
     for _ in range(ticks):
         left_ticks, right_ticks = (round(speed * PERIOD_S / METRES_PER_TICK) for speed in moving)
@@ -29,14 +29,14 @@ def drive(behaviour: TurnByAngle, ticks: int, first: WheelSpeeds = STANDSTILL) -
 
 
 @pytest.mark.parametrize("angle_deg", [90.0, -90.0, 30.0, -360.0, 5.0])
-def test_turns_by_the_angle_and_then_stands(angle_deg: float) -> None:
+def test_turn_reaches_the_angle_and_stands(angle_deg: float) -> None:
     degrees_per_tick = math.degrees(2 * 0.20 * PERIOD_S / TRACK_M)
     turned_deg, last = drive(turn(angle_deg), 2000)
     assert turned_deg == pytest.approx(angle_deg, abs=degrees_per_tick)
     assert last == STANDSTILL
 
 
-def test_it_has_finished_when_it_stands_and_not_before() -> None:
+def test_turn_is_finished_once_it_stands() -> None:
     behaviour = turn(90.0)
     turned_deg = drive(behaviour, 1)[0]
     while not behaviour.finished:
@@ -47,29 +47,29 @@ def test_it_has_finished_when_it_stands_and_not_before() -> None:
     assert not behaviour.finished
 
 
-def test_a_positive_angle_turns_left() -> None:
+def test_turn_positive_angle_is_left() -> None:
     assert turn(90.0).step(sensed()) == WheelSpeeds(-0.20, 0.20)
     assert turn(-90.0).step(sensed()) == WheelSpeeds(0.20, -0.20)
 
 
-def test_no_angle_is_no_turn() -> None:
+def test_turn_by_zero_stands() -> None:
     assert turn(0.0).step(sensed()) == STANDSTILL
 
 
-def test_driving_straight_on_is_no_turn() -> None:
+def test_turn_ignores_straight_motion() -> None:
     behaviour = turn(90.0)
     for _ in range(1000):
         assert behaviour.step(sensed(left_ticks=300, right_ticks=300)) == WheelSpeeds(-0.20, 0.20)
 
 
-def test_each_start_is_a_turn_of_the_whole_angle() -> None:
+def test_turn_start_restarts_the_angle() -> None:
     behaviour = turn(90.0)
     for _ in range(3):
         behaviour.start()
         assert drive(behaviour, 2000)[0] == pytest.approx(90.0, abs=0.6)
 
 
-def test_swinging_the_other_way_at_first_does_not_shorten_the_turn() -> None:
+def test_turn_swing_the_other_way_lengthens_it() -> None:
     behaviour = turn(90.0)
     for _ in range(20):  # wheels that still turn right from the action before
         assert behaviour.step(sensed(left_ticks=100, right_ticks=-100)) == WheelSpeeds(-0.20, 0.20)

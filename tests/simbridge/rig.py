@@ -1,4 +1,4 @@
-"""A simulated robot and the notebook's end of its bus, for stories that drive it directly."""
+"""Builders of worlds, and a simulated robot with the notebook's end of its bus."""
 
 import itertools
 import math
@@ -7,11 +7,13 @@ from typing import Self
 
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
-from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, SystemControl, control_frame
+from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
 from hal.robot_settings import RobotSettings, load_robot
 from hal.simulation import Pose
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from simbridge.sight import RayCaster
 from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world import World
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 
 CODEC: Codec = load_codec()
@@ -29,7 +31,7 @@ def room(
     boxes: Iterable[PolygonObstacleSettings] = (),
     rays: int = 1,
 ) -> WorldSettings:
-    """A square room with the robot in the middle, looking along x."""
+    """Return a square room with the robot in the middle, looking along x."""
     return WorldSettings(
         name="room",
         size_m=(side_m, side_m),
@@ -43,7 +45,7 @@ def room(
 
 
 class Rig:
-    """Robot and notebook; what the robot sent is kept in `heard`, newest frame of each message."""
+    """Robot and notebook; `heard` holds the newest values of each message from the robot."""
 
     def __init__(
         self,
@@ -72,7 +74,7 @@ class Rig:
         self._control_port.send(control_frame(control))
 
     def step(self, control: Control | None = None) -> None:
-        """One cycle, after at most one CONTROL frame."""
+        """Simulate one cycle after at most one CONTROL frame."""
         if control is not None:
             self.tell(control)
         self.robot.step()
@@ -83,7 +85,7 @@ class Rig:
             self.step(control)
 
     def drive(self, left_cm_s: int, right_cm_s: int, seconds: float) -> None:
-        """As a careful notebook does: set points change by at most 3 cm/s from cycle to cycle."""
+        """Drive with set points that change by at most 3 cm/s per cycle."""
         for _ in range(round(seconds / 0.01)):
             left, right = self._speeds_cm_s
             self._speeds_cm_s = (
@@ -104,12 +106,12 @@ class Rig:
 
     @property
     def speed_m_s(self) -> float:
-        """Speed of the wheels by the encoders, mean of both sides."""
+        """Return the mean rim speed of both sides by the encoders."""
         left, right = self.heard["ENCODER"]
         return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
 
     def reading(self, sensor: str) -> int:
-        """Newest count of a sensor as the bus told it."""
+        """Return the newest count of a sensor on the bus."""
         channel = next(each.channel for each in ROBOT.infrared.sensors if each.name == sensor)
         for name, values in self.heard.items():
             signals = CODEC.message(name).signals
@@ -126,19 +128,34 @@ class Rig:
 
 
 def facing_wall(distance_m: float, side_m: float = 4.0) -> Pose:
-    """In the square room, looking at the wall at x = side with the front sensors so far from it."""
+    """Return a pose in the square room that faces the wall at x = side at this distance of the front sensors."""
     return Pose(side_m - distance_m - ROBOT.geometry.outline_length_m / 2, side_m / 2, 0.0)
 
 
 def quiet_robot(**infrared: float) -> RobotSettings:
-    """The shipped robot with sensors without noise and spread, and other settings of the infra-red law."""
+    """Return the shipped robot without sensor noise and spread; `infrared` changes other settings."""
     update = {"noise_share": 0.0, "noise_least_counts": 0.0, "gain_spread_share": 0.0, **infrared}
     return ROBOT.model_copy(update={"infrared": ROBOT.infrared.model_copy(update=update)})
 
 
-def reset() -> SystemControl:
-    return SystemControl(Mode.MC_RESET)
-
-
 def half_turn(pose: Pose) -> Pose:
     return Pose(pose.x_m, pose.y_m, pose.heading_rad + math.pi)
+
+
+def left_clearances_m(world: WorldSettings, start: int) -> list[float]:
+    """Return the distance to the wall on the left of each left sensor at a start pose."""
+    pose = world.start_poses[start].pose
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    rays = RayCaster(World(world), 2.0)
+    rays.set_origin(pose.x_m, pose.y_m)
+    return [
+        rays.distance_m(
+            pose.x_m + sensor.x_m * cos - sensor.y_m * sin,
+            pose.y_m + sensor.x_m * sin + sensor.y_m * cos,
+            -sin,
+            cos,
+            1.5,
+        )
+        for sensor in ROBOT.infrared.sensors
+        if sensor.heading_deg == 90
+    ]

@@ -11,7 +11,7 @@ HALF_LENGTH_M, HALF_WIDTH_M = ROBOT.geometry.outline_length_m / 2, ROBOT.geometr
 
 
 def ahead(left_m: float) -> Contact:
-    """A wall ahead that touches the front face so far left of its middle."""
+    """Return a contact on the front face, `left_m` from its middle."""
     return Contact(HALF_LENGTH_M, left_m, 1.0, 0.0)
 
 
@@ -20,7 +20,7 @@ def behind(left_m: float) -> Contact:
 
 
 @pytest.mark.parametrize("rounding_m", [-1e-12, 0.0, 1e-12, 5e-4])
-def test_at_the_bodys_very_corner_the_outer_bumper_is_pressed_however_its_place_is_rounded(rounding_m: float) -> None:
+def test_bumpers_contact_at_a_corner_presses_the_outer_one(rounding_m: float) -> None:
     edge_m = HALF_WIDTH_M + rounding_m
     assert BUMPERS.pressed([ahead(edge_m)]) == 0b000001
     assert BUMPERS.pressed([ahead(-edge_m)]) == 0b000100
@@ -29,16 +29,16 @@ def test_at_the_bodys_very_corner_the_outer_bumper_is_pressed_however_its_place_
 
 
 @pytest.mark.parametrize(("left_m", "bits"), [(0.12, 0b001), (0.06, 0b001), (0.04, 0b010), (0.0, 0b010), (-0.1, 0b100)])
-def test_away_from_the_edges_one_bumper_is_pressed(left_m: float, bits: int) -> None:
+def test_bumpers_contact_on_the_face_presses_one(left_m: float, bits: int) -> None:
     assert BUMPERS.pressed([ahead(left_m)]) == bits
 
 
-def test_what_is_beside_the_bar_presses_nothing() -> None:
+def test_bumpers_contact_off_the_bar_presses_none() -> None:
     assert BUMPERS.pressed([ahead(HALF_WIDTH_M + 0.002), ahead(HALF_WIDTH_M + 0.003)]) == 0
     assert BUMPERS.pressed([Contact(HALF_LENGTH_M, HALF_WIDTH_M, 0.2, 0.98)]) == 0  # a wall along the side
     assert BUMPERS.pressed([]) == 0
 
 
-def test_a_wall_that_meets_the_face_at_two_points_presses_all_between() -> None:
+def test_bumpers_two_contacts_press_all_between() -> None:
     assert BUMPERS.pressed([ahead(HALF_WIDTH_M), ahead(-HALF_WIDTH_M)]) == 0b000111
     assert BUMPERS.pressed([ahead(0.1), ahead(0.0)]) == 0b000011

@@ -27,7 +27,7 @@ def robot_with_track(track_m: float) -> RobotSettings:
         (RawControl(RawSide(350), RawSide(350)), 0.0),  # the dead band
     ],
 )
-def test_each_mode_drives_at_the_wanted_speed(control: Control, speed_m_s: float, rig: Rig) -> None:
+def test_each_mode_drives_at_its_set_point(control: Control, speed_m_s: float, rig: Rig) -> None:
     rig.run(2.0, control)
     assert rig.speed_m_s == pytest.approx(speed_m_s, abs=0.002)
     before = rig.robot.pose
@@ -35,7 +35,7 @@ def test_each_mode_drives_at_the_wanted_speed(control: Control, speed_m_s: float
     assert rig.robot.pose.x_m - before.x_m == pytest.approx(2.0 * speed_m_s, rel=0.05, abs=1e-6)
 
 
-def test_encoders_tell_how_far_the_wheels_rolled_with_every_fraction_counted(rig: Rig) -> None:
+def test_encoders_sum_up_to_the_distance_rolled(rig: Rig) -> None:
     rig.drive(7, 7, 5.0)
     rig.drive(0, 0, 1.0)
     rolled_m = sum(rig.ticks) / 2 * ROBOT.geometry.metres_per_tick
@@ -43,12 +43,12 @@ def test_encoders_tell_how_far_the_wheels_rolled_with_every_fraction_counted(rig
     assert rig.heard["GETSPEED"] == tuple(rig.ticks)
 
 
-def test_speed_follows_the_set_point_with_the_lag_of_the_speed_loop(rig: Rig) -> None:
+def test_speed_follows_the_set_point_with_its_lag(rig: Rig) -> None:
     rig.run(0.12, SpeedControl(Mode.SPEED_CM, 10, 10))
     assert rig.speed_m_s == pytest.approx(0.10 * (1 - math.exp(-1)), rel=0.02)
 
 
-def test_motors_keep_the_limits_of_acceleration_and_braking(rig: Rig) -> None:
+def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
     speeds = [0.0]
     for control in [SpeedControl(Mode.SPEED_CM, 44, 44)] * 100 + [STAND] * 100:
         rig.step(control)
@@ -77,7 +77,7 @@ def test_a_curve_runs_along_its_circle(rig: Rig) -> None:
     assert rig.robot.collisions == 0
 
 
-def test_slip_differs_from_seed_to_seed_and_stays_small() -> None:
+def test_slip_differs_between_seeds_and_stays_small() -> None:
     ends = []
     for seed in range(4):
         with Rig(seed=seed) as rig:
@@ -98,7 +98,7 @@ def test_reversing_ramps_down_first(rig: Rig) -> None:
     assert speeds[-1] < -0.15
 
 
-def test_straight_into_a_wall_presses_the_bumpers_blocks_the_body_and_is_one_collision(rig: Rig) -> None:
+def test_wall_ahead_blocks_the_body_and_is_one_collision(rig: Rig) -> None:
     rig.robot.place(facing_wall(0.3))
     rig.drive(30, 30, 3.0)
     blocked = rig.robot.pose
@@ -110,7 +110,7 @@ def test_straight_into_a_wall_presses_the_bumpers_blocks_the_body_and_is_one_col
     assert (rig.robot.touching, rig.robot.bumped, rig.robot.collisions) == (True, True, 1)
 
 
-def test_backing_off_and_coming_again_is_a_second_collision(rig: Rig) -> None:
+def test_second_contact_is_a_second_collision(rig: Rig) -> None:
     rig.robot.place(facing_wall(0.1))
     rig.drive(20, 20, 2.0)
     rig.drive(-20, -20, 1.5)
@@ -120,14 +120,14 @@ def test_backing_off_and_coming_again_is_a_second_collision(rig: Rig) -> None:
     assert rig.robot.collisions == 2
 
 
-def test_backing_into_a_wall_presses_the_rear_bumpers(rig: Rig) -> None:
+def test_wall_behind_presses_the_rear_bumpers(rig: Rig) -> None:
     rig.robot.place(half_turn(facing_wall(0.1)))
     rig.drive(-20, -20, 2.0)
     assert rig.heard["BUMPERC"] == (0b111000, 0)
 
 
 @pytest.mark.parametrize(("left_m", "bits"), [(0.14, 0b001), (0.0, 0b010), (-0.14, 0b100)])
-def test_a_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
+def test_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
     post = RoundObstacleSettings(name="post", x_m=2.6, y_m=2.0 + left_m, radius_m=0.02)
     with Rig(room(posts=[post])) as rig:
         while not rig.robot.touching:
@@ -136,7 +136,7 @@ def test_a_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
 
 
 @pytest.mark.parametrize(("heading_deg", "bits"), [(10, 0b100), (20, 0b100), (30, 0b100), (-20, 0b001)])
-def test_a_corner_that_meets_a_wall_presses_its_bumper_as_long_as_it_touches(heading_deg: float, bits: int) -> None:
+def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int) -> None:
     """The contact lies at the very edge of the bar, where rounding must not decide."""
     with Rig() as rig:
         rig.robot.place(Pose(3.5, 2.0, math.radians(heading_deg)))
@@ -148,7 +148,7 @@ def test_a_corner_that_meets_a_wall_presses_its_bumper_as_long_as_it_touches(hea
     assert set(pressed) == {bits}
 
 
-def test_brushing_along_a_wall_touches_without_a_bumper(rig: Rig) -> None:
+def test_side_contact_presses_no_bumper(rig: Rig) -> None:
     rig.robot.place(Pose(1.0, 4.0 - ROBOT.geometry.outline_width_m / 2 - 0.005, 0.03))
     bumped = []
     for _ in range(300):
@@ -161,7 +161,7 @@ def test_brushing_along_a_wall_touches_without_a_bumper(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("speed_cm_s", [15, 60, 90])
-def test_no_wall_lets_the_robot_through_however_it_comes(speed_cm_s: int) -> None:
+def test_thin_wall_stops_the_robot_at_any_speed(speed_cm_s: int) -> None:
     board = WallSettings(name="board", from_m=(3.0, 0.0), to_m=(3.0, 4.0), thickness_m=0.02)
     for heading_rad in (0.0, 0.8):
         with Rig(room(walls=[board])) as rig:
@@ -171,7 +171,7 @@ def test_no_wall_lets_the_robot_through_however_it_comes(speed_cm_s: int) -> Non
             assert 0.0 < rig.robot.pose.y_m < 4.0
 
 
-def test_putting_it_elsewhere_stops_the_wheels_and_counts_nothing(rig: Rig) -> None:
+def test_place_stops_the_wheels_and_counts_nothing(rig: Rig) -> None:
     rig.drive(30, 30, 1.0)
     laps = rig.robot.laps
     rig.robot.place(Pose(1.0, 3.0, 1.0))

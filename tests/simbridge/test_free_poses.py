@@ -3,15 +3,16 @@ import random
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.settings import SettingsError
 from hal.simulation import Pose
+from simbridge import free_poses
 from simbridge.free_poses import FreePoses
 from simbridge.nearest import Clearance
+from simbridge.obstacle_settings import RoundObstacleSettings
 from simbridge.world import World
 from simbridge.world_loading import load_world
-from tests.simbridge.rig import Rig, quiet_robot
+from tests.simbridge.rig import ROBOT, Rig, quiet_robot
 
-ROBOT = load_robot()
 FARTHEST_SENSOR_M = max(math.hypot(sensor.x_m, sensor.y_m) for sensor in ROBOT.infrared.sensors)
 
 
@@ -21,7 +22,7 @@ def poses(world: str, count: int = 12, *, close: bool = False) -> list[Pose]:
     return [free.draw(chance, close=close) for _ in range(count)]
 
 
-def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
+def test_free_poses_see_the_post_from_all_sides() -> None:
     world = load_world("one_object")
     found = poses("one_object")
     assert all(clear_m >= 0.1 for clear_m in world.clearances_m(found, ROBOT.geometry))
@@ -32,18 +33,18 @@ def test_they_are_free_and_in_sight_of_the_post_from_all_around_it() -> None:
     assert len({round(pose.heading_rad) for pose in found}) > 3
 
 
-def test_close_to_something_it_still_touches_nothing() -> None:
+def test_free_poses_close_touch_nothing() -> None:
     clear_m = load_world("a").clearances_m(poses("a", 40, close=True), ROBOT.geometry)
     assert min(clear_m) >= 0.015
     assert sum(each < 0.1 for each in clear_m) > 5
 
 
-def test_where_there_is_no_post_anything_may_be_in_sight() -> None:
+def test_free_poses_without_a_post_see_a_wall() -> None:
     nearest = Clearance(World(load_world("a")))
     assert all(nearest.distance_m((pose.x_m, pose.y_m)) < 0.45 + FARTHEST_SENSOR_M for pose in poses("a"))
 
 
-def test_a_robot_that_is_set_down_there_tells_what_it_sees_from_nothing() -> None:
+def test_free_poses_give_readings_above_the_floor() -> None:
     robot = quiet_robot()
     nothing = robot.infrared.counts_at(robot.infrared.far_m)
     with Rig(load_world("one_object"), robot=robot) as rig:
@@ -54,7 +55,7 @@ def test_a_robot_that_is_set_down_there_tells_what_it_sees_from_nothing() -> Non
             assert nearest > nothing + 25
 
 
-def test_the_same_chance_draws_the_same() -> None:
+def test_free_poses_same_seed_gives_the_same_poses() -> None:
     assert poses("two_objects", 4) == poses("two_objects", 4)
 
 
@@ -69,13 +70,23 @@ def test_the_same_chance_draws_the_same() -> None:
         ("manhattan", (1.3, 0.3), 0.3),
     ],
 )
-def test_the_nearest_face_in_whatever_direction(world: str, position: tuple[float, float], away_m: float) -> None:
+def test_clearance_is_the_distance_to_the_nearest_face(
+    world: str, position: tuple[float, float], away_m: float
+) -> None:
     assert Clearance(World(load_world(world))).distance_m(position) == pytest.approx(away_m, abs=1e-9)
 
 
-def test_a_wall_that_was_moved_is_nearest_where_it_stands_now() -> None:
+def test_clearance_follows_a_moved_wall() -> None:
     world = World(load_world("a"))
     nearest = Clearance(world)
     before_m = nearest.distance_m((0.6, 1.5))
     world.move_wall("tongue", 0.0, 0.2)
     assert nearest.distance_m((0.6, 1.5)) == pytest.approx(before_m + 0.2)
+
+
+def test_free_poses_without_any_name_the_world(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(free_poses, "_TRIES", 200)
+    nook = RoundObstacleSettings(name="post", x_m=0.0, y_m=0.0, radius_m=0.002)  # in a corner, hardly visible
+    world = load_world("one_object").model_copy(update={"round_obstacles": (nook,)})
+    with pytest.raises(SettingsError, match=world.name):
+        FreePoses(World(world), ROBOT).draw(random.Random(1))

@@ -11,13 +11,13 @@ from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, quiet
 
 
 @pytest.mark.parametrize(("distance_m", "counts"), [(0.10, 550), (0.15, 388), (0.30, 189), (0.50, 95), (0.60, 70)])
-def test_the_law_of_the_reference(distance_m: float, counts: int, quiet_rig: Rig) -> None:
+def test_readings_follow_the_infrared_law(distance_m: float, counts: int, quiet_rig: Rig) -> None:
     quiet_rig.robot.place(facing_wall(distance_m))
     quiet_rig.run(0.1, STAND)
     assert [quiet_rig.reading(sensor) for sensor in ("s9", "s10", "s11")] == pytest.approx([counts] * 3, abs=1)
 
 
-def test_thirty_centimetres_read_189_give_or_take_gain_and_noise() -> None:
+def test_readings_of_robots_differ_by_their_gain() -> None:
     gains = []
     for seed in range(6):
         with Rig(seed=seed) as rig:
@@ -27,7 +27,7 @@ def test_thirty_centimetres_read_189_give_or_take_gain_and_noise() -> None:
     assert max(gains) - min(gains) > 0.01
 
 
-def test_the_same_robot_in_another_run_has_its_gains_and_other_noise() -> None:
+def test_robot_seed_fixes_gains_but_not_noise() -> None:
     readings: dict[tuple[int, int], list[int]] = {}
     for run in ((1, 5), (2, 5), (1, 6), (2, 6)):
         seed, robot_seed = run
@@ -44,7 +44,7 @@ def test_the_same_robot_in_another_run_has_its_gains_and_other_noise() -> None:
     assert abs(mean[1, 5] / mean[1, 6] - 1.0) > 0.012
 
 
-def test_without_a_robot_seed_the_run_says_which_robot() -> None:
+def test_robot_seed_defaults_to_the_seed_of_the_run() -> None:
     hashes = []
     for robot_seed in (None, 4):
         with Rig(seed=4, robot_seed=robot_seed) as rig:
@@ -53,7 +53,7 @@ def test_without_a_robot_seed_the_run_says_which_robot() -> None:
     assert hashes[0] == hashes[1]
 
 
-def test_a_touching_wall_looks_far_because_readings_fold_back(quiet_rig: Rig) -> None:
+def test_readings_below_the_range_fold_back(quiet_rig: Rig) -> None:
     readings = {}
     for distance_m in (0.08, 0.05, 0.03, 0.005):
         quiet_rig.robot.place(facing_wall(distance_m))
@@ -62,19 +62,19 @@ def test_a_touching_wall_looks_far_because_readings_fold_back(quiet_rig: Rig) ->
     assert readings == pytest.approx({0.08: 550, 0.05: 425, 0.03: 300, 0.005: 144}, abs=2)
 
 
-def test_pressed_against_a_wall_it_still_sees_the_wall(quiet_rig: Rig) -> None:
+def test_readings_at_a_touching_wall_show_the_wall(quiet_rig: Rig) -> None:
     quiet_rig.robot.place(facing_wall(0.1))
     quiet_rig.drive(30, 30, 2.0)
     assert quiet_rig.robot.touching
     assert quiet_rig.reading("s11") == pytest.approx(144, abs=10)
 
 
-def test_nothing_in_view_reads_the_floor(quiet_rig: Rig) -> None:
+def test_readings_without_a_wall_are_the_floor(quiet_rig: Rig) -> None:
     quiet_rig.run(0.1, STAND)
     assert {quiet_rig.reading(sensor.name) for sensor in ROBOT.infrared.sensors} == {70}
 
 
-def test_every_sensor_looks_where_the_table_says() -> None:
+def test_sensors_look_in_the_directions_of_the_table() -> None:
     for sensor in ROBOT.infrared.sensors:
         ahead_rad = math.radians(sensor.heading_deg)
         # A thin post 0.2 m in front of this sensor's face.
@@ -91,7 +91,7 @@ def test_every_sensor_looks_where_the_table_says() -> None:
             assert rig.reading(sensor.name) == pytest.approx(294, abs=1)
 
 
-def test_readings_repeat_for_about_four_cycles_and_each_sensor_has_its_own_rhythm(rig: Rig) -> None:
+def test_sensors_measure_at_periods_of_their_own(rig: Rig) -> None:
     rig.robot.place(facing_wall(0.15))
     changes = {"s9": 0, "s10": 0, "s11": 0}
     before = dict.fromkeys(changes, 0)
@@ -105,7 +105,7 @@ def test_readings_repeat_for_about_four_cycles_and_each_sensor_has_its_own_rhyth
     assert len(set(changes.values())) > 1
 
 
-def test_noise_has_the_size_of_the_reference() -> None:
+def test_noise_has_the_set_deviation() -> None:
     with Rig(robot=quiet_robot(noise_share=0.02, noise_least_counts=1.5)) as rig:
         rig.robot.place(facing_wall(0.30))
         readings = []
@@ -118,7 +118,7 @@ def test_noise_has_the_size_of_the_reference() -> None:
         assert deviation == pytest.approx(0.02 * 189, rel=0.25)
 
 
-def test_three_rays_see_what_slips_past_one() -> None:
+def test_three_rays_see_a_wire_that_one_ray_misses() -> None:
     post = RoundObstacleSettings(name="wire", x_m=2.0 + 0.217 + 0.4, y_m=2.0 + 0.012, radius_m=0.004)
     for rays, sees in ((1, False), (3, True)):
         with Rig(room(posts=[post], rays=rays), robot=quiet_robot()) as rig:
@@ -126,7 +126,7 @@ def test_three_rays_see_what_slips_past_one() -> None:
             assert (rig.reading("s11") > 71) is sees
 
 
-def test_a_moved_wall_is_seen_where_it_stands_now() -> None:
+def test_moved_wall_is_seen_and_hit_at_its_new_place() -> None:
     board = WallSettings(name="board", from_m=(3.0, 1.5), to_m=(3.0, 2.5), thickness_m=0.04)
     with Rig(room(walls=[board]), robot=quiet_robot()) as rig:
         rig.run(0.1, STAND)
@@ -142,7 +142,7 @@ def test_a_moved_wall_is_seen_where_it_stands_now() -> None:
         assert rig.robot.pose.x_m > 2.4
 
 
-def test_posts_and_boxes_can_be_moved_too() -> None:
+def test_moved_post_and_box_are_seen() -> None:
     post = RoundObstacleSettings(name="post", x_m=2.9, y_m=2.0, radius_m=0.05)
     box = PolygonObstacleSettings(name="box", corners=((1.0, 1.9), (1.1, 1.9), (1.1, 2.1), (1.0, 2.1)))
     with Rig(room(posts=[post], boxes=[box]), robot=quiet_robot()) as rig:
@@ -152,13 +152,13 @@ def test_posts_and_boxes_can_be_moved_too() -> None:
         assert [rig.reading("s11"), rig.reading("s14")] == pytest.approx([189, 189], abs=1)
 
 
-def test_moving_an_unknown_wall_names_those_there_are() -> None:
+def test_move_wall_unknown_name_lists_the_names() -> None:
     board = WallSettings(name="board", from_m=(3.0, 1.5), to_m=(3.0, 2.5), thickness_m=0.04)
     with Rig(room(walls=[board])) as rig, pytest.raises(KeyError, match=r"'shelf'; there are: board"):
         rig.robot.world.move_wall("shelf", 0.1, 0.0)
 
 
-def test_sight_agrees_with_the_physics_engine_in_every_direction() -> None:
+def test_ray_caster_agrees_with_the_physics_engine() -> None:
     settings = room(
         walls=[WallSettings(name="board", from_m=(1.0, 1.0), to_m=(1.6, 1.4), thickness_m=0.05)],
         posts=[RoundObstacleSettings(name="post", x_m=2.4, y_m=2.7, radius_m=0.2)],
@@ -178,7 +178,7 @@ def test_sight_agrees_with_the_physics_engine_in_every_direction() -> None:
         assert sight.distance_m(x_m, y_m, *along, 0.8) == pytest.approx(0.8 * (hit.alpha if hit else 1.0), abs=1e-6)
 
 
-def test_rays_do_not_slip_through_corners() -> None:
+def test_ray_caster_hits_corners() -> None:
     sight = RayCaster(World(room()), 6.0)
     sight.set_origin(2.0, 2.0)
     for corner in ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)):
@@ -187,7 +187,7 @@ def test_rays_do_not_slip_through_corners() -> None:
         assert sight.distance_m(2.0, 2.0, dx / length_m, dy / length_m, 6.0) == pytest.approx(length_m)
 
 
-def test_place_gives_fresh_readings_at_once(quiet_rig: Rig) -> None:
+def test_place_gives_new_readings_at_once(quiet_rig: Rig) -> None:
     quiet_rig.robot.place(half_turn(facing_wall(0.30)))
     quiet_rig.step(STAND)
     assert quiet_rig.reading("s14") == pytest.approx(189, abs=1)

@@ -57,7 +57,7 @@ def outer_ring(world: WorldSettings, position: Point) -> shapely.LinearRing:
 
 @pytest.mark.parametrize("name", FIRST_OF_NAMES)
 @pytest.mark.parametrize("aside_m", [0.1, 0.0, -0.05])
-def test_one_way_along_the_wall_is_one_lap_from_every_start(name: str, aside_m: float) -> None:
+def test_wall_progress_round_the_room_is_one_lap(name: str, aside_m: float) -> None:
     world = World(load_world(name))
     progress = WallProgress(world)
     start = world.settings.start_poses[0]
@@ -69,21 +69,21 @@ def test_one_way_along_the_wall_is_one_lap_from_every_start(name: str, aside_m: 
         assert counted(progress, *((place.x, place.y) for place in places)) == pytest.approx(1.0, abs=0.02)
 
 
-def test_the_other_way_round_counts_backward() -> None:
+def test_wall_progress_the_other_way_round_is_backward() -> None:
     progress = WallProgress(World(room()))
     corners = ((0.3, 2.0), (0.3, 0.3), (3.7, 0.3), (3.7, 3.7), (0.3, 3.7), (0.3, 2.0))
     assert counted(progress, *corners) == pytest.approx(-1.0)
     assert counted(progress, *corners, *corners[1:]) == pytest.approx(-2.0)
 
 
-def test_circles_in_the_middle_count_nothing() -> None:
+def test_wall_progress_of_circles_in_the_middle_is_none() -> None:
     progress = WallProgress(World(room()))
     for radius_m in (0.1, 0.5, 1.3):
         circle = [(2.0 - radius_m * math.cos(i / 8), 2.0 + radius_m * math.sin(i / 8)) for i in range(200)]
         assert counted(progress, (0.4, 2.0), *circle, (0.4, 2.0)) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_going_to_and_fro_between_two_walls_is_no_lap() -> None:
+def test_wall_progress_between_two_walls_is_none() -> None:
     progress = WallProgress(World(room()))
     # A bit farther round each time, so that now the one and now the other way round is the shorter.
     bounces = [(0.3 if i % 2 else 3.7, 2.0 + 0.3 * math.sin(i)) for i in range(60)]
@@ -91,7 +91,7 @@ def test_going_to_and_fro_between_two_walls_is_no_lap() -> None:
 
 
 @pytest.mark.parametrize("name", FIRST_OF_NAMES)
-def test_aimless_ways_through_the_middle_add_up_to_no_laps(name: str) -> None:
+def test_wall_progress_of_random_ways_is_none(name: str) -> None:
     world = World(load_world(name))
     start = world.settings.start_poses[0]
     at = (start.x_m, start.y_m)
@@ -108,25 +108,25 @@ def test_aimless_ways_through_the_middle_add_up_to_no_laps(name: str) -> None:
             assert -2.0 < progress.laps < 1.0
 
 
-def test_a_lap_with_a_part_left_out_is_none() -> None:
+def test_wall_progress_with_a_shortcut_is_no_lap() -> None:
     progress = WallProgress(World(room()))
     shortcut = ((0.3, 0.3), (0.3, 3.7), (3.7, 3.7), (0.3, 0.3))
     assert counted(progress, *shortcut, *shortcut[1:], *shortcut[1:]) < 0.6
 
 
-def test_laps_go_on_after_a_trip_through_the_middle() -> None:
+def test_wall_progress_continues_after_a_detour() -> None:
     progress = WallProgress(World(room()))
     once = ((0.3, 2.0), (0.3, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 2.0))
     assert counted(progress, *once, (3.7, 2.1), (0.3, 2.0), *once[1:]) == pytest.approx(2.0, abs=0.02)
 
 
-def test_put_in_the_middle_it_begins_where_it_comes_to_the_wall() -> None:
+def test_wall_progress_starts_at_the_first_wall() -> None:
     progress = WallProgress(World(room()))
     once = ((2.0, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 3.7), (2.0, 3.7))
     assert counted(progress, (2.1, 1.9), *once) == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_wall_against_the_outline_is_gone_round_and_an_island_is_not() -> None:
+def test_outer_ring_includes_walls_but_no_islands() -> None:
     board = WallSettings(name="board", from_m=(0.0, 2.5), to_m=(1.5, 2.5), thickness_m=0.1)
     box = PolygonObstacleSettings(name="box", corners=((3.0, 0.0), (4.0, 0.0), (4.0, 1.0), (3.0, 1.0)))
     island = PolygonObstacleSettings(name="island", corners=((1.9, 1.4), (2.2, 1.4), (2.0, 1.6)))
@@ -140,14 +140,14 @@ def test_a_wall_against_the_outline_is_gone_round_and_an_island_is_not() -> None
     assert way.distance(shapely.Point(2.0, 1.5)) > 0.5
 
 
-def test_a_gap_too_narrow_for_the_robot_is_wall() -> None:
+def test_outer_ring_closes_narrow_gaps() -> None:
     board = WallSettings(name="board", from_m=(0.2, 2.5), to_m=(1.5, 2.5), thickness_m=0.1)
-    beside = shapely.Point(1.0, 2.5)
-    assert outer_ring(room(walls=[board]), MIDDLE).distance(beside) < 0.5
-    assert outer_ring(room(walls=[board.moved(0.6, 0.0)]), MIDDLE).distance(beside) > 0.6
+    at_board = shapely.Point(1.0, 2.5)
+    assert outer_ring(room(walls=[board]), MIDDLE).distance(at_board) < 0.5
+    assert outer_ring(room(walls=[board.moved(0.6, 0.0)]), MIDDLE).distance(at_board) > 0.6
 
 
-def test_of_a_divided_room_it_counts_the_part_that_the_robot_is_in() -> None:
+def test_wall_progress_counts_the_robots_part_of_a_room() -> None:
     progress = WallProgress(World(room(walls=[DIVIDER])))
     corners = ((3.3, 0.3), (3.3, 3.7), (3.7, 3.7), (3.7, 0.3), (3.3, 0.3))
     assert counted(progress, *corners) == pytest.approx(1.0)
@@ -155,7 +155,7 @@ def test_of_a_divided_room_it_counts_the_part_that_the_robot_is_in() -> None:
     assert counted(progress, *corners) == pytest.approx(1.0)
 
 
-def test_a_narrow_door_leads_to_the_room_behind_it() -> None:
+def test_wall_progress_passes_a_narrow_door() -> None:
     north = WallSettings(name="north", from_m=(2.0, 4.0), to_m=(2.0, 2.3), thickness_m=0.02)
     south = WallSettings(name="south", from_m=(2.0, 0.0), to_m=(2.0, 1.8), thickness_m=0.02)
     progress = WallProgress(World(room(walls=[north, south])))
@@ -164,7 +164,7 @@ def test_a_narrow_door_leads_to_the_room_behind_it() -> None:
     assert counted(progress, *corners, *back) == pytest.approx(1.0)
 
 
-def test_swaying_in_a_narrow_corridor_costs_no_lap() -> None:
+def test_wall_progress_swaying_in_a_corridor_loses_none() -> None:
     wall = WallSettings(name="wall", from_m=(0.8, 0.0), to_m=(0.8, 3.2), thickness_m=0.02)
     progress = WallProgress(World(room(walls=[wall])))
     there = [(0.3 + (0.25 if i % 3 == 2 else 0.0), 0.3 + 0.3 * i) for i in range(12)]
@@ -172,7 +172,7 @@ def test_swaying_in_a_narrow_corridor_costs_no_lap() -> None:
     assert counted(progress, *there, *back) == pytest.approx(1.0, abs=0.02)
 
 
-def test_a_wall_moved_away_takes_its_detour_along() -> None:
+def test_wall_progress_after_a_moved_wall_is_surveyed_again() -> None:
     world = World(load_world("a"))
     progress = WallProgress(world)
     beside_tongue = shapely.Point(1.0, 1.9)
@@ -196,7 +196,7 @@ def two_rooms(door_m: float, width_m: float = 0.5) -> WorldSettings:
 
 @pytest.mark.parametrize("width_m", [0.36, 0.5, 0.65, 0.69])
 @pytest.mark.parametrize("long_m", [0.06, 1.0])
-def test_wall_progress_through_a_narrow_passage_is_one_forward_lap(width_m: float, long_m: float) -> None:
+def test_wall_progress_through_a_passage_is_one_lap(width_m: float, long_m: float) -> None:
     progress = WallProgress(World(two_rooms(long_m, width_m)))
     begin_m, end_m, aside_m = 2.0 - long_m / 2 - 0.3, 2.0 + long_m / 2 + 0.3, width_m / 2 - 0.18
     there = ((0.3, 0.3), (0.3, 3.7), (begin_m, 3.7), (begin_m, 2.0 + aside_m), (end_m, 2.0 + aside_m))
@@ -230,7 +230,7 @@ def test_wall_progress_counts_no_jump_between_wall_and_island() -> None:
     assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.2, abs=0.5)
 
 
-def test_wall_progress_in_the_step_from_one_ring_to_another_is_none() -> None:
+def test_wall_progress_between_two_rings_is_none() -> None:
     steps = 0
     for y_m in (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0):
         corners = ((0.9, y_m), (1.5, y_m), (1.5, y_m + 0.6), (0.9, y_m + 0.6))
@@ -250,7 +250,7 @@ def test_wall_progress_in_the_step_from_one_ring_to_another_is_none() -> None:
 
 
 @pytest.mark.parametrize("width_m", [0.8, 1.0, 1.2, 1.6])
-def test_wall_progress_of_turning_back_in_a_corridor_ends(width_m: float) -> None:
+def test_wall_progress_turning_back_in_a_corridor_ends(width_m: float) -> None:
     wall = WallSettings(name="wall", from_m=(width_m + 0.01, 0.0), to_m=(width_m + 0.01, 3.2), thickness_m=0.02)
     progress = WallProgress(World(room(walls=[wall])))
     right_m = width_m - 0.3
@@ -261,7 +261,7 @@ def test_wall_progress_of_turning_back_in_a_corridor_ends(width_m: float) -> Non
     assert laps[-1] == pytest.approx(laps[len(laps) // 5], abs=0.01)
 
 
-def test_wall_progress_of_driving_to_and_fro_along_a_wall_is_none() -> None:
+def test_wall_progress_to_and_fro_along_a_wall_is_none() -> None:
     progress = WallProgress(World(room()))
     assert counted(progress, *[(0.3, 1.0), (0.3, 3.0)] * 12, (0.3, 1.0)) == pytest.approx(0.0, abs=1e-9)
 
@@ -294,7 +294,7 @@ def test_wall_progress_with_the_wall_on_the_left_is_forward(
                 assert laps[-1] * progress.lap_m >= 0.6 * forward.length
 
 
-def test_putting_the_robot_down_adds_no_lap() -> None:
+def test_place_adds_no_lap() -> None:
     with Rig(load_world("a")) as rig:
         for start in load_world("a").start_poses * 3:
             rig.robot.place(start.pose)
@@ -303,7 +303,7 @@ def test_putting_the_robot_down_adds_no_lap() -> None:
 
 
 @pytest.mark.parametrize("name", FIRST_OF_NAMES)
-def test_a_plain_wall_follower_laps_each_world_in_time(name: str) -> None:
+def test_wall_follower_laps_each_world_in_time(name: str) -> None:
     world = load_world(name)
     with Rig(world) as rig:
         assert lap_driven(rig, world.start_poses[0].pose) == pytest.approx(1.0, abs=0.02)
@@ -312,7 +312,7 @@ def test_a_plain_wall_follower_laps_each_world_in_time(name: str) -> None:
 
 @pytest.mark.deep
 @pytest.mark.parametrize("name", NAMES)
-def test_a_lap_really_driven_counts_one_from_every_start(name: str) -> None:
+def test_driven_lap_counts_one_from_every_start(name: str) -> None:
     world = load_world(name)
     for start in world.start_poses[1:]:
         with Rig(world) as rig:

@@ -42,7 +42,7 @@ FLAT = shapely.Polygon(
     [(10, 10), (90, 10), (90, 50), (70, 50), (70, 70), (10, 70)],
     [L_SHAPE.exterior, shapely.box(20, 57, 22, 60).exterior],
 )
-"""In cells: a room with a corner cut out, an island that bends inwards, and a small one."""
+"""Room in cells with a corner cut out, an island that bends inwards, and a small one."""
 
 Shades = NDArray[np.uint8]
 
@@ -67,7 +67,7 @@ def write_png(path: Path, shades: Shades) -> None:
 
 
 def write_map(folder: Path, shades: Shades | None = None, **change: object) -> str:
-    """A map's YAML file and its image; returns the path."""
+    """Write a map's image and YAML file, and return the latter's path."""
     settings = {**PLAIN, **change}
     write_p5(folder / str(settings["image"]), drawn(FLAT) if shades is None else shades)
     path = folder / "flat.yaml"
@@ -81,9 +81,7 @@ def floor_of(world: WorldSettings) -> shapely.Polygon:
 
 
 @pytest.mark.parametrize(("name", "write"), [("flat2.pgm", write_p2), ("flat5.pgm", write_p5), ("flat.png", write_png)])
-def test_walls_parallel_to_the_grid_come_back_where_they_were_drawn(
-    name: str, write: Callable[[Path, Shades], None], tmp_path: Path
-) -> None:
+def test_map_walls_along_the_grid_are_exact(name: str, write: Callable[[Path, Shades], None], tmp_path: Path) -> None:
     write(tmp_path / name, drawn(FLAT))
     path = tmp_path / "flat.yaml"
     path.write_text(yaml.safe_dump({**PLAIN, "image": name}), encoding="utf-8")
@@ -97,7 +95,7 @@ def test_walls_parallel_to_the_grid_come_back_where_they_were_drawn(
 
 
 @pytest.mark.parametrize("turn_deg", [*range(7, 90, 7), 45])
-def test_slanted_walls_come_back_within_a_cell_and_in_few_pieces(turn_deg: int) -> None:
+def test_trace_slanted_walls_are_within_a_cell(turn_deg: int) -> None:
     floor = shapely.box(30, 30, 130, 90).difference(shapely.box(60, 50, 90, 70))
     floor = shapely.affinity.rotate(floor, turn_deg)
     (traced,) = trace(drawn(floor, 160, 160)[::-1] == FREE)
@@ -109,7 +107,7 @@ def test_slanted_walls_come_back_within_a_cell_and_in_few_pieces(turn_deg: int) 
     assert len(shapely.get_coordinates(traced)) <= 70
 
 
-def test_what_is_one_cell_thick_stays() -> None:
+def test_trace_keeps_single_cells() -> None:
     wall = shapely.box(0, 20, 30, 21)
     speck = shapely.box(35, 5, 36, 6)
     floor = shapely.box(0, 0, 40, 40).difference(wall | speck)
@@ -117,7 +115,7 @@ def test_what_is_one_cell_thick_stays() -> None:
     assert traced.equals(floor)
 
 
-def test_the_robot_drives_on_a_map_and_sees_its_walls(tmp_path: Path) -> None:
+def test_map_walls_stop_the_robot(tmp_path: Path) -> None:
     world = load_world(write_map(tmp_path), ROBOT)
     with Rig(world) as rig:
         rig.robot.place(Pose(0.6, 1.3, 0.0))
@@ -128,7 +126,7 @@ def test_the_robot_drives_on_a_map_and_sees_its_walls(tmp_path: Path) -> None:
         assert rig.robot.pose.x_m == pytest.approx(1.5 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
 
 
-def test_start_poses_of_a_map_are_beside_a_wall_and_always_the_same(tmp_path: Path) -> None:
+def test_map_starts_are_at_a_left_wall_and_reproducible(tmp_path: Path) -> None:
     path = write_map(tmp_path)
     world = load_world(path, ROBOT)
     assert load_world(path, ROBOT) == world
@@ -144,7 +142,7 @@ def test_start_poses_of_a_map_are_beside_a_wall_and_always_the_same(tmp_path: Pa
         assert math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) >= 0.5
 
 
-def test_start_poses_of_the_shipped_map_show_both_left_sensors_a_wall() -> None:
+def test_map_starts_show_both_left_sensors_a_wall() -> None:
     world = load_world("maps/flat", ROBOT)
     with Rig(world) as rig:
         for start in world.start_poses:
@@ -154,7 +152,7 @@ def test_start_poses_of_the_shipped_map_show_both_left_sensors_a_wall() -> None:
                 assert ROBOT.infrared.distance_m(rig.reading(sensor)) < 0.35, (start, sensor)
 
 
-def test_start_poses_where_no_wall_is_straight_are_near_one(tmp_path: Path) -> None:
+def test_map_starts_without_straight_walls_are_near_one(tmp_path: Path) -> None:
     world = load_world(write_map(tmp_path, drawn(shapely.Point(50, 40).buffer(9.5))), ROBOT)
     assert world.start_poses
     assert all(floor_of(world).boundary.distance(shapely.Point(s.x_m, s.y_m)) < 0.5 for s in world.start_poses)
@@ -165,7 +163,7 @@ def left_of(heading_deg: float) -> tuple[float, float]:
     return -math.sin(heading_rad), math.cos(heading_rad)
 
 
-def test_of_several_rooms_it_takes_the_one_with_most_room_to_drive(tmp_path: Path) -> None:
+def test_map_of_several_rooms_uses_the_roomiest(tmp_path: Path) -> None:
     shades = drawn(FLAT, 300, 80)
     # Larger, but a corridor that the robot cannot turn in.
     shades[0:8, 5:295] = FREE
@@ -173,7 +171,7 @@ def test_of_several_rooms_it_takes_the_one_with_most_room_to_drive(tmp_path: Pat
     assert load_world(write_map(tmp_path, shades), ROBOT).size_m == pytest.approx((4.0, 3.0))
 
 
-def test_the_shipped_map_is_a_flat_whose_chair_has_thin_legs() -> None:
+def test_shipped_map_has_thin_legs_and_three_rays() -> None:
     world = load_world("maps/flat", ROBOT)
     assert world.name == "flat"
     assert world.infrared_rays == 3
@@ -183,7 +181,7 @@ def test_the_shipped_map_is_a_flat_whose_chair_has_thin_legs() -> None:
     assert len({(start.x_m > 4.0, start.y_m > 3.2, start.y_m < 1.9) for start in world.start_poses}) >= 5
 
 
-def test_a_room_far_from_the_corner_of_its_map_is_a_world_like_others(tmp_path: Path) -> None:
+def test_map_room_far_from_the_corner_is_equal(tmp_path: Path) -> None:
     shades = np.full((80, 3000), UNKNOWN, dtype=np.uint8)
     shades[:, -100:] = drawn(FLAT)
     near, far = tmp_path / "near", tmp_path / "far"
@@ -201,7 +199,7 @@ def world_on(folder: Path, **change: object) -> str:
     return str(path)
 
 
-def test_start_poses_of_ones_own_are_in_the_frame_of_the_map(tmp_path: Path) -> None:
+def test_world_on_map_starts_are_in_the_maps_frame(tmp_path: Path) -> None:
     write_map(tmp_path)
     world = load_world(world_on(tmp_path, infrared_rays=3), ROBOT)
     assert (world.name, world.infrared_rays) == ("mine", 3)
@@ -210,7 +208,7 @@ def test_start_poses_of_ones_own_are_in_the_frame_of_the_map(tmp_path: Path) -> 
     assert (start.x_m, start.y_m, start.heading_deg) == pytest.approx((0.6, 1.5, 90.0))
 
 
-def test_a_map_that_is_turned_turns_the_start_poses(tmp_path: Path) -> None:
+def test_world_on_map_rotated_origin_turns_the_starts(tmp_path: Path) -> None:
     write_map(tmp_path, origin=[2.0, 1.0, math.pi / 2])
     start = {"x_m": 2.0 - 2.0, "y_m": 1.0 + 1.1, "heading_deg": 180.0}
     world = load_world(world_on(tmp_path, start_poses=[start]), ROBOT)
@@ -228,7 +226,7 @@ def test_a_map_that_is_turned_turns_the_start_poses(tmp_path: Path) -> None:
         ("raw", 0, [0, 49, 50, 100, 101, 255], [True, True, False, False, False, False]),
     ],
 )
-def test_shades_mean_what_map_server_says(
+def test_drivable_cells_follow_the_modes(
     mode: str, negate: object, shades: list[int], drivable: list[bool], tmp_path: Path
 ) -> None:
     settings = MapSettings.model_validate_json(
@@ -238,7 +236,7 @@ def test_shades_mean_what_map_server_says(
     assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [drivable]
 
 
-def test_colours_count_by_their_mean_and_see_through_cells_of_a_scale_are_unknown(tmp_path: Path) -> None:
+def test_drivable_cells_of_colours_and_transparency(tmp_path: Path) -> None:
     colours = np.array([[[254, 254, 254, 255], [255, 255, 150, 255], [160, 160, 160, 255], [160, 160, 160, 128]]])
     Image.fromarray(colours.astype(np.uint8)).save(tmp_path / "flat.png")
     for mode, wanted in (("trinary", [True, True, False, False]), ("scale", [True, True, True, False])):
@@ -246,7 +244,7 @@ def test_colours_count_by_their_mean_and_see_through_cells_of_a_scale_are_unknow
         assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [wanted]
 
 
-def test_sixteen_bits_and_a_palette_are_read_too(tmp_path: Path) -> None:
+def test_drivable_cells_of_16_bits_and_a_palette(tmp_path: Path) -> None:
     settings = MapSettings.model_validate_json(json.dumps({**PLAIN, "image": "flat.png"}))
     Image.fromarray(np.array([[65535, 52685, 0]], dtype=np.uint16)).save(tmp_path / "flat.png")
     assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
@@ -254,7 +252,7 @@ def test_sixteen_bits_and_a_palette_are_read_too(tmp_path: Path) -> None:
     assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
 
 
-def test_cells_that_meet_at_a_corner_only_are_apart() -> None:
+def test_trace_separates_cells_that_touch_at_a_corner() -> None:
     free = np.zeros((40, 40), dtype=np.bool_)
     free[2:20, 2:20] = free[20:38, 20:38] = True
     free[8:12, 8:12] = free[12:14, 12:14] = False
@@ -281,9 +279,7 @@ def test_cells_that_meet_at_a_corner_only_are_apart() -> None:
         ({"image": "huge.pgm"}, r"flat\.yaml: image: .*huge\.pgm has 10000 x 10000 cells"),
     ],
 )
-def test_a_map_that_cannot_be_is_refused_with_file_and_key(
-    change: dict[str, object], complaint: str, tmp_path: Path
-) -> None:
+def test_map_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
     path = write_map(tmp_path)
     (tmp_path / "junk.pgm").write_bytes(b"P5 this is not")
     (tmp_path / "cut.pgm").write_bytes(b"P5 100 80 255\n" + bytes(100))
@@ -294,7 +290,7 @@ def test_a_map_that_cannot_be_is_refused_with_file_and_key(
         load_world(path, ROBOT)
 
 
-def test_a_map_wider_than_a_world_may_be_is_refused(tmp_path: Path) -> None:
+def test_map_too_wide_is_refused(tmp_path: Path) -> None:
     shades = np.full((300, 300), FREE, dtype=np.uint8)
     with pytest.raises(
         SettingsError, match=r"flat\.yaml: resolution: the free space is 240 m x 240 m, allowed are 200 m"
@@ -302,7 +298,7 @@ def test_a_map_wider_than_a_world_may_be_is_refused(tmp_path: Path) -> None:
         load_world(write_map(tmp_path, shades, resolution=0.8), ROBOT)
 
 
-def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> None:
+def test_map_of_specks_is_refused(tmp_path: Path) -> None:
     dice = np.random.default_rng(1)
     for side, share, complaint in (
         (800, 0.3, "meet along"),
@@ -328,9 +324,7 @@ def test_specks_all_over_are_refused_before_they_cost_time(tmp_path: Path) -> No
         ({"size_m": [1, 1]}, r"mine\.yaml: size_m: no such key; allowed here: map, infrared_rays, start_poses"),
     ],
 )
-def test_a_world_on_a_map_is_refused_with_file_and_key(
-    change: dict[str, object], complaint: str, tmp_path: Path
-) -> None:
+def test_world_on_map_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
     write_map(tmp_path)
     with pytest.raises(SettingsError, match=complaint):
         load_world(world_on(tmp_path, **change), ROBOT)
@@ -344,7 +338,7 @@ def specks(side: int) -> Shades:
 
 
 @pytest.mark.parametrize(("side", "rooms", "looked_at"), [(130, 1, 0), (90, 2, 1)])
-def test_among_specks_room_is_looked_for_in_no_more_pieces_than_a_world_may_have(
+def test_map_of_specks_limits_the_search(
     side: int, rooms: int, looked_at: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     looked: list[shapely.Polygon] = []
@@ -354,13 +348,13 @@ def test_among_specks_room_is_looked_for_in_no_more_pieces_than_a_world_may_have
     assert len(looked) == looked_at
 
 
-def test_a_map_of_specks_is_refused_under_start_poses_of_ones_own_too(tmp_path: Path) -> None:
+def test_world_on_map_of_specks_is_refused(tmp_path: Path) -> None:
     write_map(tmp_path, specks(130))
     with pytest.raises(SettingsError, match=r"flat\.yaml: image: its walls have"):
         load_world(world_on(tmp_path), ROBOT)
 
 
-def test_a_ragged_slit_beside_a_room_is_passed_over(tmp_path: Path) -> None:
+def test_map_ragged_slit_is_skipped(tmp_path: Path) -> None:
     shades = np.full((2600, 100), OCCUPIED, dtype=np.uint8)
     shades[10:2570, 5] = FREE  # larger than what is left of the room where the robot turns
     shades[10:2570:2, 6] = shades[11:2570:2, 4] = FREE

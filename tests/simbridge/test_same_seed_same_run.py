@@ -9,16 +9,16 @@ def first() -> list[str]:
     return hashes()
 
 
-def test_the_same_seed_gives_the_same_run_to_the_last_bit(first: list[str]) -> None:
+def test_run_same_seed_is_equal_to_the_last_bit(first: list[str]) -> None:
     assert first == hashes()
     assert len(set(first)) == len(first)
 
 
-def test_another_seed_gives_another_run(first: list[str]) -> None:
+def test_run_other_seed_differs(first: list[str]) -> None:
     assert not set(first) & set(hashes(SEED + 1))
 
 
-def test_another_process_gives_the_same_run(first: list[str]) -> None:
+def test_run_in_another_process_is_equal(first: list[str]) -> None:
     # Forked from another interpreter than this one: it hashes text otherwise.
     with started("tests.simbridge.same_run", folder=ROOT) as other:
         said, complaints = other.communicate()

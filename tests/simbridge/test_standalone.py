@@ -32,7 +32,7 @@ def notebook(name: str) -> Iterator[CanBus]:
     bus.shutdown()
 
 
-def test_the_runtimes_end_drives_it_by_real_time(name: str, notebook: CanBus) -> None:
+def test_standalone_is_driven_by_a_runtime(name: str, notebook: CanBus) -> None:
     standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1, start=2)
     robot = standalone.robot
     assert robot.pose == WORLD.start_poses[1].pose
@@ -49,7 +49,7 @@ def test_the_runtimes_end_drives_it_by_real_time(name: str, notebook: CanBus) ->
     kurt2.close()
 
 
-def test_it_says_that_it_is_simulated(name: str, notebook: CanBus) -> None:
+def test_standalone_identifies_as_simulated(name: str, notebook: CanBus) -> None:
     standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1)
     for _ in range(10):
         standalone.robot.step()
@@ -60,7 +60,7 @@ def test_it_says_that_it_is_simulated(name: str, notebook: CanBus) -> None:
         pass
 
 
-def test_the_seed_decides_robot_and_start(name: str) -> None:
+def test_standalone_seed_decides_robot_and_start(name: str) -> None:
     def start_of(seed: int) -> tuple[float, ...]:
         standalone = StandaloneRobot(ROBOT, WORLD, open_bus(f"{name}-{next(_numbers)}"), seed=seed)
         seen = (*standalone.robot.pose, *standalone.robot.infrared_counts)
@@ -71,7 +71,7 @@ def test_the_seed_decides_robot_and_start(name: str) -> None:
     assert len({start_of(seed) for seed in range(1, 5)}) > 1
 
 
-def test_a_second_robot_on_the_bus_is_refused(name: str) -> None:
+def test_standalone_second_robot_is_refused(name: str) -> None:
     with StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1) as first:
         stepped = threading.Event()
         end = open_bus(name)
@@ -83,7 +83,7 @@ def test_a_second_robot_on_the_bus_is_refused(name: str) -> None:
             end.drain()
 
 
-def test_a_runtime_and_things_unknown_are_no_robot(name: str, notebook: CanBus) -> None:
+def test_standalone_with_other_senders_starts(name: str, notebook: CanBus) -> None:
     end = open_bus(name)
     notebook.telemetry_port().send(Frame(0x300, bytes(8)))
     Kurt2(ROBOT, notebook).close()  # brakes

@@ -48,7 +48,7 @@ def adapter() -> Iterator[Adapter]:
     adapter.notebook.shutdown()
 
 
-def test_the_robot_stands_while_its_bus_is_gone_and_goes_on_when_it_is_back(adapter: Adapter) -> None:
+def test_reconnecting_bus_robot_stands_while_it_is_gone(adapter: Adapter) -> None:
     robot = SimulatedRobot(ROBOT, room(), adapter.steady, seed=1)
 
     def cycles(count: int) -> None:
@@ -77,7 +77,7 @@ def test_the_robot_stands_while_its_bus_is_gone_and_goes_on_when_it_is_back(adap
     assert min(robot.wheel_speeds) > 0.1
 
 
-def test_one_full_queue_costs_its_frame_and_no_more(adapter: Adapter) -> None:
+def test_reconnecting_bus_full_queue_loses_one_frame(adapter: Adapter) -> None:
     encoder = CODEC.message("ENCODER").pack(1, 2)
     port = adapter.steady.telemetry_port()
     for _ in range(QUEUE_FRAMES):

@@ -144,7 +144,7 @@ def test_node_restart_takes_part_after_128_times_11_bits() -> None:
 
 
 def test_node_alone_repeats_for_ever_without_bus_off() -> None:
-    """Up to the ACK slot a CONTROL has 114 bits; then the error frame, the space, and soon the suspension."""
+    """A CONTROL has 114 bits before the ACK slot; then come the error frame, the space, and soon the suspension."""
     wire, (sender,) = joined(1)
     sender.send(frame(0x01, CONTROL))
     wire.advance(1.0)

@@ -40,7 +40,7 @@ def drive(pair: Pair, wanted: WheelSpeeds, seconds: float) -> SensorReadings:
     return senses
 
 
-def test_a_jump_in_the_wanted_speed_never_crashes_the_controller(pair: Pair) -> None:
+def test_driver_speed_jump_never_crashes_the_controller(pair: Pair) -> None:
     kurt2, simulated = pair
     for wanted in (WheelSpeeds(0.6, 0.6), STANDSTILL, WheelSpeeds(-0.6, -0.6), WheelSpeeds(0.6, -0.6), STANDSTILL):
         drive(pair, wanted, 0.8)
@@ -48,7 +48,7 @@ def test_a_jump_in_the_wanted_speed_never_crashes_the_controller(pair: Pair) -> 
     assert kurt2.health.junk == 0
 
 
-def test_the_wanted_speed_is_driven_and_sensed(pair: Pair) -> None:
+def test_driver_speed_is_driven_and_sensed(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.5)
     before = pair[1].pose
     senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
@@ -57,7 +57,7 @@ def test_the_wanted_speed_is_driven_and_sensed(pair: Pair) -> None:
     assert senses.infrared_counts == pair[1].infrared_counts
 
 
-def test_a_pressed_bumper_stops_the_robot_at_the_wall(pair: Pair) -> None:
+def test_driver_bumper_stops_the_robot(pair: Pair) -> None:
     pair[1].place(facing_wall(0.3))
     senses = drive(pair, WheelSpeeds(0.3, 0.3), 3.0)
     assert senses.bumpers == 0b000111
@@ -65,7 +65,7 @@ def test_a_pressed_bumper_stops_the_robot_at_the_wall(pair: Pair) -> None:
     assert pair[1].collisions == 1
 
 
-def test_an_emergency_stop_brakes_and_holds(pair: Pair) -> None:
+def test_driver_emergency_stop_brakes_and_holds(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
     pair[0].emergency_stop(GuardReason.OTHER)
     senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)

@@ -11,8 +11,7 @@ from simbridge.world_generator.dice import SeededRandom
 from simbridge.world_generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
 from simbridge.world_loading import load_world
 from simbridge.world_settings import WorldSettings
-from tests.simbridge.left_wall import left_clearances_m
-from tests.simbridge.rig import ROBOT, Rig
+from tests.simbridge.rig import ROBOT, Rig, left_clearances_m
 from tests.simbridge.test_laps import follow, lap_driven
 
 
@@ -29,7 +28,7 @@ def digest(name: str) -> str:
 
 
 @pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
-def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
+def test_rooms_let_a_wall_follower_round(some: range) -> None:
     for seed in some:
         world = generated(f"rooms-{seed}")
         floor = world.free_space
@@ -44,7 +43,7 @@ def test_a_wall_follower_gets_all_round_each_room(some: range) -> None:
 
 
 @pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
-def test_every_start_in_a_room_has_its_wall_on_the_left_and_looks_along_it(some: range) -> None:
+def test_rooms_starts_look_along_a_left_wall(some: range) -> None:
     for seed in some:
         world = generated(f"rooms-{seed}")
         for start in range(len(world.start_poses)):
@@ -54,7 +53,7 @@ def test_every_start_in_a_room_has_its_wall_on_the_left_and_looks_along_it(some:
 
 
 @pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
-def test_the_robot_finds_its_way_through_all_streets(some: range) -> None:
+def test_streets_are_all_drivable(some: range) -> None:
     for seed in some:
         world = generated(f"streets-{seed}")
         floor = world.free_space
@@ -74,7 +73,7 @@ def test_the_robot_finds_its_way_through_all_streets(some: range) -> None:
 
 
 @pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
-def test_every_start_in_a_street_is_in_its_middle(some: range) -> None:
+def test_streets_starts_are_in_the_middle(some: range) -> None:
     for seed in some:
         world = generated(f"streets-{seed}")
         for start in range(len(world.start_poses)):
@@ -83,7 +82,7 @@ def test_every_start_in_a_street_is_in_its_middle(some: range) -> None:
             assert 0.35 - 0.165 - 1e-6 <= clearances[0] <= 0.55 - 0.165 + 1e-6
 
 
-def test_a_square_is_no_street() -> None:
+def test_streets_do_not_cross_squares() -> None:
     world = next(world for world in map(generated, (f"streets-{i}" for i in range(50))) if has_a_square(world))
     assert len(world.junctions) >= 9
     free = world.free_space
@@ -98,23 +97,23 @@ def has_a_square(world: WorldSettings) -> bool:
     return len(world.names) < len(columns) * len(rows)
 
 
-def test_the_same_seed_is_the_same_world_everywhere() -> None:
+def test_generated_worlds_are_equal_on_every_machine() -> None:
     # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
     assert [digest("rooms-17"), digest("streets-3")] == ["38d54f9daa54236a", "6635d1be71c0b592"]
 
 
-def test_other_seeds_are_other_worlds() -> None:
+def test_generated_worlds_differ_between_seeds() -> None:
     assert len({digest(f"rooms-{i}") for i in range(10)} | {digest(f"streets-{i}") for i in range(10)}) == 20
 
 
-def test_dice_fall_within_their_bounds_and_reach_them() -> None:
+def test_seeded_random_reaches_its_bounds() -> None:
     rng = SeededRandom("bounds")
     lengths = {rng.length_m(0.7, 1.1) for _ in range(2000)}
     assert (min(lengths), max(lengths), len(lengths)) == (0.7, 1.1, 41)
     assert {rng.integer(3) for _ in range(100)} == {0, 1, 2}
 
 
-def test_a_gap_that_the_robot_does_not_fit_through_is_not_drivable() -> None:
+def test_is_drivable_rejects_narrow_gaps() -> None:
     room = shapely.box(0, 0, 4, 3)
     assert is_drivable(room)
     assert is_drivable(room.difference(shapely.box(1.9, 0, 2.0, 2.3)))
@@ -123,13 +122,13 @@ def test_a_gap_that_the_robot_does_not_fit_through_is_not_drivable() -> None:
 
 
 @pytest.mark.parametrize("name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3"])
-def test_a_name_that_nothing_has_is_answered_with_those_that_there_are(name: str) -> None:
+def test_load_world_unknown_name_lists_the_names(name: str) -> None:
     with pytest.raises(SettingsError, match=rf"^{name}: .* a, b, c, manhattan, .*; or rooms-N or streets-N with any"):
         load_world(name)
 
 
 @pytest.mark.deep
-def test_a_plain_wall_follower_laps_a_generated_room() -> None:
+def test_wall_follower_laps_a_generated_room() -> None:
     world = generated("rooms-0")
     with Rig(world) as rig:
         assert lap_driven(rig, world.start_poses[0].pose) == pytest.approx(1.0, abs=0.02)
@@ -137,7 +136,7 @@ def test_a_plain_wall_follower_laps_a_generated_room() -> None:
 
 
 @pytest.mark.deep
-def test_a_plain_wall_follower_makes_its_way_round_nearly_all_rooms() -> None:
+def test_wall_follower_laps_nearly_all_rooms() -> None:
     # It may hit the end of a wall between its three front sensors, and turn the wrong way then.
     lapped = 0
     for seed in range(100):

@@ -11,8 +11,7 @@ from hal.settings import SettingsError
 from simbridge.obstacle_settings import PolygonObstacleSettings
 from simbridge.world import World
 from simbridge.world_loading import load_world
-from tests.simbridge.left_wall import left_clearances_m
-from tests.simbridge.rig import ROBOT, Rig, room
+from tests.simbridge.rig import ROBOT, Rig, left_clearances_m, room
 
 NAMES = ("a", "b", "c")
 PLAIN = {
@@ -31,7 +30,7 @@ BOARD = {"name": "board", "from_m": [1.5, 0.0], "to_m": [1.5, 1.5], "thickness_m
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_start_has_its_wall_on_the_left_and_looks_along_it(name: str) -> None:
+def test_starts_look_along_a_left_wall(name: str) -> None:
     world = load_world(name)
     assert len(world.start_poses) >= 8
     for start in range(len(world.start_poses)):
@@ -40,7 +39,7 @@ def test_every_start_has_its_wall_on_the_left_and_looks_along_it(name: str) -> N
         assert max(clearances) - min(clearances) < 0.01
 
 
-def test_the_training_ground_is_three_by_four_metres() -> None:
+def test_world_a_is_three_by_four_metres() -> None:
     world = load_world("a")
     assert world.size_m == (3.0, 4.0)
     assert 0.8 * 12 < shapely.Polygon(world.outline).area < 12
@@ -106,9 +105,7 @@ def test_the_training_ground_is_three_by_four_metres() -> None:
         ({"wals": []}, "wals: no such key"),
     ],
 )
-def test_a_world_that_cannot_be_is_refused_with_file_and_key(
-    change: dict[str, object], complaint: str, tmp_path: Path
-) -> None:
+def test_load_world_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
     path = tmp_path / "wrong.yaml"
     path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     with pytest.raises(SettingsError, match=rf"wrong\.yaml: .*{complaint}"):
@@ -125,13 +122,13 @@ def test_a_world_that_cannot_be_is_refused_with_file_and_key(
         {"polygon_obstacles": [{"name": "bay", "corners": BAY}]},
     ],
 )
-def test_what_may_be_is_a_world(change: dict[str, object], tmp_path: Path) -> None:
+def test_load_world_unusual_worlds_are_accepted(change: dict[str, object], tmp_path: Path) -> None:
     path = tmp_path / "plain.yaml"
     path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     assert load_world(str(path)).name == "plain"
 
 
-def test_the_robot_drives_into_a_bay_and_meets_its_back() -> None:
+def test_concave_obstacle_lets_the_robot_in() -> None:
     bay = PolygonObstacleSettings(name="bay", corners=tuple((x + 1.0, y - 0.5) for x, y in BAY))
     with Rig(room(boxes=[bay])) as rig:
         rig.run(0.5)
@@ -141,7 +138,7 @@ def test_the_robot_drives_into_a_bay_and_meets_its_back() -> None:
         assert rig.robot.pose.x_m == pytest.approx(3.0 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
 
 
-def test_streets_meet_where_their_middle_lines_do() -> None:
+def test_junctions_are_crossings_of_middle_lines() -> None:
     world = load_world("manhattan")
     lines = (0.4, 2.2, 4.0, 5.8)
     assert world.junctions == [(x, y) for x in lines for y in lines]
@@ -152,7 +149,7 @@ def test_streets_meet_where_their_middle_lines_do() -> None:
     assert load_world("a").junctions == []
 
 
-def test_the_starts_in_the_streets_are_in_their_middle_and_look_along_them() -> None:
+def test_starts_in_streets_are_in_the_middle() -> None:
     world = load_world("manhattan")
     for start in range(len(world.start_poses)):
         assert left_clearances_m(world, start) == pytest.approx([0.4 - 0.165] * 4)
@@ -166,7 +163,7 @@ def test_the_starts_in_the_streets_are_in_their_middle_and_look_along_them() -> 
         ("two_objects", "east", "right", 0.18),
     ],
 )
-def test_the_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
+def test_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
     world = load_world(name)
     object_ = next(each for each in world.round_obstacles if each.name == post)
     abeam = 0
@@ -179,7 +176,7 @@ def test_the_starts_have_an_object_abeam(name: str, post: str, side: str, away_m
     assert abeam == len(world.start_poses) // len(world.round_obstacles)
 
 
-def test_in_the_gap_between_the_columns_both_are_in_reach_of_the_sensors() -> None:
+def test_two_objects_are_both_in_range_between_them() -> None:
     west, east = load_world("two_objects").round_obstacles
     gap_m = east.x_m - west.x_m - west.radius_m - east.radius_m
     assert gap_m == pytest.approx(0.75)
@@ -187,14 +184,14 @@ def test_in_the_gap_between_the_columns_both_are_in_reach_of_the_sensors() -> No
     assert 0.18 < (gap_m - ROBOT.geometry.outline_width_m) / 2 < 0.25
 
 
-def test_the_small_object_is_smaller_than_the_gap_between_two_sensors() -> None:
+def test_one_object_is_smaller_than_a_sensor_gap() -> None:
     world = load_world("one_object")
     left = sorted(sensor.x_m for sensor in ROBOT.infrared.sensors if sensor.heading_deg == 90)
     assert 2 * world.round_obstacles[0].radius_m < min(b - a for a, b in pairwise(left))
     assert world.infrared_rays == 3
 
 
-def test_moving_a_wall_keeps_the_settings_true() -> None:
+def test_move_wall_updates_the_settings() -> None:
     world = World(load_world("a"))
     before = world.settings.walls[0]
     world.move_wall("tongue", 0.1, -0.2)
@@ -203,6 +200,6 @@ def test_moving_a_wall_keeps_the_settings_true() -> None:
     assert load_world("a").walls[0] == before
 
 
-def test_every_shipped_world_loads() -> None:
+def test_load_world_loads_every_shipped_world() -> None:
     for path in (CONFIG_DIR / "worlds").glob("*.yaml"):
         assert load_world(path.stem).start_poses

@@ -1,4 +1,4 @@
-"""What the judges think of drives in the simulator, as the critic's perception shows them."""
+"""Rewards of the judges for drives in the simulator, seen through the critic's perception."""
 
 from collections import Counter
 
@@ -17,7 +17,7 @@ from tests.behaviors.helpers import ROBOT
 
 
 class Always:
-    """A policy that knows one action only."""
+    """Policy with a single action."""
 
     def __init__(self, action: str) -> None:
         self._action = action
@@ -27,7 +27,7 @@ class Always:
 
 
 async def judged(task_name: str, seconds: float, action: str | None = None) -> dict[int, float]:
-    """Shares of the driven time that were bad, neutral and good, by value; one action instead of the task's policy."""
+    """Return the fractions of the driven time by reward; `action` replaces the task's policy."""
     task = load_task(task_name)
     assert task.judge is not None
     judge = task.judge.build()
@@ -51,7 +51,7 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
 
 
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
-async def test_the_teachers_own_drive_is_good_and_hardly_ever_bad(task: str) -> None:
+async def test_judges_reward_the_teachers_own_drive(task: str) -> None:
     shares = await judged(task, seconds=8)
     assert shares[1] > 0.5
     assert shares[-1] < 0.02
@@ -59,7 +59,7 @@ async def test_the_teachers_own_drive_is_good_and_hardly_ever_bad(task: str) -> 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
-async def test_it_stays_so_for_minutes(task: str) -> None:
+async def test_judges_reward_the_teachers_drive_for_minutes(task: str) -> None:
     shares = await judged(task, seconds=240)
     assert shares[1] > 0.55
     assert shares[-1] < 0.01
@@ -67,5 +67,5 @@ async def test_it_stays_so_for_minutes(task: str) -> None:
 
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
 @pytest.mark.parametrize("action", ["stand", "back"])
-async def test_who_stands_or_backs_all_the_time_is_blamed(task: str, action: str) -> None:
+async def test_judges_punish_standing_and_backing(task: str, action: str) -> None:
     assert (await judged(task, seconds=3, action=action))[-1] > 0.95

@@ -1,4 +1,4 @@
-"""What the judges think, as the shipped tasks set them."""
+"""Judges with the settings of the shipped tasks."""
 
 import pytest
 from hypothesis import given
@@ -11,7 +11,7 @@ from kurt2rt.tasks.settings import load_task
 from tests.examples import examples
 
 TASKS = ("wall_following", "fleeing", "eight")
-OPEN = AppraisalFeatures(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)
+OPEN = AppraisalFeatures(*[0.6] * 6, *[0.0] * 7)._replace(speed_m_s=0.3)
 
 distances_m = st.floats(0.1, 0.6)
 flags = st.sampled_from((0.0, 0.0, 0.0, 1.0))
@@ -35,25 +35,23 @@ JUDGES = {task: judge_of(task) for task in TASKS}
 
 
 def thinks(task: str, **circumstances: float) -> int:
-    """Of circumstances that differ by these from those of a robot that drives straight on with nothing near."""
+    """Return the reward for features that differ by these from a straight course in the open."""
     return JUDGES[task].judge(OPEN._replace(**circumstances))
 
 
 # Of all
 
 
-def test_a_judge_is_found_by_its_name() -> None:
+def test_judge_settings_finds_kinds_by_name() -> None:
     assert judge_settings("wall_following") is WallFollowingSettings
-    with pytest.raises(ValueError, match=r"there is no kind 'hanging'; give one of: eight, fleeing, wall_following$"):
+    with pytest.raises(ValueError, match="eight, fleeing, wall_following"):
         judge_settings("hanging")
 
 
 @pytest.mark.parametrize("task", TASKS)
 @given(circumstances=anywhere)
 @examples(100)
-def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(
-    task: str, circumstances: AppraisalFeatures
-) -> None:
+def test_judges_always_punish_common_faults(task: str, circumstances: AppraisalFeatures) -> None:
     assert JUDGES[task].judge(circumstances) in {-1, 0, 1}
     for trouble in (
         {"bumped": 1.0},
@@ -65,14 +63,14 @@ def test_each_has_an_opinion_of_everything_and_trouble_is_never_good(
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_a_turn_right_round_on_its_way_is_no_lack_of_progress(task: str) -> None:
+def test_judges_allow_no_progress_while_turning(task: str) -> None:
     on_its_way = {"left_m": 0.2, "ahead_left_m": 0.4, "speed_m_s": 0.22, "turn_rad_s": 0.5}
     assert thinks(task, **on_its_way, no_progress=1.0) == thinks(task, **on_its_way)
 
 
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("of_it", [{"front_m": 0.12}, {"front_m": 0.12, "left_m": 0.2, "ahead_left_m": 0.15}])
-def test_who_drives_at_what_is_ahead_is_blamed(task: str, of_it: dict[str, float]) -> None:
+def test_judges_punish_driving_at_obstacles(task: str, of_it: dict[str, float]) -> None:
     assert thinks(task, **of_it, speed_m_s=0.3) == -1
 
 
@@ -112,7 +110,7 @@ ALONG = {"left_m": 0.2, "ahead_left_m": 0.3}
         ({"no_wall": 1.0, "turn_rad_s": 0.5, "speed_m_s": 0.22}, 0),  # it looks for one
     ],
 )
-def test_wall_following(circumstances: dict[str, float], thought: int) -> None:
+def test_wall_following_judge(circumstances: dict[str, float], thought: int) -> None:
     assert thinks("wall_following", **circumstances) == thought
 
 
@@ -139,7 +137,7 @@ def test_wall_following(circumstances: dict[str, float], thought: int) -> None:
         ({"ahead_left_m": 0.4, "speed_m_s": 0.4}, 1),
     ],
 )
-def test_fleeing(circumstances: dict[str, float], thought: int) -> None:
+def test_fleeing_judge(circumstances: dict[str, float], thought: int) -> None:
     assert thinks("fleeing", **circumstances) == thought
 
 
@@ -167,14 +165,14 @@ ROUND = {"left_m": 0.18, "turn_rad_s": 0.5, "speed_m_s": 0.22}
         ({"front_m": 0.18}, 0),
     ],
 )
-def test_the_eight(circumstances: dict[str, float], thought: int) -> None:
+def test_eight_judge(circumstances: dict[str, float], thought: int) -> None:
     assert thinks("eight", **circumstances) == thought
 
 
 @given(circumstances=anywhere)
 @examples(200)
-def test_the_eight_is_judged_the_same_to_either_side(circumstances: AppraisalFeatures) -> None:
-    """But for what is done with neither column beside it, which has to be one side."""
+def test_eight_judge_is_symmetric(circumstances: AppraisalFeatures) -> None:
+    """One side is preferred only without a column at the sides."""
     now = circumstances._replace(left_m=min(circumstances.left_m, 0.3))
     mirrored = now._replace(
         left_m=now.right_m,
