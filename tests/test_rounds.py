@@ -11,6 +11,7 @@ from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.opening import go_on_teaching
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.outcome import ResultCode
 from kurt2rt.rla.rla import RlaCreated, RlaDeleted
 from kurt2rt.rounds import Rounds, Screen, Status
 from kurt2rt.runtime import build_runtime
@@ -202,7 +203,7 @@ async def test_a_lesson_over_the_channel_is_answered_in_the_round_after_it_becam
     assert not task.done()
     shift.run()
     reply = await reply_of(task)
-    assert (reply.verdict, reply.body["row"], reply.body["text"]) == (Verdict.DONE, 1, "RLA 1 taught: forward")
+    assert (reply.verdict, reply.body["row"], reply.body["code"]) == (Verdict.DONE, 1, ResultCode.RLA_TAUGHT)
     assert desk.tick == shift.seen[-1].tick
 
     task = await desk.send(desk.command(CorrectRequest, "back", None))

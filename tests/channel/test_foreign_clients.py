@@ -19,6 +19,7 @@ from aiocoap import oscore
 from kurt2rt.channel.credentials import Pairing
 from kurt2rt.channel.requests import TakeRequest
 from kurt2rt.channel.wire import PATHS, decode_answer, decode_state, encode_request
+from kurt2rt.outcome import ResultCode
 from tests.channel.robot_at_work import RobotAtWork, journal_of, robot_at_work
 
 _NAMES = ("coap-client", "coap-client-notls", "coap-client-openssl", "coap-client-gnutls")
@@ -115,7 +116,7 @@ async def test_the_oscore_client_of_aiocoap_looks_observes_and_commands(tmp_path
                     content_format=60,
                 )
             ).response
-            assert (taken.code, decode_answer(taken.payload)["text"]) == (aiocoap.CHANGED, "local teaches")
+            assert (taken.code, decode_answer(taken.payload)["code"]) == (aiocoap.CHANGED, ResultCode.TAKEN)
             assert at_work.runtime.school.authority.teacher == "local"
             looking.observation.cancel()
 

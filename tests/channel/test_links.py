@@ -20,6 +20,7 @@ from anyio.abc import Process
 
 from kurt2rt.channel.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import ResultCode
 from kurt2rt.rla.rla import TeachingEvent
 from kurt2rt.teaching import TeacherClient
 from kurt2rt.teaching.answer import Answer, NoAnswerError
@@ -365,7 +366,8 @@ def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
             row = note.answer.extra["row"]
             assert events[row - 1].origin.command_id == _identity(note.request)
         else:
-            assert note.answer.text.endswith("already"), note.answer
+            assert note.answer.outcome is not None
+            assert note.answer.outcome.code is ResultCode.RLA_AGREES, note.answer
             assert count == 0
 
 

@@ -31,6 +31,7 @@ from kurt2rt.channel.teachers import Teachers
 from kurt2rt.channel.telling import Safekeeping
 from kurt2rt.channel.wire import CONTENT_FORMAT, PATHS, decode_answer, decode_state, encode_request, encode_state
 from kurt2rt.layers.decision import Cause
+from kurt2rt.outcome import RefusalCode, ResultCode
 from kurt2rt.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, Desk, turns
 from tests.channel.sides import answer_challenge, carried, header_of
@@ -238,7 +239,7 @@ async def test_a_device_teaches_under_its_own_name(school: School) -> None:
     await turns()
     school.desk.run()
     answer = await call
-    assert decode_answer(answer.payload)["text"] == "phase 2, corrections"
+    assert decode_answer(answer.payload)["code"] == ResultCode.PHASE_SET
     assert school.desk.telling.picture(school.desk.record).teacher == "ben"
 
 
@@ -279,7 +280,7 @@ async def test_a_refusal_has_the_code_of_a_conflict_and_a_world_that_is_not_ther
     assert (refused.code, decode_answer(refused.payload)["why"]) == (aiocoap.CONFLICT, "boot")
     nothing = await phone.post(WorldRequest())
     assert nothing.code == aiocoap.NOT_FOUND
-    assert decode_answer(nothing.payload)["text"] == "this robot is not simulated"
+    assert decode_answer(nothing.payload)["code"] == RefusalCode.NOT_SIMULATED
 
 
 async def test_a_fault_of_ours_is_counted_and_answered_and_the_next_request_is_fine(
@@ -569,11 +570,11 @@ async def test_a_paired_device_teaches_the_robot_over_a_socket(tmp_path: Path) -
     async with on_line(tmp_path) as robot:
         hello = await robot.call(HelloRequest())
         answer = await robot.call(AnswerRequest(hello["boot"], b"12345678", hello["tick"], "forward", None))
-        assert (answer["text"], answer["row"]) == ("RLA 1 taught: forward", 1)
+        assert (answer["code"], answer["fields"]["rla"], answer["row"]) == (ResultCode.RLA_TAUGHT, 1, 1)
         (lesson,) = (await robot.call(LessonsRequest(20)))["lessons"]
         assert lesson[:3] == ["ann-" + b"12345678".hex(), "RLA 1 taught: forward", "ann"]
         stop = await robot.call(StopRequest(b"87654321"))
-        assert stop["text"] == "the robot stands until it is told to resume"
+        assert stop["code"] == ResultCode.STOPPED
         assert robot.desk.record.decision.cause is Cause.STOPPED
         assert robot.channel.failures == 0
 
