@@ -5,7 +5,7 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 from kurt2rt.doctor.sysfs import attribute
 
 NET_FOLDER = Path("/sys/class/net")
@@ -15,9 +15,6 @@ BIT_RATE_BIT_S = 1_000_000
 
 _ARPHRD_CAN = 280
 _IFF_UP = 1
-_OTHER_KERNEL = (
-    "boot a kernel with CAN (Debian: linux-image-amd64; Ubuntu: linux-modules-extra-$(uname -r)); simulation needs none"
-)
 
 
 def _open_can_socket() -> socket.socket:
@@ -31,17 +28,17 @@ def check_can_kernel(
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
-        what_to_do = "sudo modprobe -a can can_raw" if _offers("can-raw", modules) else _OTHER_KERNEL
-        return Finding("CAN in the kernel", Status.MISSING, f"no AF_CAN socket ({error})", what_to_do)
-    return Finding("CAN in the kernel", Status.OK, "AF_CAN sockets can be opened")
+        code = FindingCode.CAN_UNLOADED if _offers("can-raw", modules) else FindingCode.CAN_MISSING
+        return Finding(code, Status.MISSING, {"error": str(error)})
+    return Finding(FindingCode.CAN, Status.OK)
 
 
 def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[Finding, ...]:
     """Which CAN interfaces with hardware are there, and are they up? One finding each, or one that there is none."""
     interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
     if not interfaces:
-        what_to_do = f"plug in the adapter, then: {_up('can0')}"
-        return (Finding("CAN interface", Status.MISSING, f"none with hardware in {net}", what_to_do),)
+        values = {"folder": str(net), "up": _up("can0")}
+        return (Finding(FindingCode.CAN_INTERFACE_NONE, Status.MISSING, values),)
     return tuple(_check_interface(each) for each in interfaces)
 
 
@@ -50,24 +47,21 @@ def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> Findin
     interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
     for each in interfaces:
         if _is_up(each):
-            return Finding("virtual CAN", Status.OK, f"{each.name}, up")
+            return Finding(FindingCode.VCAN, Status.OK, {"name": each.name})
     if interfaces:
-        name = interfaces[0].name
-        return Finding("virtual CAN", Status.WARNING, f"{name}, down", f"sudo ip link set {name} up")
+        return Finding(FindingCode.VCAN_DOWN, Status.WARNING, {"name": interfaces[0].name})
     if not _offers("vcan", modules):
-        return Finding("virtual CAN", Status.WARNING, f"no interface, no module vcan in {modules}", _OTHER_KERNEL)
-    what_to_do = "sudo modprobe vcan && sudo ip link add dev vcan0 type vcan && sudo ip link set vcan0 up"
-    return Finding("virtual CAN", Status.WARNING, "no interface, but the module vcan is there", what_to_do)
+        return Finding(FindingCode.VCAN_NO_MODULE, Status.WARNING, {"folder": str(modules)})
+    return Finding(FindingCode.VCAN_NONE, Status.WARNING)
 
 
 def _check_interface(interface: Path) -> Finding:
-    subject = f"CAN interface {interface.name}"
+    values = {"name": interface.name, "up": _up(interface.name)}
     if not _is_up(interface):
-        return Finding(subject, Status.WARNING, "down", _up(interface.name))
+        return Finding(FindingCode.CAN_INTERFACE_DOWN, Status.WARNING, values)
     if attribute(interface / "carrier") == "0":
-        what_to_do = f"check cable, terminators and bit rate; sudo ip link set {interface.name} down; "
-        return Finding(subject, Status.WARNING, "up, but off the bus", what_to_do + _up(interface.name))
-    return Finding(subject, Status.OK, "up")
+        return Finding(FindingCode.CAN_INTERFACE_OFF_BUS, Status.WARNING, values)
+    return Finding(FindingCode.CAN_INTERFACE, Status.OK, values)
 
 
 def _can_interfaces(net: Path) -> list[Path]:

@@ -5,7 +5,7 @@ import statistics
 import tempfile
 from pathlib import Path
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 from kurt2rt.doctor.sqlite_log import check_sqlite_log
 from kurt2rt.timing.disk import sync_ns
 
@@ -15,8 +15,6 @@ SYNC_LIMIT_S = 0.02
 LEAST_BYTES = 64 * 1024 * 1024
 WANTED_BYTES = 1024 * 1024 * 1024
 """Recorded runs take most of it."""
-
-_ANOTHER_FOLDER = "give a folder on a local disk that you may write, with --folder"
 
 
 def check_disk(folder: Path) -> tuple[Finding, ...]:
@@ -32,26 +30,24 @@ def check_disk(folder: Path) -> tuple[Finding, ...]:
                 check_sqlite_log(Path(scratch)),
             )
     except OSError as error:
-        found = f"{folder} cannot be written ({error})"
-        return (Finding("knowledge folder", Status.MISSING, found, _ANOTHER_FOLDER, needed=True),)
+        values = {"folder": str(folder), "error": str(error)}
+        return (Finding(FindingCode.FOLDER_UNWRITABLE, Status.MISSING, values, needed=True),)
 
 
 def _check_folder(folder: Path, place: Path) -> Finding:
     if place == folder:
-        return Finding("knowledge folder", Status.OK, f"{folder} can be written", needed=True)
-    found = f"{folder} is made when it is needed: {place} can be written"
-    return Finding("knowledge folder", Status.OK, found, needed=True)
+        return Finding(FindingCode.FOLDER, Status.OK, {"folder": str(folder)}, needed=True)
+    return Finding(FindingCode.FOLDER_TO_MAKE, Status.OK, {"folder": str(folder), "parent": str(place)}, needed=True)
 
 
 def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> Finding:
     """Is there room for knowledge and for recorded runs?"""
     free_bytes = shutil.disk_usage(folder).free
-    found = f"{free_bytes / 1e9:.1f} GB free"
-    if free_bytes < least_bytes:
-        return Finding("free space", Status.MISSING, found, f"make room, or {_ANOTHER_FOLDER}", needed=True)
+    values = {"free_gb": free_bytes / 1e9}
     if free_bytes < wanted_bytes:
-        return Finding("free space", Status.WARNING, found, f"make room, or {_ANOTHER_FOLDER}", needed=True)
-    return Finding("free space", Status.OK, found, needed=True)
+        status = Status.MISSING if free_bytes < least_bytes else Status.WARNING
+        return Finding(FindingCode.SPACE_LOW, status, values, needed=True)
+    return Finding(FindingCode.SPACE, Status.OK, values, needed=True)
 
 
 def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
@@ -59,8 +55,8 @@ def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
     with (folder / "sync").open("wb", buffering=0) as file:
         took_s = [sync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
     median_s = statistics.median(took_s)
-    found = f"median {median_s * 1000:.2f} ms of {SYNC_TIMES}, worst {max(took_s) * 1000:.2f} ms"
+    took = {"median_ms": median_s * 1000, "times": SYNC_TIMES, "worst_ms": max(took_s) * 1000}
+    values = {**took, "limit_ms": limit_s * 1000}
     if median_s > limit_s:
-        found = f"{found}: above {limit_s * 1000:g} ms, the teacher waits for each lesson"
-        return Finding("fsync", Status.WARNING, found, f"use a faster disk: {_ANOTHER_FOLDER}", needed=True)
-    return Finding("fsync", Status.OK, found, needed=True)
+        return Finding(FindingCode.SYNC_SLOW, Status.WARNING, values, needed=True)
+    return Finding(FindingCode.SYNC, Status.OK, values, needed=True)

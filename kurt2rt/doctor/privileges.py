@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 from kurt2rt.timing.priority import UNIT_PRIORITY
 
 SELF_STATUS = Path("/proc/self/status")
@@ -15,7 +15,6 @@ _CAP_SYS_NICE = 23
 _HIGHEST_PRIORITY = UNIT_PRIORITY + 1
 """Of the threads that have to overtake a loop that hangs."""
 _MIB = 1024 * 1024
-_LIMITS_FILE = "/etc/security/limits.d/kurt2rt.conf"
 
 
 def check_real_time_priority(
@@ -30,43 +29,31 @@ def check_real_time_priority(
     if limit is None:
         limit = resource.getrlimit(resource.RLIMIT_RTPRIO)[0]
     capability = "with" if _has_capability(_CAP_SYS_NICE, status) else "without"
-    found = f"RLIMIT_RTPRIO {_shown(limit)}, {capability} CAP_SYS_NICE"
+    values = {"limit": _shown(limit), "capability": capability}
     with ThreadPoolExecutor(max_workers=1) as thread:
         trial = thread.submit(set_scheduler, 0, os.SCHED_FIFO, os.sched_param(_HIGHEST_PRIORITY))
     try:
         trial.result()
     except OSError as error:
-        return Finding(
-            "real-time priority",
-            Status.WARNING,
-            f"not permitted ({error.strerror}), so ticks are missed while other programs are busy; {found}",
-            "the unit of kurt2rt service install is permitted it; by hand: "
-            f'echo "$USER - rtprio 50" | sudo tee -a {_LIMITS_FILE}, then log in again',
-        )
-    return Finding("real-time priority", Status.OK, f"SCHED_FIFO granted; {found}")
+        return Finding(FindingCode.PRIORITY_REFUSED, Status.WARNING, {**values, "error": str(error.strerror)})
+    return Finding(FindingCode.PRIORITY, Status.OK, values)
 
 
 def check_memory_lock(limit_bytes: int | None = None, status: Path = SELF_STATUS) -> Finding:
     """May a process as large as this one lock its memory, so that no tick waits for a page from the disk?"""
     if limit_bytes is None:
         limit_bytes = resource.getrlimit(resource.RLIMIT_MEMLOCK)[0]
-    unlimited = limit_bytes == resource.RLIM_INFINITY
-    found = f"RLIMIT_MEMLOCK {'unlimited' if unlimited else f'{limit_bytes / _MIB:.0f} MiB'}"
-    if unlimited:
-        return Finding("memory lock", Status.OK, found)
+    if limit_bytes == resource.RLIM_INFINITY:
+        return Finding(FindingCode.MEMORY_LOCK_UNLIMITED, Status.OK)
+    values = {"limit_mib": limit_bytes / _MIB}
     if _has_capability(_CAP_IPC_LOCK, status):
-        return Finding("memory lock", Status.OK, f"{found}, but CAP_IPC_LOCK sets no limit")
+        return Finding(FindingCode.MEMORY_LOCK_CAPABLE, Status.OK, values)
     # mlockall counts what is mapped, not what is resident; VmSize is in kB of 1024.
     mapped_bytes = int(_status_field("VmSize", status).split()[0]) * 1024
-    found = f"{found}, a process like this one maps {mapped_bytes / _MIB:.0f} MiB"
+    values["mapped_mib"] = mapped_bytes / _MIB
     if limit_bytes >= mapped_bytes:
-        return Finding("memory lock", Status.OK, found)
-    return Finding(
-        "memory lock",
-        Status.WARNING,
-        found,
-        f'echo "$USER - memlock unlimited" | sudo tee -a {_LIMITS_FILE}, then log in again',
-    )
+        return Finding(FindingCode.MEMORY_LOCK_LARGE, Status.OK, values)
+    return Finding(FindingCode.MEMORY_LOCK_SMALL, Status.WARNING, values)
 
 
 def _has_capability(number: int, status: Path) -> bool:

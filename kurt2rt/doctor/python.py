@@ -4,7 +4,7 @@ import subprocess
 import sys
 from importlib.metadata import version
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 
 LEAST_PYTHON = (3, 11)
 
@@ -14,10 +14,8 @@ def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> Finding:
     name = ".".join(map(str, found))
     if found[:2] < LEAST_PYTHON:
         least = ".".join(map(str, LEAST_PYTHON))
-        return Finding(
-            "Python", Status.MISSING, name, f"install Python {least} or newer and make a new .venv with it", needed=True
-        )
-    return Finding("Python", Status.OK, name, needed=True)
+        return Finding(FindingCode.PYTHON_OLD, Status.MISSING, {"version": name, "least": least}, needed=True)
+    return Finding(FindingCode.PYTHON, Status.OK, {"version": name}, needed=True)
 
 
 def check_package(name: str, used_for: str, python: str = sys.executable) -> Finding:
@@ -27,10 +25,9 @@ def check_package(name: str, used_for: str, python: str = sys.executable) -> Fin
     """
     fault = _import_fault(name, python)
     if fault:
-        found = f"cannot be imported ({fault}), needed for {used_for}"
-        what_to_do = f"in the project's folder: {python} -m pip install -e '.[simulation]'"
-        return Finding(name, Status.MISSING, found, what_to_do)
-    return Finding(name, Status.OK, f"{version(name)}, for {used_for}")
+        values = {"name": name, "used_for": used_for, "fault": fault, "python": python}
+        return Finding(FindingCode.PACKAGE_MISSING, Status.MISSING, values)
+    return Finding(FindingCode.PACKAGE, Status.OK, {"name": name, "used_for": used_for, "version": version(name)})
 
 
 def _import_fault(name: str, python: str) -> str:

@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 
 LEAST_SQLITE = (3, 37, 0)
 """The first with STRICT tables."""
@@ -15,9 +15,8 @@ def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> Findin
     name = ".".join(map(str, found))
     if found < LEAST_SQLITE:
         least = ".".join(map(str, LEAST_SQLITE))
-        what_to_do = f"use a Python that brings SQLite {least} or newer"
-        return Finding("SQLite", Status.MISSING, name, what_to_do, needed=True)
-    return Finding("SQLite", Status.OK, name, needed=True)
+        return Finding(FindingCode.SQLITE_OLD, Status.MISSING, {"version": name, "least": least}, needed=True)
+    return Finding(FindingCode.SQLITE, Status.OK, {"version": name}, needed=True)
 
 
 def check_sqlite_log(folder: Path) -> Finding:
@@ -29,9 +28,8 @@ def check_sqlite_log(folder: Path) -> Finding:
     except sqlite3.Error as error:
         fault = str(error)
     if fault:
-        what_to_do = "give a folder on a local disk with --folder"
-        return Finding("SQLite log", Status.MISSING, f"does not work in this folder: {fault}", what_to_do, needed=True)
-    return Finding("SQLite log", Status.OK, "write-ahead log works beside a reader", needed=True)
+        return Finding(FindingCode.SQLITE_LOG_FAILS, Status.MISSING, {"fault": fault}, needed=True)
+    return Finding(FindingCode.SQLITE_LOG, Status.OK, needed=True)
 
 
 def _connect(path: Path) -> sqlite3.Connection:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import anyio
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 from kurt2rt.doctor.sysfs import attribute
 from kurt2rt.timing.asyncio_clock import AsyncioClock
 from kurt2rt.timing.clock import Clock
@@ -59,26 +59,19 @@ def check_timer(
     try:
         ours, theirs = anyio.run(both)
     except OSError as error:
-        return Finding(
-            "timer",
-            Status.MISSING,
-            f"no timerfd ({error})",
-            "run on Linux, outside of sandboxes that refuse timerfd_create",
-            needed=True,
-        )
-    found = (
-        f"{ticks} ticks of {period_s * 1000:g} ms: timerfd {_shown(ours)}; asyncio.sleep {_shown(theirs)}; "
-        f"ratio {theirs.median_s / max(ours.median_s, 1e-9):.1f}"
-    )
+        return Finding(FindingCode.TIMER_MISSING, Status.MISSING, {"error": str(error)}, needed=True)
+    values = {
+        "ticks": ticks,
+        "period_ms": period_s * 1000,
+        "median_ms": ours.median_s * 1000,
+        "worst_ms": ours.worst_s * 1000,
+        "asyncio_median_ms": theirs.median_s * 1000,
+        "asyncio_worst_ms": theirs.worst_s * 1000,
+        "ratio": theirs.median_s / max(ours.median_s, 1e-9),
+    }
     if ours.median_s > TOLERABLE_MEDIAN_S or ours.worst_s >= period_s:
-        return Finding(
-            "timer",
-            Status.WARNING,
-            f"{found}: ticks would come late or be missed",
-            "end other programs, see CPU governor and real-time priority here, then run kurt2rt doctor again",
-            needed=True,
-        )
-    return Finding("timer", Status.OK, found, needed=True)
+        return Finding(FindingCode.TIMER_LATE, Status.WARNING, values, needed=True)
+    return Finding(FindingCode.TIMER, Status.OK, values, needed=True)
 
 
 def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> Finding:
@@ -86,15 +79,9 @@ def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) 
     if resolution_s is None:
         resolution_s = time.get_clock_info("monotonic").resolution
     name = attribute(source) or "unknown"
-    found = f"resolution {resolution_s * 1e9:.0f} ns, source {name}"
+    values: dict[str, float | str] = {"resolution_ns": resolution_s * 1e9, "source": name}
     if resolution_s > COARSE_RESOLUTION_S:
-        what_to_do = "use a kernel with CONFIG_HIGH_RES_TIMERS, booted without highres=off"
-        return Finding("clock", Status.WARNING, f"{found}: ticks would follow the kernel's jiffies", what_to_do)
+        return Finding(FindingCode.CLOCK_COARSE, Status.WARNING, values)
     if name in SLOW_CLOCK_SOURCES:
-        what_to_do = "boot with clocksource=tsc, if dmesg does not call the TSC unstable"
-        return Finding("clock", Status.WARNING, f"{found}: slow to read", what_to_do)
-    return Finding("clock", Status.OK, found)
-
-
-def _shown(lateness: Lateness) -> str:
-    return f"median {lateness.median_s * 1000:.3f} ms late, worst {lateness.worst_s * 1000:.3f}"
+        return Finding(FindingCode.CLOCK_SLOW, Status.WARNING, values)
+    return Finding(FindingCode.CLOCK, Status.OK, values)

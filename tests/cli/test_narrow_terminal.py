@@ -13,7 +13,7 @@ from kurt2rt.cli.status import as_rich as health_as_rich
 from kurt2rt.commission.checklist import STEPS
 from kurt2rt.commission.progress import Progress
 from kurt2rt.commission.report import print_report as print_commissioning
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 from kurt2rt.doctor.report import print_report as print_doctor
 from kurt2rt.experiments.errands.tables import sheets as errand_sheets
 from kurt2rt.experiments.paper.tables import asked_sheet, drive_sheet, exam_sheet, knowledge_sheet
@@ -44,8 +44,8 @@ from tests.soak.test_checks import RESULT as SOAKED
 WALLS = str(STORED / "walls.mcap")
 DRIVES = [paper.robot(seed, 92, paper.drive("rooms-9007"), paper.drive("manhattan")) for seed in (100, 101)]
 FOUND = [
-    Finding("real-time priority", Status.WARNING, "SCHED_FIFO is not permitted to this user; " * 3, "do", needed=False),
-    Finding("disk", Status.OK, "/var/lib/kurt2rt/knowledge/of/this/robot: 4.1 ms median", needed=True),
+    Finding(FindingCode.PRIORITY, Status.OK, {"limit": "unlimited " * 9, "capability": "without"}),
+    Finding(FindingCode.FOLDER, Status.OK, {"folder": "/var/lib/kurt2rt/knowledge/of/this/robot"}, needed=True),
 ]
 
 Print = Callable[[Console], None]

@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.doctor.can_bus import BIT_RATE_BIT_S, check_can_interfaces, check_can_kernel, check_vcan
-from kurt2rt.doctor.finding import Status
+from kurt2rt.doctor.finding import FindingCode, Status
 
 UP = "0x400c1"
 DOWN = "0x400c0"
@@ -61,7 +61,7 @@ def test_the_bit_rate_to_copy_is_that_of_the_robot() -> None:
 def test_the_kernel_of_this_machine_speaks_can_or_we_are_told_how() -> None:
     finding = check_can_kernel()
     assert finding.status in (Status.OK, Status.MISSING)
-    assert bool(finding.what_to_do) == (finding.status is Status.MISSING)
+    assert (finding.code is FindingCode.CAN) == (finding.status is Status.OK)
 
 
 def test_the_socket_that_was_tried_is_closed_again() -> None:
@@ -73,26 +73,27 @@ def test_the_socket_that_was_tried_is_closed_again() -> None:
 def test_a_kernel_that_only_lacks_the_module_is_told_to_load_it(modules: Path) -> None:
     finding = check_can_kernel(no_can, modules)
     assert finding.status is Status.MISSING
-    assert finding.what_to_do == "sudo modprobe -a can can_raw"
+    assert finding.code is FindingCode.CAN_UNLOADED
 
 
 def test_a_kernel_without_can_is_missing_it_but_may_run_the_simulation(tmp_path: Path) -> None:
     finding = check_can_kernel(no_can, tmp_path)
     assert finding.status is Status.MISSING
-    assert "simulation needs none" in finding.what_to_do
+    assert finding.code is FindingCode.CAN_MISSING
     assert not finding.forbids_run
 
 
 def test_the_interfaces_of_this_machine_can_be_looked_at() -> None:
     assert check_can_interfaces()
-    assert check_vcan().subject == "virtual CAN"
+    assert check_vcan().code.startswith("vcan")
 
 
 def test_no_can_interface_among_the_others(net: Net) -> None:
     (finding,) = check_can_interfaces(net.folder)
     assert finding.status is Status.MISSING
     assert not finding.forbids_run
-    assert finding.what_to_do.endswith("sudo ip link set can0 up type can bitrate 1000000")
+    assert finding.code is FindingCode.CAN_INTERFACE_NONE
+    assert finding.values["up"] == "sudo ip link set can0 up type can bitrate 1000000"
 
 
 def test_a_machine_without_sysfs_has_no_interface(tmp_path: Path) -> None:
@@ -105,44 +106,44 @@ def test_each_interface_with_hardware_is_looked_at(net: Net) -> None:
     net.add("can1", flags=DOWN)
     net.add("vcan0", device=False)
     up, down = check_can_interfaces(net.folder)
-    assert (up.subject, up.status, up.what_to_do) == ("CAN interface can0", Status.OK, "")
-    assert (down.subject, down.status) == ("CAN interface can1", Status.WARNING)
-    assert down.what_to_do == "sudo ip link set can1 up type can bitrate 1000000"
+    assert (up.code, up.status, up.values["name"]) == (FindingCode.CAN_INTERFACE, Status.OK, "can0")
+    assert (down.code, down.status) == (FindingCode.CAN_INTERFACE_DOWN, Status.WARNING)
+    assert down.values == {"name": "can1", "up": "sudo ip link set can1 up type can bitrate 1000000"}
 
 
 def test_an_interface_that_went_off_the_bus_points_to_the_wiring(net: Net) -> None:
     net.add("can0", carrier="0")
     (finding,) = check_can_interfaces(net.folder)
     assert finding.status is Status.WARNING
-    assert "off the bus" in finding.found
-    assert "terminators" in finding.what_to_do
+    assert finding.code is FindingCode.CAN_INTERFACE_OFF_BUS
 
 
 def test_a_serial_line_adapter_is_hardware_whose_bit_rate_ip_cannot_set(net: Net) -> None:
     net.add("slcan0", flags=DOWN, device=False)
     (finding,) = check_can_interfaces(net.folder)
-    assert finding.what_to_do == "sudo ip link set slcan0 up"
+    assert finding.values["up"] == "sudo ip link set slcan0 up"
 
 
 def test_a_virtual_interface_that_is_up_will_do(net: Net) -> None:
     net.add("vcan0", flags=DOWN, device=False)
     net.add("vcan1", device=False)
-    assert check_vcan(net.folder).found == "vcan1, up"
+    finding = check_vcan(net.folder)
+    assert (finding.code, finding.values) == (FindingCode.VCAN, {"name": "vcan1"})
 
 
 def test_a_virtual_interface_that_is_down_is_to_be_set_up(net: Net) -> None:
     net.add("vcan0", flags=DOWN, device=False)
     finding = check_vcan(net.folder)
     assert finding.status is Status.WARNING
-    assert finding.what_to_do == "sudo ip link set vcan0 up"
+    assert (finding.code, finding.values) == (FindingCode.VCAN_DOWN, {"name": "vcan0"})
 
 
 def test_a_module_that_is_there_can_make_a_virtual_interface(net: Net, modules: Path) -> None:
     net.add("can0")
-    assert check_vcan(net.folder, modules).what_to_do.startswith("sudo modprobe vcan && sudo ip link add dev vcan0")
+    assert check_vcan(net.folder, modules).code is FindingCode.VCAN_NONE
 
 
 def test_without_the_module_another_kernel_is_wanted(net: Net, tmp_path: Path) -> None:
     finding = check_vcan(net.folder, tmp_path)
     assert finding.status is Status.WARNING
-    assert finding.what_to_do.startswith("boot a kernel with CAN")
+    assert finding.code is FindingCode.VCAN_NO_MODULE

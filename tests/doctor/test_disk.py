@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.doctor.disk import check_disk, check_free_space, check_sync
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
 
-EVERYTHING = ["knowledge folder", "free space", "fsync", "SQLite log"]
+SPACE = {FindingCode.SPACE, FindingCode.SPACE_LOW}
+SYNC = {FindingCode.SYNC, FindingCode.SYNC_SLOW}
 
 
 def only(findings: tuple[Finding, ...]) -> Finding:
@@ -21,7 +22,10 @@ def only(findings: tuple[Finding, ...]) -> Finding:
 def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path: Path) -> None:
     (tmp_path / "knowledge.sqlite").write_bytes(b"not ours to touch")
     findings = check_disk(tmp_path)
-    assert [finding.subject for finding in findings] == EVERYTHING
+    folder, space, sync, log = (finding.code for finding in findings)
+    assert (folder, log) == (FindingCode.FOLDER, FindingCode.SQLITE_LOG)
+    assert space in SPACE
+    assert sync in SYNC
     assert not any(finding.forbids_run for finding in findings)
     assert findings[0].status is Status.OK
     assert [each.name for each in tmp_path.iterdir()] == ["knowledge.sqlite"]
@@ -31,9 +35,9 @@ def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path:
 def test_a_folder_that_is_not_there_is_judged_by_its_parent_and_not_made(tmp_path: Path) -> None:
     folder = tmp_path / "robots" / "anna's"
     findings = check_disk(folder)
-    assert [finding.subject for finding in findings] == EVERYTHING
+    assert len(findings) == 4
     assert findings[0].status is Status.OK
-    assert "is made when it is needed" in findings[0].found
+    assert findings[0].code is FindingCode.FOLDER_TO_MAKE
     assert not list(tmp_path.iterdir())
 
 
@@ -41,8 +45,7 @@ def test_a_folder_that_is_not_there_is_judged_by_its_parent_and_not_made(tmp_pat
 def test_a_folder_that_cannot_be_written_forbids_to_run(name: str) -> None:
     finding = only(check_disk(Path("/proc", name)))  # /proc refuses root too
     assert finding.forbids_run
-    assert "cannot be written" in finding.found
-    assert "--folder" in finding.what_to_do
+    assert finding.code is FindingCode.FOLDER_UNWRITABLE
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write a read-only folder")
@@ -73,5 +76,5 @@ def test_a_disk_that_is_slow_to_sync_is_a_warning(tmp_path: Path) -> None:
     assert check_sync(tmp_path, math.inf).status is Status.OK
     finding = check_sync(tmp_path, limit_s=0.0)
     assert finding.status is Status.WARNING
-    assert "the teacher waits" in finding.found
+    assert finding.code is FindingCode.SYNC_SLOW
     assert not finding.forbids_run

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.doctor.finding import Status
+from kurt2rt.doctor.finding import FindingCode, Status
 from kurt2rt.doctor.privileges import check_memory_lock, check_real_time_priority
 
 NOTHING = "0000000000000000"
@@ -49,24 +49,23 @@ def test_a_refusal_says_how_to_be_granted_it_next_time(tmp_path: Path) -> None:
 
     finding = check_real_time_priority(0, refuse, status_file(tmp_path, NOTHING))
     assert finding.status is Status.WARNING
-    assert finding.found == (
-        "not permitted (Operation not permitted: 0 1 21), so ticks are missed while other programs are busy; "
-        "RLIMIT_RTPRIO 0, without CAP_SYS_NICE"
-    )
-    assert finding.what_to_do.startswith("the unit of kurt2rt service install is permitted it; by hand: echo ")
-    assert "rtprio" in finding.what_to_do
-    assert "\n" not in finding.what_to_do
+    assert finding.code is FindingCode.PRIORITY_REFUSED
+    assert finding.values == {
+        "limit": "0",
+        "capability": "without",
+        "error": "Operation not permitted: 0 1 21",
+    }
     assert not finding.forbids_run
 
 
 def test_limit_and_capability_are_shown(tmp_path: Path) -> None:
     status = status_file(tmp_path, SYS_NICE)
-    found = check_real_time_priority(resource.RLIM_INFINITY, lambda *_: None, status).found
-    assert found == "SCHED_FIFO granted; RLIMIT_RTPRIO unlimited, with CAP_SYS_NICE"
+    finding = check_real_time_priority(resource.RLIM_INFINITY, lambda *_: None, status)
+    assert finding.values == {"limit": "unlimited", "capability": "with"}
 
 
 def test_the_memory_lock_of_this_machine_is_shown() -> None:
-    assert check_memory_lock().found.startswith("RLIMIT_MEMLOCK ")
+    assert check_memory_lock().code.startswith("memory lock")
 
 
 @pytest.mark.parametrize(
@@ -84,4 +83,4 @@ def test_memory_can_be_locked_when_the_whole_process_fits(
 ) -> None:
     finding = check_memory_lock(limit_bytes, status_file(tmp_path, capabilities))
     assert finding.status is status
-    assert ("memlock unlimited" in finding.what_to_do) == (status is Status.WARNING)
+    assert (finding.code is FindingCode.MEMORY_LOCK_SMALL) == (status is Status.WARNING)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from kurt2rt.doctor.finding import Status
+from kurt2rt.doctor.finding import FindingCode, Status
 from kurt2rt.doctor.processor import check_blas_threads, check_cores, check_governor
 
 
@@ -20,8 +20,7 @@ def cpu_folder(folder: Path, *governors: str) -> Path:
 
 
 def test_the_cores_of_this_machine_are_counted() -> None:
-    usable = int(check_cores().found.split()[0])
-    assert usable >= 1
+    assert int(check_cores().values["usable"]) >= 1
 
 
 def test_one_core_is_a_warning_and_two_will_do() -> None:
@@ -30,20 +29,20 @@ def test_one_core_is_a_warning_and_two_will_do() -> None:
 
 
 def test_the_governor_of_this_machine_is_read_or_said_to_be_none() -> None:
-    assert check_governor().found
+    assert check_governor().code.startswith("governor")
 
 
 def test_cores_at_full_clock_are_fine(tmp_path: Path) -> None:
     finding = check_governor(cpu_folder(tmp_path, "performance", "performance"))
     assert finding.status is Status.OK
-    assert finding.found == "performance on 2 cores"
+    assert finding.code is FindingCode.GOVERNOR
 
 
 def test_one_core_that_saves_power_is_a_warning(tmp_path: Path) -> None:
     finding = check_governor(cpu_folder(tmp_path, "performance", "powersave", "performance"))
     assert finding.status is Status.WARNING
-    assert finding.found == "performance on 2 cores, powersave on 1 cores"
-    assert finding.what_to_do == f"echo performance | sudo tee {tmp_path}/cpu*/cpufreq/scaling_governor"
+    assert finding.code is FindingCode.GOVERNOR_SAVING
+    assert finding.values["folder"] == str(tmp_path)
 
 
 def test_a_machine_without_governor_has_nothing_to_mend(tmp_path: Path) -> None:
@@ -56,5 +55,5 @@ def test_one_blas_thread_is_fine_and_two_are_a_warning() -> None:
     with threadpool_limits(2, user_api="blas"):
         finding = check_blas_threads()
     assert finding.status is Status.WARNING
-    assert finding.found.endswith(" 2")
-    assert "OPENBLAS_NUM_THREADS=1" in finding.what_to_do
+    assert finding.code is FindingCode.BLAS_MANY
+    assert str(finding.values["libraries"]).endswith(" 2")

@@ -6,13 +6,18 @@ from typing import Literal
 
 from rich.console import Console
 
-from kurt2rt.doctor.finding import Finding, Status
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
+from kurt2rt.doctor.finding_text import text_of
 from kurt2rt.doctor.report import as_json, print_report, summary
 
-FINE = Finding("Python", Status.OK, "3.11.7", needed=True)
-SLOW = Finding("fsync", Status.WARNING, "median 31 ms", "use a faster disk", needed=True)
-NO_CAN = Finding("CAN interface", Status.MISSING, "none [yet]", "sudo ip link set can0 up type can bitrate 1000000")
-NO_DISK = Finding("knowledge folder", Status.MISSING, "cannot be written", "give another", needed=True)
+FINE = Finding(FindingCode.PYTHON, Status.OK, {"version": "3.11.7"}, needed=True)
+SLOW = Finding(FindingCode.SPACE_LOW, Status.WARNING, {"free_gb": 0.5}, needed=True)
+NO_CAN = Finding(
+    FindingCode.CAN_INTERFACE_NONE,
+    Status.MISSING,
+    {"folder": "[net]", "up": "sudo ip link set can0 up type can bitrate 1000000"},
+)
+NO_DISK = Finding(FindingCode.FOLDER_UNWRITABLE, Status.MISSING, {"folder": "/x", "error": "full"}, needed=True)
 
 
 def printed(*findings: Finding, width: int = 120, colours: Literal["standard"] | None = None) -> str:
@@ -33,11 +38,11 @@ def test_the_summary_is_the_last_line() -> None:
 
 
 def test_brackets_in_what_was_found_are_no_markup() -> None:
-    assert "none [yet]" in printed(NO_CAN)
+    assert "[net]" in printed(NO_CAN)
 
 
 def test_a_line_to_copy_stays_one_line_on_a_narrow_screen() -> None:
-    assert f"CAN interface: {NO_CAN.what_to_do}" in printed(NO_CAN, width=40).splitlines()
+    assert f"{text_of(NO_CAN).subject}: {text_of(NO_CAN).what_to_do}" in printed(NO_CAN, width=40).splitlines()
 
 
 def test_the_status_has_a_colour_of_its_own() -> None:
@@ -49,11 +54,12 @@ def test_the_status_has_a_colour_of_its_own() -> None:
 def test_json_holds_everything() -> None:
     assert json.loads(as_json([NO_CAN, FINE])) == [
         {
+            "code": "can interface none",
             "subject": "CAN interface",
             "status": "missing",
-            "found": "none [yet]",
-            "what_to_do": "sudo ip link set can0 up type can bitrate 1000000",
+            "found": text_of(NO_CAN).found,
+            "what_to_do": text_of(NO_CAN).what_to_do,
             "needed": False,
         },
-        {"subject": "Python", "status": "ok", "found": "3.11.7", "what_to_do": "", "needed": True},
+        {"code": "python", "subject": "Python", "status": "ok", "found": "3.11.7", "what_to_do": "", "needed": True},
     ]

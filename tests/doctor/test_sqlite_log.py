@@ -4,7 +4,7 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from kurt2rt.doctor.finding import Status
+from kurt2rt.doctor.finding import FindingCode, Status
 from kurt2rt.doctor.sqlite_log import check_sqlite, check_sqlite_log, log_fault
 
 
@@ -24,7 +24,7 @@ def test_a_log_works_on_this_disk(tmp_path: Path) -> None:
 def test_a_folder_where_sqlite_cannot_open_a_file_forbids_to_run(tmp_path: Path) -> None:
     finding = check_sqlite_log(tmp_path / "nowhere")
     assert finding.forbids_run
-    assert "unable to open database file" in finding.found
+    assert finding.code is FindingCode.SQLITE_LOG_FAILS
 
 
 def test_a_database_that_keeps_no_log_is_found_out() -> None:

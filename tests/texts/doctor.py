@@ -1,0 +1,46 @@
+"""Listing of the texts of the doctor's findings."""
+
+from collections.abc import Iterator
+
+from kurt2rt.doctor.finding import Finding, FindingCode, Status
+from kurt2rt.doctor.finding_text import text_of
+
+_VALUES: dict[str, float | str] = {
+    "version": "3.11.7",
+    "least": "3.11",
+    "name": "can0",
+    "used_for": "tables",
+    "fault": "no module",
+    "python": "/bin/python",
+    "ticks": 100,
+    "period_ms": 10.0,
+    "median_ms": 0.1,
+    "worst_ms": 0.2,
+    "ratio": 9.5,
+    "asyncio_median_ms": 1.0,
+    "asyncio_worst_ms": 2.0,
+    "error": "refused",
+    "resolution_ns": 1.0,
+    "source": "tsc",
+    "limit": "0",
+    "capability": "without",
+    "limit_mib": 8.0,
+    "mapped_mib": 300.0,
+    "usable": 1,
+    "cores": 4,
+    "governors": "performance on 2 cores",
+    "folder": "/x",
+    "numpy": "2.1",
+    "libraries": "openblas 1",
+    "parent": "/",
+    "free_gb": 0.5,
+    "times": 20,
+    "limit_ms": 20.0,
+    "up": "sudo ip link set can0 up",
+}
+
+
+def findings() -> Iterator[tuple[str, str]]:
+    """Yield subject, found and what to do of each finding."""
+    for code in FindingCode:
+        yield code, " | ".join(text_of(Finding(code, Status.OK, _VALUES)))
