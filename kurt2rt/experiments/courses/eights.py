@@ -32,7 +32,7 @@ class EightsSettings(CourseSettings):
         """The course."""
         plan = simulation.plan
         self.require(plan, behaviours)
-        west, east = sorted(plan.posts)
+        west, east = sorted(plan.posts, key=lambda post: post.x_m)
         return Eights(self, west, east, behaviours[0])
 
 
