@@ -70,7 +70,7 @@ def test_each_start_of_the_wheels_is_noted_once() -> None:
     witness.emergency_stop(GuardReason.SERVICE_ENDS)
     witness.release()
     witness.close()
-    assert robot.told == ["enough", "release", "close"]
+    assert robot.told == [GuardReason.SERVICE_ENDS, "release", "close"]
 
 
 def test_a_lost_press_misses_the_goal_however_quick_the_others_were() -> None:
