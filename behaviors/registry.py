@@ -6,27 +6,15 @@ from pydantic import PlainValidator, SerializeAsAny
 
 from behaviors.judges.judge import JudgeSettings
 from behaviors.policies.policy import PolicySettings
-from hal.settings_by_kind import as_its_kind, find_kind
-
-_JUDGES, _POLICIES = "behaviors.judges", "behaviors.policies"
-
-
-def judge_settings(kind: str) -> type[JudgeSettings]:
-    """Return the settings class of a kind of judge. Raises ValueError that lists the kinds."""
-    return find_kind(_JUDGES, kind, JudgeSettings)  # type: ignore[type-abstract]
-
-
-def policy_settings(kind: str) -> type[PolicySettings]:
-    """Return the settings class of a kind of policy. Raises ValueError that lists the kinds."""
-    return find_kind(_POLICIES, kind, PolicySettings)  # type: ignore[type-abstract]
+from hal.settings_by_kind import as_its_kind
 
 
 def _checked_judge(given: object) -> JudgeSettings:
-    return as_its_kind(given, _JUDGES, JudgeSettings)  # type: ignore[type-abstract]
+    return as_its_kind(given, "behaviors.judges", JudgeSettings)  # type: ignore[type-abstract]
 
 
 def _checked_policy(given: object) -> PolicySettings:
-    return as_its_kind(given, _POLICIES, PolicySettings)  # type: ignore[type-abstract]
+    return as_its_kind(given, "behaviors.policies", PolicySettings)  # type: ignore[type-abstract]
 
 
 AnyJudgeSettings = Annotated[SerializeAsAny[JudgeSettings], PlainValidator(_checked_judge)]

@@ -73,13 +73,6 @@ def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _RO
 
 def draw_trail(axes: "Axes", points: Sequence[Point], colour: str = _ROBOT) -> None:
     """Draw a trajectory of (x, y) points in metres."""
-    axes.plot(*_columns(points), color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2)
-
-
-def draw_marks(axes: "Axes", points: Sequence[Point], label: str, colour: str = "#c2452d") -> None:
-    """Draw dots at (x, y) points in metres, with a label for the legend."""
-    axes.plot(*_columns(points), linestyle="none", marker="o", markersize=4.0, color=colour, label=label, zorder=5)
-
-
-def _columns(points: Sequence[Point]) -> tuple[list[float], list[float]]:
-    return [x for x, _ in points], [y for _, y in points]
+    axes.plot(
+        [x for x, _ in points], [y for _, y in points], color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2
+    )

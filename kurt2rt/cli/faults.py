@@ -57,7 +57,7 @@ def faults(
     from kurt2rt.faults.report import as_json, print_report
     from kurt2rt.faults.stop_times import stop_times
     from kurt2rt.faults.suite import try_cases
-    from simbridge.faults.stage import FaultRigFactory
+    from simbridge.faults.place import FaultRigFactory
 
     require_json_file(file, as_json=json)
     targets, kinds = _targets(target), _kinds(kind)

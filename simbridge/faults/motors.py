@@ -28,14 +28,14 @@ class FaultyMotor:
     other way. slow: lag with the fault's period as time constant. delayed: late commands. intermittent: loose contact.
     """
 
-    def __init__(self, disturbance: TimedFault, time: EventScheduler, chance: random.Random, cycle_s: float) -> None:
-        self._disturbance = disturbance
+    def __init__(self, fault: TimedFault, time: EventScheduler, chance: random.Random, cycle_s: float) -> None:
+        self._fault = fault
         self._time = time
         self._chance = chance
         self._last = SideCommand(0.0, brake=False)
         self._late: deque[SideCommand] = deque()
-        self._late_cycles = max(1, round(disturbance.delay_s / cycle_s))
-        self._slow_ratio = min(1.0, cycle_s / disturbance.period_s) if disturbance.period_s else 1.0
+        self._late_cycles = max(1, round(fault.delay_s / cycle_s))
+        self._slow_ratio = min(1.0, cycle_s / fault.period_s) if fault.period_s else 1.0
         self._slow_m_s = 0.0
         self._random_m_s = 0.0
         self._garbage_cycles = 0
@@ -44,11 +44,11 @@ class FaultyMotor:
         """Return the command that the motor executes."""
         self._late.append(command)
         late = self._late.popleft() if len(self._late) > self._late_cycles else self._late[0]
-        if not self._disturbance.acts(self._time.now_s()):
+        if not self._fault.acts(self._time.now_s()):
             self._last = command
             self._slow_m_s = command.target_m_s
             return command
-        match self._disturbance.kind:
+        match self._fault.kind:
             case "off" | "intermittent":
                 return SideCommand(0.0, brake=False)
             case "stuck":
@@ -76,11 +76,11 @@ class FaultyWheels(Wheels):
         self._disturbed: dict[str, FaultyMotor] = {}
         """Faulty motor by part; other sides are sound."""
 
-    def disturb(self, part: str | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random) -> None:
+    def disturb(self, part: str | None, fault: TimedFault, time: EventScheduler, chance: random.Random) -> None:
         """Replace the fault: it hits `left_motor` or `right_motor`; any other part clears it."""
         self._disturbed = {}
         if part in ("left_motor", "right_motor"):
-            self._disturbed[part] = FaultyMotor(disturbance, time, chance, self._cycle_s)
+            self._disturbed[part] = FaultyMotor(fault, time, chance, self._cycle_s)
 
     def turn(
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False

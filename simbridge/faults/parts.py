@@ -32,13 +32,13 @@ def part_of(target: str) -> Part | None:
 
 
 def faulty_telemetry_link(
-    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
+    part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
 ) -> FrameLink | None:
     """Return the link from the robot's boards to the bus; None if the part does not affect it."""
     if part == "encoders":
         encoder = codec.message("ENCODER")
         return FaultyLink(
-            disturbance,
+            fault,
             time,
             chance,
             {encoder.frame_id},
@@ -55,11 +55,11 @@ def faulty_telemetry_link(
         message = board[frame.arbitration_id]
         return [message.pack(*(max(0, _FLOOR_AND_PLATEAU - each) for each in message.unpack(frame.data)))]
 
-    return FaultyLink(disturbance, time, chance, board.keys(), falsify=mirror_distances)
+    return FaultyLink(fault, time, chance, board.keys(), falsify=mirror_distances)
 
 
 def faulty_rx_link(
-    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
+    part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
 ) -> FrameLink | None:
     """Return the link from the bus to the driver; None if the part does not affect it."""
     if part != "bus_in":
@@ -69,11 +69,11 @@ def faulty_rx_link(
     def add_foreign_command(frame: can.Message) -> list[can.Message]:
         return [frame, _FOREIGN_COMMAND] if frame.arbitration_id == last_of_a_cycle else [frame]
 
-    return FaultyLink(disturbance, time, chance, None, falsify=add_foreign_command)
+    return FaultyLink(fault, time, chance, None, falsify=add_foreign_command)
 
 
 def faulty_tx_link(
-    part: Part | None, disturbance: TimedFault, time: EventScheduler, chance: random.Random
+    part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random
 ) -> FrameLink | None:
     """Return the link from the driver to the bus; None if the part does not affect it."""
-    return FaultyTxLink(disturbance, time, chance) if part == "bus_out" else None
+    return FaultyTxLink(fault, time, chance) if part == "bus_out" else None

@@ -3,6 +3,7 @@
 import random
 import uuid
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import can
 
@@ -14,14 +15,27 @@ from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from hal.watchdog import POLL_S
-from simbridge.faults.disturbance import TimedFault
+from simbridge.faults.disturbance import Kind, TimedFault
 from simbridge.faults.disturbed_end import FaultyInterface
 from simbridge.faults.event_time import EventScheduler
-from simbridge.faults.hall import CORRIDOR_WORLD
 from simbridge.faults.motors import FaultyWheels
-from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link
+from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.way import Deliver, FrameLink, IdealLink
 from simbridge.simulated_robot import SimulatedRobot
+from simbridge.world_settings import StartPoseSettings, WorldSettings
+
+_LENGTH_M, _WIDTH_M = 10.0, 4.0
+_WALL_AT_M = 0.22
+_HALF_WIDTH_M = 0.165
+
+CORRIDOR_WORLD = WorldSettings(
+    name="hall",
+    size_m=(_LENGTH_M, _WIDTH_M),
+    infrared_rays=1,
+    outline=((0.0, 0.0), (_LENGTH_M, 0.0), (_LENGTH_M, _WIDTH_M), (0.0, _WIDTH_M), (0.0, 0.0)),
+    start_poses=(StartPoseSettings(x_m=1.5, y_m=_WIDTH_M - _HALF_WIDTH_M - _WALL_AT_M, heading_deg=0.0),),
+)
+"""Corridor with one constant situation, so that a standstill is due to the fault."""
 
 
 class SimulatedFaultRig:
@@ -135,6 +149,25 @@ class SimulatedFaultRig:
         wheels = FaultyWheels(self._settings)
         wheels.disturb(self._part, self.disturbance, self.time, self._chance)
         return wheels
+
+
+@dataclass(frozen=True, slots=True)
+class FaultRigFactory:
+    """Factory of robots in a corridor with one fault; picklable."""
+
+    settings: RobotSettings
+
+    def open(
+        self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float, seed: int
+    ) -> SimulatedFaultRig:
+        """Return a rig with a fault from `begin_s` to `end_s`, shifted by the seed's phase within a cycle.
+
+        A target that is no part of robot or bus is left to the caller; the rig's `disturbance` has the times.
+        """
+        chance = random.Random(f"{target} {kind} {seed}")
+        phase_s = chance.uniform(0.0, self.settings.can.cycle_s)
+        disturbance = TimedFault(kind, begin_s + phase_s, end_s + phase_s, period_s, delay_s)
+        return SimulatedFaultRig(self.settings, part_of(target), disturbance, chance)
 
 
 class _ObservedLink:

@@ -32,6 +32,30 @@ class IdealLink:
         deliver(frame)
 
 
+class DelayedFrames:
+    """First-in first-out queue of delayed frames; the end of the fault delivers the rest."""
+
+    def __init__(self, fault: TimedFault, time: EventScheduler) -> None:
+        self._time = time
+        self._queue: deque[tuple[can.Message, Deliver]] = deque()
+        time.at(fault.end_s, self._deliver_all)
+
+    def add(self, frame: can.Message, deliver: Deliver, at_s: float | None) -> None:
+        """Queue a frame; at `at_s`, in s, the oldest one is delivered, none for None."""
+        self._queue.append((frame, deliver))
+        if at_s is not None:
+            self._time.at(at_s, self._deliver_oldest)
+
+    def _deliver_oldest(self) -> None:
+        if self._queue:
+            frame, deliver = self._queue.popleft()
+            deliver(frame)
+
+    def _deliver_all(self) -> None:
+        while self._queue:
+            self._deliver_oldest()
+
+
 class FaultyLink:
     """Link with a fault for some identifiers; frames never overtake each other.
 
@@ -40,7 +64,7 @@ class FaultyLink:
 
     def __init__(
         self,
-        disturbance: TimedFault,
+        fault: TimedFault,
         time: EventScheduler,
         chance: random.Random,
         concerns: Set[int] | None,
@@ -49,7 +73,7 @@ class FaultyLink:
         falsify: Callable[[can.Message], list[can.Message]],
     ) -> None:
         """Args: `concerns`: affected identifiers, None for all; `falsify`: false frames in place of a right one."""
-        self._disturbance = disturbance
+        self._fault = fault
         self._time = time
         self._chance = chance
         self._concerns = concerns
@@ -57,14 +81,13 @@ class FaultyLink:
         self._falsify = falsify
         self._newest: dict[int, can.Message] = {}
         self._passed_at_s: dict[int, float] = {}
-        self._late: deque[tuple[can.Message, Deliver]] = deque()
-        time.at(disturbance.end_s, self._deliver_all)
+        self._late = DelayedFrames(fault, time)
 
     def carry(self, frame: can.Message, deliver: Deliver) -> None:
         """Carry a frame."""
         if self._concerns is not None and frame.arbitration_id not in self._concerns:
             deliver(frame)
-        elif not self._disturbance.acts(self._time.now_s()):
+        elif not self._fault.acts(self._time.now_s()):
             self._newest[frame.arbitration_id] = frame
             deliver(frame)
         else:
@@ -72,33 +95,22 @@ class FaultyLink:
 
     def _disturb(self, frame: can.Message, deliver: Deliver) -> None:
         frame_id, now_s = frame.arbitration_id, self._time.now_s()
-        match self._disturbance.kind:
+        match self._fault.kind:
             case "off" | "intermittent":
                 return
             case "stuck":
                 again = self._newest.get(frame_id, frame) if self._freeze is None else self._freeze(frame)
-                deliver(
-                    Frame(frame_id, bytes(again.data))
-                )  # a new frame: the old timestamp would reveal the repetition
+                # A new frame: the old timestamp would reveal the repetition.
+                deliver(Frame(frame_id, bytes(again.data)))
             case "garbage":
                 deliver(Frame(frame_id, self._chance.randbytes(len(frame.data))))
             case "wrong":
                 for each in self._falsify(frame):
                     deliver(each)
             case "slow":
-                passed_at_s = self._passed_at_s.get(frame_id, self._disturbance.begin_s)
-                if now_s - passed_at_s > self._disturbance.period_s - _ROUNDING_S:
+                passed_at_s = self._passed_at_s.get(frame_id, self._fault.begin_s)
+                if now_s - passed_at_s > self._fault.period_s - _ROUNDING_S:
                     self._passed_at_s[frame_id] = now_s
                     deliver(frame)
             case "delayed":
-                self._late.append((frame, deliver))
-                self._time.at(now_s + self._disturbance.delay_s, self._deliver_one)
-
-    def _deliver_one(self) -> None:
-        if self._late:
-            frame, deliver = self._late.popleft()
-            deliver(frame)
-
-    def _deliver_all(self) -> None:
-        while self._late:
-            self._deliver_one()
+                self._late.add(frame, deliver, now_s + self._fault.delay_s)

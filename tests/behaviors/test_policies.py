@@ -4,9 +4,6 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from behaviors.policies.policy import PolicySettings
-from behaviors.policies.wall_following import WallFollowingSettings
-from behaviors.registry import policy_settings
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
 from kurt2rt.tasks.settings import load_task
@@ -57,15 +54,6 @@ def test_policies_name_actions_and_have_no_memory(name: str, view: tuple[int, ..
         for earlier in task.behaviours:
             policy.choose(before, earlier)
             assert policy.choose(view, behaviour) == action
-
-
-def test_policy_settings_finds_kinds_by_name() -> None:
-    assert policy_settings("wall_following") is WallFollowingSettings
-    assert issubclass(policy_settings("streets"), PolicySettings)
-    with pytest.raises(
-        ValueError, match="there is no kind 'flying'; give one of: circle, eight, fleeing, streets, wall"
-    ):
-        policy_settings("flying")
 
 
 # Fleeing

@@ -6,7 +6,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.faults.suite import Trial, try_case
 from kurt2rt.faults.table import FaultCase, FaultTable, Kind, Target, load_faults
 from kurt2rt.tasks.settings import TaskSettings, load_task
-from simbridge.faults.stage import FaultRigFactory
+from simbridge.faults.place import FaultRigFactory
 
 TABLE: FaultTable = load_faults()
 ROBOT: RobotSettings = load_robot(TABLE.robot)

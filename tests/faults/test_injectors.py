@@ -14,8 +14,7 @@ from kurt2rt.faults.witness import Stand, Witness
 from simbridge.faults.disturbance import Kind, TimedFault
 from simbridge.faults.event_time import EventScheduler
 from simbridge.faults.motors import FaultyWheels
-from simbridge.faults.place import SimulatedFaultRig
-from simbridge.faults.stage import FaultRigFactory
+from simbridge.faults.place import FaultRigFactory, SimulatedFaultRig
 from simbridge.faults.way import FaultyLink, IdealLink
 from simbridge.faults.way_out import FaultyTxLink
 from tests.faults.helpers import ROBOT, TABLE

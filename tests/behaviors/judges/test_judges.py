@@ -5,8 +5,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.judge import AppraisalFeatures, Judge
-from behaviors.judges.wall_following import WallFollowingSettings
-from behaviors.registry import judge_settings
 from kurt2rt.tasks.settings import load_task
 from tests.examples import examples
 
@@ -40,12 +38,6 @@ def thinks(task: str, **circumstances: float) -> int:
 
 
 # Of all
-
-
-def test_judge_settings_finds_kinds_by_name() -> None:
-    assert judge_settings("wall_following") is WallFollowingSettings
-    with pytest.raises(ValueError, match="eight, fleeing, wall_following"):
-        judge_settings("hanging")
 
 
 @pytest.mark.parametrize("task", TASKS)
