@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, doctor, health, outcomes, shutdown, standing, verdicts
+from tests.texts import complaints, doctor, health, merging, outcomes, shutdown, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -38,6 +38,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "reports": {
         "complaints of fault drill and soak": complaints.complaints,
         "checks of a soak": complaints.soak_checks,
+        "conflicts of a merge": merging.conflicts,
         "findings of the doctor": doctor.findings,
     },
     "studies": {

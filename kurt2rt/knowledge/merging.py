@@ -8,6 +8,7 @@ up, each by itself: their order does not matter.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from pathlib import Path
 
 from kurt2rt.expectations.expectation import Expectation
@@ -24,18 +25,33 @@ from kurt2rt.knowledge.nearness import Borders, Contradictions
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.rla import KnowledgeMerged, Rla, rla_title
 
-__all__ = ["Conflict", "Merge", "Merging", "Side", "merge"]
+__all__ = ["Conflict", "ConflictCode", "Merge", "Merging", "Side", "merge"]
+
+
+class ConflictCode(StrEnum):
+    """Reason why two states exclude each other."""
+
+    CHANGED_ON_BOTH_SIDES = "changed on both sides"
+    REWARDED_HERE = "rewarded here"
+    """Rewarded in this file for a lesson that was undone in the other one."""
+    OTHER_SITUATION = "other situation"
+    """A name means different situations, or none in one file."""
+    NEAR = "near"
+    """Different actions at nearly the same condition."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """What cannot be both."""
+    """Two states that exclude each other."""
 
     mine: str
     """What this file says, in words."""
     theirs: str
-    where: str
-    """Why they exclude each other."""
+    code: ConflictCode
+    distance: float | None = None
+    """Between the conditions of the RLAs, for NEAR."""
+    radius_fraction: float | None = None
+    """Fraction of R within which a correction replaces, for NEAR."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +149,8 @@ class Merging:
             rla = self._created(each)
             near = None if rla is None else contradictions.of(rla)
             if rla is not None and near is not None:
-                distance = f"{near.distance:.1f} apart, within {100 * self._borders.shares[rla.level]:.0f} % of R"
-                conflicts.append(Conflict(_says(near.rla), _says(rla), distance))
+                fraction = self._borders.shares[rla.level]
+                conflicts.append(Conflict(_says(near.rla), _says(rla), ConflictCode.NEAR, near.distance, fraction))
                 if prefer == "theirs":
                     deletions.append(near.rla.rla_id)
                 else:
@@ -213,12 +229,12 @@ class Merging:
                 f"{title} is given" if name in side.system.named_at(level) else f"{title} is not given"
                 for side in (self._theirs, self._mine)
             )
-            return Conflict(here, there, "each means another situation, or one means none")
+            return Conflict(here, there, ConflictCode.OTHER_SITUATION)
         there = _state(self._theirs.system.get(pile), pile)
         if not isinstance(of_mine, int):
-            return Conflict("it was left out here before", there, "changed on both sides")
-        why = "praised or blamed here for what was taken back there" if each.homeless else "changed on both sides"
-        return Conflict(_state(self._rla_here(each.mark), of_mine), there, why)
+            return Conflict("it was left out here before", there, ConflictCode.CHANGED_ON_BOTH_SIDES)
+        code = ConflictCode.REWARDED_HERE if each.homeless else ConflictCode.CHANGED_ON_BOTH_SIDES
+        return Conflict(_state(self._rla_here(each.mark), of_mine), there, code)
 
     def _created(self, each: _Pile) -> Rla | None:
         """The RLA that a pile brings anew, as it lives there."""

@@ -18,7 +18,7 @@ from kurt2rt.knowledge.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal import Journal
 from kurt2rt.knowledge.kinship import read_taught
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.merging import Merge, Side, merge
+from kurt2rt.knowledge.merging import ConflictCode, Merge, Side, merge
 from kurt2rt.knowledge.nearness import Borders
 from kurt2rt.knowledge.statistics import Statistics
 from kurt2rt.rla.credit import Credit
@@ -174,7 +174,8 @@ def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, their
     append(theirs, at(4, FAR + 2.0, "right", "theirs-4"), at(5, FAR + 2.1, "right", "theirs-5"))
     (conflict,) = bring(mine, theirs, prefer).conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 4 says left", "RLA 4 says right")
-    assert conflict.where == "2.0 apart, within 20 % of R"
+    assert conflict.code is ConflictCode.NEAR
+    assert (conflict.distance, conflict.radius_fraction) == (pytest.approx(2.0), 0.2)
     settled = {None: {4: "left"}, "mine": {4: "left", 5: "right"}, "theirs": {5: "right", 6: "right"}}[prefer]
     assert {rla_id: action for rla_id, action in actions(mine).items() if rla_id > 3} == settled
 
@@ -210,7 +211,7 @@ def test_a_name_for_two_places_is_a_conflict(mine: Path, theirs: Path) -> None:
     for path, x in ((mine, 1.0), (theirs, 2.0)):
         append(path, SituationNamed("door", (x, 0.0, 0.0, 0.0), BASIC, origin(f"name-{x}")))
     (conflict,) = bring(mine, theirs).conflicts
-    assert conflict.where == "each means another situation, or one means none"
+    assert conflict.code is ConflictCode.OTHER_SITUATION
     bring(mine, theirs, "theirs")
     assert folded(mine).named_at(BASIC)["door"][0] == 2.0
 
@@ -390,7 +391,7 @@ def test_praise_here_of_what_was_taken_back_there_is_a_conflict(mine: Path, thei
     append(mine, rewarded(1, 1, "praise"))
     append(theirs, undone("replace-1-left"))
     (conflict,) = bring(mine, theirs).conflicts
-    assert conflict.where == "praised or blamed here for what was taken back there"
+    assert conflict.code is ConflictCode.REWARDED_HERE
     bring(mine, theirs, "theirs")
     assert (actions(mine)[1], folded(mine).appraisal(1)) == ("forward", (0, 0))
 

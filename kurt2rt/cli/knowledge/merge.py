@@ -8,7 +8,7 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
-from kurt2rt.knowledge.merging import Merge, Side
+from kurt2rt.knowledge.merging import Conflict, ConflictCode, Merge, Side
 from kurt2rt.knowledge.merging import merge as bring_in
 from kurt2rt.knowledge.nearness import borders_of
 from kurt2rt.knowledge.task_of_file import task_of_file
@@ -39,13 +39,26 @@ def merge(
     borders = borders_of(load_task(task_of_file(file, task_name)), load_robot(robot_name))
     merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
     for conflict in merged.conflicts:
-        say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {conflict.where}")
+        say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {reason_of(conflict)}")
     for reward in merged.left_out:
         say(f"left out  {reward}")
     if merged.conflicts and prefer is None:
         say(f"{file}: nothing was changed; say --prefer mine or --prefer theirs")
         raise typer.Exit(1)
     say(f"{file}: {_told(merged)}" + (" (nothing was changed: --dry-run)" if dry_run else ""))
+
+
+_REASONS = {
+    ConflictCode.CHANGED_ON_BOTH_SIDES: "changed on both sides",
+    ConflictCode.REWARDED_HERE: "praised or blamed here for what was taken back there",
+    ConflictCode.OTHER_SITUATION: "each means another situation, or one means none",
+    ConflictCode.NEAR: "{0.distance:.1f} apart, within {percent:.0f} % of R",
+}
+
+
+def reason_of(conflict: Conflict) -> str:
+    """Return why the two states exclude each other."""
+    return _REASONS[conflict.code].format(conflict, percent=100 * (conflict.radius_fraction or 0.0))
 
 
 def _told(merged: Merge) -> str:
