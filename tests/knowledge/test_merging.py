@@ -175,7 +175,8 @@ def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, their
     (conflict,) = bring(mine, theirs, prefer).conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 4 says left", "RLA 4 says right")
     assert conflict.code is ConflictCode.NEAR
-    assert (conflict.distance, conflict.radius_fraction) == (pytest.approx(2.0), 0.2)
+    assert conflict.distance == pytest.approx(2.0)
+    assert conflict.radius_fraction == 0.2
     settled = {None: {4: "left"}, "mine": {4: "left", 5: "right"}, "theirs": {5: "right", 6: "right"}}[prefer]
     assert {rla_id: action for rla_id, action in actions(mine).items() if rla_id > 3} == settled
 
