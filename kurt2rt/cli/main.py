@@ -17,6 +17,7 @@ _EXTRAS = {
     "jinja2": "simulation",
     "PIL": "simulation",
     "pymunk": "simulation",
+    "scipy": "simulation",
     "matplotlib": "simulation",
     "shapely": "simulation",
     "starlette": "page",

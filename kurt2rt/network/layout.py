@@ -13,7 +13,6 @@ Places = dict[int, tuple[float, float]]
 
 APART = 1.0
 """No two stand nearer to each other than this."""
-_ROUNDS = 300
 _NEAREST = 1.4
 """Between two of which the one always follows the other."""
 _BETWEEN = 1.6
@@ -35,37 +34,22 @@ def layout_of(network: RlaNetwork) -> Places:
 
 
 def _by_neighbourhood(network: RlaNetwork) -> Places:
-    """Distances in the picture are made like those along edges, all at once (stress majorisation, SMACOF).
-
-    networkx's own layouts of this kind need scipy; its springs put the nodes of such dense graphs into a heap.
-    """
+    """Distances in the picture like those along edges (Kamada and Kawai 1989)."""
     ids = sorted(network)
     if len(ids) < 2:
         return dict.fromkeys(ids, (0.0, 0.0))
-    wanted = _distances(network, ids)
-    weights = np.where(wanted > 0, 1.0 / np.maximum(wanted, 1e-9) ** 2, 0.0)
-    inverse = np.linalg.pinv(np.diag(weights.sum(axis=1)) - weights)
-    places = np.random.default_rng(len(ids)).normal(size=(len(ids), 2)) * wanted.max() / 4
-    for _ in range(_ROUNDS):
-        between = places[:, None, :] - places[None, :, :]
-        pull = weights * wanted / np.maximum(np.linalg.norm(between, axis=2), 1e-9)
-        places = inverse @ (np.diag(pull.sum(axis=1)) - pull) @ places
-    return _apart({rla_id: (float(x), float(y)) for rla_id, (x, y) in zip(ids, _lying(places), strict=True)})
-
-
-def _distances(network: RlaNetwork, ids: list[int]) -> NDArray[np.float64]:
-    """Along edges; all can be reached from all."""
     ways: nx.Graph[int] = nx.Graph()
     for before, after in network.edges:
         length = _NEAREST * (1.0 + _WEAK * (1.0 - network.edges[before, after]["percent"] / 100.0))
         if not ways.has_edge(before, after) or ways.edges[before, after]["length"] > length:
             ways.add_edge(before, after, length=length)
-    number = {rla_id: place for place, rla_id in enumerate(ids)}
-    distances = np.zeros((len(ids), len(ids)))
-    for start, found in nx.all_pairs_dijkstra_path_length(ways, weight="length"):
-        for end, distance in found.items():
-            distances[number[start], number[end]] = distance
-    return distances
+    lengths = dict(nx.all_pairs_dijkstra_path_length(ways, weight="length"))
+    laid = nx.kamada_kawai_layout(ways, dist=lengths)
+    places = _lying(np.array([laid[rla_id] for rla_id in ids]))
+    # networkx scales its layout to a square of side 2.
+    drawn = np.linalg.norm(places[:, None] - places[None, :], axis=2).sum()
+    places *= sum(lengths[one][other] for one in ids for other in ids) / drawn
+    return _apart({rla_id: (float(x), float(y)) for rla_id, (x, y) in zip(ids, places, strict=True)})
 
 
 def _packed(parts: list[Places]) -> Places:

@@ -103,7 +103,7 @@ def test_help_mentions_every_option_and_explains_it(
 
 
 def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
-    extras = ("matplotlib", "pymunk", "jinja2", "shapely", "PIL", "contourpy", "starlette", "uvicorn")
+    extras = ("matplotlib", "pymunk", "scipy", "jinja2", "shapely", "PIL", "contourpy", "starlette", "uvicorn")
     without = f"import sys; sys.modules.update(dict.fromkeys({extras})); sys.argv = ['kurt2rt', '--help']"
     command = [sys.executable, "-c", f"{without}; from kurt2rt.cli.main import main; main()"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -151,7 +151,19 @@ def test_completion_offers_what_was_begun(
     assert (said.exit_code, said.out.split(), said.err) == (0, [offered], "")
 
 
-HEAVY = ("numpy", "can", "cantools", "aiocoap", "anyio", "cryptography", "matplotlib", "pymunk", "segno", "starlette")
+HEAVY = (
+    "numpy",
+    "can",
+    "cantools",
+    "aiocoap",
+    "anyio",
+    "cryptography",
+    "matplotlib",
+    "pymunk",
+    "scipy",
+    "segno",
+    "starlette",
+)
 """What they import in turn takes most of the time."""
 OUR_PACKAGES = ("hal.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service_settings")
 

@@ -1,15 +1,17 @@
 """How sure a rate is."""
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
 
 _RESAMPLES = 10_000
 _BOOTSTRAP_SEED = 1
 _TAIL = 0.025
-_BISECTIONS = 100
 
 
 class Rate(NamedTuple):
@@ -29,38 +31,28 @@ def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
     total = sum(exposures)
     events = sum(counts)
     fewest, most = poisson_interval(events)
-    if events and len(counts) == 1:  # it says nothing of how robots differ
-        return Rate(events / total, 0.0, math.inf)
-    chance = np.random.default_rng(_BOOTSTRAP_SEED)
-    drawn = chance.integers(len(counts), size=(_RESAMPLES, len(counts)))
-    rates = np.asarray(counts)[drawn].sum(axis=1) / np.asarray(exposures)[drawn].sum(axis=1)
-    low, high = np.quantile(rates, (_TAIL, 1 - _TAIL))
-    return Rate(events / total, min(float(low), fewest / total), max(float(high), most / total))
+    if len(counts) == 1:  # a single drive says nothing of how robots differ
+        return Rate(events / total, 0.0, math.inf if events else most / total)
+    low, high = _bootstrapped(lambda seen, of, axis: seen.sum(axis) / of.sum(axis), counts, exposures)
+    return Rate(events / total, min(low, fewest / total), max(high, most / total))
 
 
 def poisson_interval(events: int) -> tuple[float, float]:
-    """95 % interval of the number that is to be expected where so many events were counted (Garwood 1936)."""
-    # So many or more are as rare at the lower end as so many or fewer at the upper one.
-    low = _expected_where(events - 1, 1 - _TAIL) if events else 0.0
-    return low, _expected_where(events, _TAIL)
+    """Return the exact 95 % interval of the expected count, given a count (Garwood 1936)."""
+    from scipy.stats import chi2
+
+    low = chi2.ppf(_TAIL, 2 * events) / 2 if events else 0.0
+    return float(low), float(chi2.isf(_TAIL, 2 * events + 2) / 2)
 
 
-def _expected_where(at_most: int, probability: float) -> float:
-    """The expected number for which `at_most` events or fewer have this probability; more expected make it less."""
-    low, high = 0.0, 2.0 * at_most + 20.0
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        if _probability_of(at_most, middle) > probability:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
+def _bootstrapped(statistic: Callable[..., Any], *samples: Sequence[float]) -> tuple[float, float]:
+    """Return the 95 % percentile interval of `statistic(*samples, axis)` over robots, each with all its values."""
+    from scipy.stats import bootstrap
 
-
-def _probability_of(at_most: int, expected: float) -> float:
-    """Poisson's, of `at_most` events or fewer."""
-    log = math.log(expected)
-    return math.fsum(math.exp(k * log - expected - math.lgamma(k + 1)) for k in range(at_most + 1))
+    chance = np.random.default_rng(_BOOTSTRAP_SEED)
+    options: dict[str, Any] = {"paired": True, "vectorized": True, "method": "percentile", "n_resamples": _RESAMPLES}
+    low, high = bootstrap(samples, statistic, rng=chance, **options).confidence_interval
+    return float(low), float(high)
 
 
 class Difference(NamedTuple):
@@ -79,10 +71,8 @@ def difference_of(changes: Sequence[float]) -> Difference:
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:
         return Difference(value, -math.inf, math.inf)
-    chance = np.random.default_rng(_BOOTSTRAP_SEED)
-    drawn = chance.integers(len(changes), size=(_RESAMPLES, len(changes)))
-    low, high = np.quantile(np.asarray(changes, dtype=np.float64)[drawn].mean(axis=1), (_TAIL, 1 - _TAIL))
-    return Difference(value, min(float(low), value), max(float(high), value))
+    low, high = _bootstrapped(np.mean, changes)
+    return Difference(value, min(low, value), max(high, value))
 
 
 def fall_of(before: Sequence[float], after: Sequence[float]) -> Difference:
@@ -90,12 +80,13 @@ def fall_of(before: Sequence[float], after: Sequence[float]) -> Difference:
 
     Where there was nothing before, nothing falls.
     """
-    were, are = np.asarray(before, dtype=np.float64), np.asarray(after, dtype=np.float64)
     value = 1.0 - math.fsum(after) / math.fsum(before) if any(before) else 0.0
     if len(before) == 1:
         return Difference(value, -math.inf, 1.0)
-    drawn = np.random.default_rng(_BOOTSTRAP_SEED).integers(len(were), size=(_RESAMPLES, len(were)))
-    sums = were[drawn].sum(axis=1)
-    falls = 1.0 - np.divide(are[drawn].sum(axis=1), sums, out=np.ones_like(sums), where=sums > 0)
-    low, high = np.quantile(falls, (_TAIL, 1 - _TAIL))
-    return Difference(value, min(float(low), value), max(float(high), value))
+
+    def fall(were: FloatArray, are: FloatArray, axis: int) -> Any:
+        sums = were.sum(axis)
+        return 1.0 - np.divide(are.sum(axis), sums, out=np.ones_like(sums), where=sums > 0)
+
+    low, high = _bootstrapped(fall, before, after)
+    return Difference(value, min(low, value), max(high, value))
