@@ -193,8 +193,14 @@ class CommandRefusedError(ValueError):
     """A command that is not carried out."""
 
     def __init__(self, code: RefusalCode, **fields: Field) -> None:
-        super().__init__(", ".join([code.value, *(f"{key} {each}" for key, each in fields.items())]))
+        super().__init__(code, fields)
         self.outcome = Outcome(code, fields)
+
+    def __str__(self) -> str:
+        """Return the sentence, for callers that word any ValueError."""
+        from kurt2rt.outcome_text import text_of  # the texts stand above the codes
+
+        return text_of(self.outcome)
 
 
 def refuse(outcome: Outcome | None) -> None:

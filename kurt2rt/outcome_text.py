@@ -54,8 +54,8 @@ _TEXTS: dict[Code, str] = {
     ResultCode.SESSION_BEGUN: "session {session!r} begins",
     ResultCode.SESSION_ENDED: "session {session!r} is over; the robot stands",
     ResultCode.ACTION_RUNS: "{action} for {ticks} ticks",
-    ResultCode.BEHAVIOUR_WANTED: "{behaviour} is wanted",
-    ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "{behaviour} is wanted until the next junction is passed",
+    ResultCode.BEHAVIOUR_WANTED: "{wanted} is wanted",
+    ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "{wanted} is wanted until the next junction is passed",
     ResultCode.GOAL_SOUGHT: "{says}",
     ResultCode.GOAL_DROPPED: "no goal is sought",
     ResultCode.LOCATED: "the robot is at {name}",
@@ -94,7 +94,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.JUNCTION_PASSED: "a junction was passed after this command; {look}, then repeat the command",
     RefusalCode.GOAL_SINCE: "another goal was given after this command; {look}, then repeat the command",
     RefusalCode.GOAL_IN_SAME_TICK: "another goal was given in the same tick; repeat the command",
-    RefusalCode.BEHAVIOUR_SINCE: "{behaviour} was asked for after this command; {look}, then repeat the command",
+    RefusalCode.BEHAVIOUR_SINCE: "{wanted} was asked for after this command; {look}, then repeat the command",
     RefusalCode.TICK_FORGOTTEN: "the decision of tick {tick} is not remembered any more; {look}",
     RefusalCode.NOT_SAVED_YET: "not saved yet; it may still count: look at the lessons",
     RefusalCode.NOT_SAVED: "{says}",
@@ -153,12 +153,14 @@ _TEXTS: dict[Code, str] = {
 }
 
 _ONLY_BEHAVIOUR = "the only behaviour"
+_MADE_OF = {"title": "rla", "wanted": "behaviour"}
+"""Names in texts that are made of a field."""
 
 
 def fields_of(code: Code) -> frozenset[str]:
     """Return the names of the fields that the text of a code shows."""
     shown = {name for _, name, _, _ in Formatter().parse(_TEXTS[code]) if name}
-    return frozenset("rla" if name == "title" else name for name in shown - _WORDS[Surface.LOG].keys())
+    return frozenset(_MADE_OF.get(name, name) for name in shown - _WORDS[Surface.LOG].keys())
 
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
@@ -168,6 +170,7 @@ def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
     shown = {key: _plain(key, each) for key, each in fields.items()}
+    shown["wanted"] = shown.get("behaviour") or _ONLY_BEHAVIOUR
     rla = fields.get("rla")
     if isinstance(rla, int):
         shown["title"] = rla_title(rla, str(fields.get("behaviour", "")), str(fields.get("level", BASIC)))
@@ -177,6 +180,4 @@ def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
 def _plain(key: str, value: Field) -> str | int:
     if isinstance(value, tuple):
         return (" and " if key == "teachers" else ", ").join(value) or "nothing"
-    if value in ("", None) and key == "behaviour":
-        return _ONLY_BEHAVIOUR
     return "" if value is None else value
