@@ -10,6 +10,7 @@ from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
 from hal.robot_settings import RobotSettings, load_robot
 from hal.simulation import Pose
+from simbridge.geometry import Point
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.sight import RayCaster
 from simbridge.simulated_robot import SimulatedRobot
@@ -22,6 +23,18 @@ STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
 BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
 _numbers = itertools.count()
+
+
+def board(from_m: Point, to_m: Point, thickness_m: float = 0.02, name: str = "board") -> WallSettings:
+    return WallSettings(name=name, from_m=from_m, to_m=to_m, thickness_m=thickness_m)
+
+
+def box(*corners: Point, name: str = "box") -> PolygonObstacleSettings:
+    return PolygonObstacleSettings(name=name, corners=corners)
+
+
+def post(x_m: float, y_m: float, radius_m: float, name: str = "post") -> RoundObstacleSettings:
+    return RoundObstacleSettings(name=name, x_m=x_m, y_m=y_m, radius_m=radius_m)
 
 
 def room(

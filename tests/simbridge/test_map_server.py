@@ -66,13 +66,22 @@ def write_png(path: Path, shades: Shades) -> None:
     Image.fromarray(shades).save(path)
 
 
+def write_yaml(path: Path, content: dict[str, object]) -> str:
+    path.write_text(yaml.safe_dump(content), encoding="utf-8")
+    return str(path)
+
+
+def cells(folder: Path, **change: object) -> object:
+    """Return the drivable cells of a map whose image is in this folder."""
+    settings = MapSettings.model_validate_json(json.dumps({**PLAIN, **change}))
+    return drivable_cells(folder / "flat.yaml", settings).tolist()
+
+
 def write_map(folder: Path, shades: Shades | None = None, **change: object) -> str:
     """Write a map's image and YAML file, and return the latter's path."""
     settings = {**PLAIN, **change}
     write_p5(folder / str(settings["image"]), drawn(FLAT) if shades is None else shades)
-    path = folder / "flat.yaml"
-    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
-    return str(path)
+    return write_yaml(folder / "flat.yaml", settings)
 
 
 def floor_of(world: WorldSettings) -> shapely.Polygon:
@@ -83,9 +92,7 @@ def floor_of(world: WorldSettings) -> shapely.Polygon:
 @pytest.mark.parametrize(("name", "write"), [("flat2.pgm", write_p2), ("flat5.pgm", write_p5), ("flat.png", write_png)])
 def test_map_walls_along_the_grid_are_exact(name: str, write: Callable[[Path, Shades], None], tmp_path: Path) -> None:
     write(tmp_path / name, drawn(FLAT))
-    path = tmp_path / "flat.yaml"
-    path.write_text(yaml.safe_dump({**PLAIN, "image": name}), encoding="utf-8")
-    world = load_world(str(path), ROBOT)
+    world = load_world(write_yaml(tmp_path / "flat.yaml", {**PLAIN, "image": name}), ROBOT)
     assert world.name == "flat"
     assert world.size_m == pytest.approx((4.0, 3.0))
     wanted = shapely.affinity.scale(shapely.affinity.translate(FLAT, -10, -10), CELL_M, CELL_M, origin=(0, 0))
@@ -194,9 +201,7 @@ def test_map_room_far_from_the_corner_is_equal(tmp_path: Path) -> None:
 
 
 def world_on(folder: Path, **change: object) -> str:
-    path = folder / "mine.yaml"
-    path.write_text(yaml.safe_dump({"map": "flat.yaml", "start_poses": [START], **change}), encoding="utf-8")
-    return str(path)
+    return write_yaml(folder / "mine.yaml", {"map": "flat.yaml", "start_poses": [START], **change})
 
 
 def test_world_on_map_starts_are_in_the_maps_frame(tmp_path: Path) -> None:
@@ -229,27 +234,22 @@ def test_world_on_map_rotated_origin_turns_the_starts(tmp_path: Path) -> None:
 def test_drivable_cells_follow_the_modes(
     mode: str, negate: object, shades: list[int], drivable: list[bool], tmp_path: Path
 ) -> None:
-    settings = MapSettings.model_validate_json(
-        json.dumps({**PLAIN, "mode": mode, "negate": negate, "free_thresh": 0.196})
-    )
     write_p5(tmp_path / "flat.pgm", np.array([shades], dtype=np.uint8))
-    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [drivable]
+    assert cells(tmp_path, mode=mode, negate=negate) == [drivable]
 
 
 def test_drivable_cells_of_colours_and_transparency(tmp_path: Path) -> None:
     colours = np.array([[[254, 254, 254, 255], [255, 255, 150, 255], [160, 160, 160, 255], [160, 160, 160, 128]]])
     Image.fromarray(colours.astype(np.uint8)).save(tmp_path / "flat.png")
     for mode, wanted in (("trinary", [True, True, False, False]), ("scale", [True, True, True, False])):
-        settings = MapSettings.model_validate_json(json.dumps({**PLAIN, "image": "flat.png", "mode": mode}))
-        assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [wanted]
+        assert cells(tmp_path, image="flat.png", mode=mode) == [wanted]
 
 
 def test_drivable_cells_of_16_bits_and_a_palette(tmp_path: Path) -> None:
-    settings = MapSettings.model_validate_json(json.dumps({**PLAIN, "image": "flat.png"}))
     Image.fromarray(np.array([[65535, 52685, 0]], dtype=np.uint16)).save(tmp_path / "flat.png")
-    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
+    assert cells(tmp_path, image="flat.png") == [[True, False, False]]
     Image.fromarray(np.array([[255, 205, 0]], dtype=np.uint8)).convert("P").save(tmp_path / "flat.png")
-    assert drivable_cells(tmp_path / "flat.yaml", settings).tolist() == [[True, False, False]]
+    assert cells(tmp_path, image="flat.png") == [[True, False, False]]
 
 
 def test_trace_separates_cells_that_touch_at_a_corner() -> None:
@@ -264,10 +264,10 @@ def test_trace_separates_cells_that_touch_at_a_corner() -> None:
 @pytest.mark.parametrize(
     ("change", "complaint"),
     [
-        ({"image": "none.pgm"}, r"flat\.yaml: image: there is no .*none\.pgm"),
-        ({"resolution": 0.0}, r"flat\.yaml: resolution: .*greater than 0"),
+        ({"image": "none.pgm"}, r"flat\.yaml: image: .*none\.pgm"),
+        ({"resolution": 0.0}, r"flat\.yaml: resolution"),
         ({"origin": [0.0, 0.0]}, r"flat\.yaml: origin"),
-        ({"free_thresh": 0.7}, r"flat\.yaml: .*free_thresh must be below occupied_thresh, 0.65"),
+        ({"free_thresh": 0.7}, r"flat\.yaml: .*free_thresh.*0\.65"),
         ({"mode": "cubic"}, r"flat\.yaml: mode: .*'trinary', 'scale' or 'raw'"),
         ({"resolutoin": 0.1}, r"flat\.yaml: resolutoin: no such key"),
         ({"negate": 1}, r"flat\.yaml: image: no free space that the robot fits into, 0.67 m wide"),
@@ -280,14 +280,13 @@ def test_trace_separates_cells_that_touch_at_a_corner() -> None:
     ],
 )
 def test_map_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
-    path = write_map(tmp_path)
+    write_map(tmp_path)
     (tmp_path / "junk.pgm").write_bytes(b"P5 this is not")
     (tmp_path / "cut.pgm").write_bytes(b"P5 100 80 255\n" + bytes(100))
     os.mkfifo(tmp_path / "fifo.pgm")
     (tmp_path / "huge.pgm").write_bytes(b"P5 10000 10000 255\n")
-    Path(path).write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
     with pytest.raises(SettingsError, match=complaint):
-        load_world(path, ROBOT)
+        load_world(write_yaml(tmp_path / "flat.yaml", {**PLAIN, **change}), ROBOT)
 
 
 def test_map_too_wide_is_refused(tmp_path: Path) -> None:
