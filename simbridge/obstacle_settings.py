@@ -66,7 +66,7 @@ class PolygonObstacleSettings(Settings):
     def _is_simple(cls, corners: tuple[Corner, ...]) -> tuple[Corner, ...]:
         polygon = shapely.Polygon(corners)
         if len(set(corners)) < len(corners) or not polygon.is_valid or polygon.area == 0:
-            raise ValueError("its sides must enclose one area: each corner is named once, no side crosses another")
+            raise ValueError("must enclose one area, without repeated corners and crossing sides")
         return corners
 
     def moved(self, dx_m: float, dy_m: float) -> Self:

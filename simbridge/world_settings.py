@@ -65,10 +65,10 @@ class WorldSettings(Settings):
     @classmethod
     def _is_a_simple_closed_polygon(cls, outline: tuple[Corner, ...]) -> tuple[Corner, ...]:
         if outline[0] != outline[-1]:
-            raise ValueError(f"not closed: the last corner {outline[-1]} must repeat the first {outline[0]}")
+            raise ValueError(f"not closed (last corner {outline[-1]}, first {outline[0]}); repeat the first corner")
         for corner, following in pairwise(outline):
             if corner == following:
-                raise ValueError(f"corner {corner} stands twice in a row")
+                raise ValueError(f"corner {corner} is repeated; leave one out")
         polygon = shapely.Polygon(outline)
         if not polygon.is_valid:
             raise ValueError(f"intersects or touches itself: {shapely.is_valid_reason(polygon)}")
@@ -79,11 +79,11 @@ class WorldSettings(Settings):
         for axis, size_m in enumerate(self.size_m):
             values = [corner[axis] for corner in self.outline]
             if abs(min(values)) > 1e-9 or abs(max(values) - size_m) > 1e-9:
-                raise ValueError(f"outline must span 0 to {size_m} in {'xy'[axis]}, as size_m says")
+                raise ValueError(f"outline must span 0 to {size_m} in {'xy'[axis]} (size_m)")
         names = self.names
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise ValueError(f"two walls or obstacles share the name {', '.join(twice)}")
+            raise ValueError(f"duplicate name of walls or obstacles: {', '.join(twice)}")
         room = shapely.Polygon(self.outline)
         for name, shape in zip(names, self.shapes, strict=True):
             # Most walls cross the outline, against which they stand.
@@ -92,7 +92,7 @@ class WorldSettings(Settings):
         for (i, one), (k, other) in combinations(enumerate(self.start_poses), 2):
             turn_deg = abs(math.remainder(one.heading_deg - other.heading_deg, 360.0))
             if math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) < _EQUAL_M and turn_deg < _EQUAL_DEG:
-                raise ValueError(f"start_poses.{i} and start_poses.{k} are alike; leave one out")
+                raise ValueError(f"start_poses.{i} and start_poses.{k} are equal; leave one out")
         return self
 
     @property

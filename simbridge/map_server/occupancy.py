@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from hal.settings import SettingsError
-from simbridge.map_server.settings import MapSettings
+from simbridge.map_server.settings import MapSettings, image_error
 
 MOST_CELLS = 4096 * 4096
 
@@ -24,33 +24,24 @@ def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
     """
     image = source.parent / settings.image
     if image.exists() and not image.is_file():  # opening a FIFO waits until another program writes to it
-        raise SettingsError(
-            f"image: {image} is a folder or device, not a file", where=source, do="give a PGM or PNG file"
-        )
+        raise image_error(source, f"{image} is a folder or device, not a file", "give a PGM or PNG file")
     try:
         with warnings.catch_warnings():
-            # Pillow warns of images that are huge; nothing of them is read before their size is looked at.
+            # Pillow warns of huge images, of which nothing is read before the size check below.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             opened = Image.open(image)
         with opened:
             width, height = opened.size
             if width * height > MOST_CELLS:
-                raise SettingsError(
-                    f"image: {image} has {width} x {height} cells, allowed are {MOST_CELLS} at most",
-                    where=source,
-                    do="crop it to where the robot drives",
-                )
+                too_large = f"{image} is too large (got {width} x {height} cells, allowed {MOST_CELLS})"
+                raise image_error(source, too_large, "crop it to the robot's area")
             shade, is_opaque = _shades(opened)
     except FileNotFoundError as error:
-        raise SettingsError(
-            f"image: there is no {image}", where=source, do="the path counts from the YAML file"
-        ) from error
+        raise image_error(source, f"{image} does not exist", "give a path relative to the YAML file") from error
     except (OSError, SyntaxError, ValueError, UnidentifiedImageError, Image.DecompressionBombError) as error:
         if isinstance(error, SettingsError):
             raise
-        raise SettingsError(
-            f"image: {image} cannot be read ({error})", where=source, do="give a PGM or PNG file"
-        ) from error
+        raise image_error(source, f"{image} cannot be read ({error})", "give a PGM or PNG file") from error
     occupancy = _occupancy(shade, is_opaque, settings)
     return np.asarray((occupancy >= 0) & (occupancy < _HALF_OCCUPIED))[::-1]
 

@@ -1,10 +1,11 @@
 """Schema of a map_server map, and of a world based on one."""
 
+from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings
+from hal.settings import Settings, SettingsError
 from simbridge.world_settings import StartPoseSettings
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -28,8 +29,15 @@ class MapSettings(Settings):
     @model_validator(mode="after")
     def _has_room_between_its_thresholds(self) -> Self:
         if self.free_thresh >= self.occupied_thresh:
-            raise ValueError(f"free_thresh must be below occupied_thresh, {self.occupied_thresh}")
+            raise ValueError(
+                f"free_thresh must be below occupied_thresh (got {self.free_thresh}, allowed < {self.occupied_thresh})"
+            )
         return self
+
+
+def image_error(source: Path, what: str, do: str) -> SettingsError:
+    """Return the refusal of a map's image."""
+    return SettingsError(what, where=f"{source}: image", do=do)
 
 
 class MapWorldSettings(Settings):

@@ -37,7 +37,7 @@ def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
     """
     sides = np.count_nonzero(free[1:] != free[:-1]) + np.count_nonzero(free[:, 1:] != free[:, :-1])
     if sides > _MOST_SIDES:
-        raise TooRaggedError(f"free cells and others meet along {sides} sides, allowed are {_MOST_SIDES} at most")
+        raise TooRaggedError(f"too many sides between free and other cells (got {sides}, allowed {_MOST_SIDES})")
     # A margin that is not free closes what reaches the edge of the map.
     padded = np.pad(free, 1).astype(np.float64)
     generator = contourpy.contour_generator(z=padded, fill_type=contourpy.FillType.OuterOffset)
@@ -45,7 +45,7 @@ def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
     areas, offsets = cast(tuple[list[Ring], list[NDArray[np.uint32]]], generator.filled(0.5, 2.0))
     outlines = sum(len(begins) - 1 for begins in offsets)
     if outlines > _MOST_OUTLINES:
-        raise TooRaggedError(f"there are {outlines} areas and islands, allowed are {_MOST_OUTLINES} at most")
+        raise TooRaggedError(f"too many areas and islands (got {outlines}, allowed {_MOST_OUTLINES})")
     # Centres lie at whole numbers, and the margin is one cell wide. Each ring comes with its first point repeated.
     found = [
         [_outline(points[begin : end - 1] - 0.5) for begin, end in pairwise(begins)]
@@ -53,7 +53,7 @@ def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
     ]
     bends = sum(len(ring) for rings in found for ring in rings)
     if bends > _MOST_BENDS:
-        raise TooRaggedError(f"their outlines have {bends} bends, allowed are {_MOST_BENDS} at most")
+        raise TooRaggedError(f"too many bends (got {bends}, allowed {_MOST_BENDS})")
     return [polygon for rings in found for polygon in _straightened(rings)]
 
 

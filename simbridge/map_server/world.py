@@ -12,7 +12,7 @@ from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, load_settings
 from hal.simulation import Pose
 from simbridge.map_server.occupancy import drivable_cells
-from simbridge.map_server.settings import MapSettings, MapWorldSettings
+from simbridge.map_server.settings import MapSettings, MapWorldSettings, image_error
 from simbridge.map_server.starts import starts_beside_walls, turning_places
 from simbridge.map_server.tracing import TooRaggedError, trace
 from simbridge.obstacle_settings import PolygonObstacleSettings
@@ -24,6 +24,7 @@ _THIN_M = 0.09
 """Gap between two side sensors; with one ray per sensor the legs of a chair would often be missed."""
 _SLIP_M = 0.06
 """Extra room for turning."""
+_SHRINK = "clean the map of specks, or crop it to the robot's area"
 
 
 def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
@@ -32,28 +33,28 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
     Raises SettingsError that names file and key.
     """
     floors = _floors(source, load_settings(source, MapSettings))
-    # Long and ragged as they are, few floors have room for a robot: the largest first, until no other can have more.
+    # Few floors have room for a robot; the largest come first, until no other one can have more room.
     turning_m = math.hypot(geometry.outline_length_m, geometry.outline_width_m) / 2 + _SLIP_M
     best: tuple[float, shapely.Polygon, shapely.Polygon] | None = None
-    in_vain = 0
+    searched_walls = 0
     for floor in floors:
         if best is not None and floor.area <= best[0]:
             break
-        # Before room is looked for: among specks that takes seconds for some thousand pieces, half a minute for 30 000.
+        # Checked before the search for room, which takes half a minute for 30 000 pieces of specks.
         walls = _walls_of(floor)
-        if best is not None and in_vain + walls > MOST_WALLS:
+        if best is not None and searched_walls + walls > MOST_WALLS:
             continue
-        _require_few_walls(source, in_vain + walls)
+        _require_few_walls(source, searched_walls + walls)
         places = turning_places(floor, turning_m)
         if places is None:
-            in_vain += walls
+            searched_walls += walls
         elif best is None or places.area > best[0]:
             best = places.area, floor, places
     if best is None:
-        raise SettingsError(
-            f"image: no free space that the robot fits into, {2 * turning_m:.2f} m wide where it turns",
-            where=source,
-            do="see whether resolution, negate, the thresholds and mode are those of the image",
+        raise image_error(
+            source,
+            f"no free space for the robot, which needs {2 * turning_m:.2f} m to turn",
+            "check resolution, negate, the thresholds and mode",
         )
     return _world(source, best[1], starts_beside_walls(best[1], best[2]), _rays_for(best[1]))
 
@@ -63,15 +64,13 @@ def world_on_map(source: Path) -> WorldSettings:
     chosen = load_settings(source, MapWorldSettings)
     map_source = source.parent / chosen.map
     if not map_source.is_file():
-        raise SettingsError(f"map: there is no {map_source}", where=source, do="the path counts from this file")
+        raise SettingsError(f"map: {map_source} does not exist", where=source, do="give a path relative to this file")
     settings = load_settings(map_source, MapSettings)
     starts = [_on_grid(start.pose, settings) for start in chosen.start_poses]
     first = shapely.Point(starts[0].x_m, starts[0].y_m)
     floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
     if floor is None:
-        raise SettingsError(
-            "image: nothing on it is free", where=map_source, do="see whether negate and the thresholds fit it"
-        )
+        raise image_error(map_source, "no cell is free", "check negate and the thresholds")
     _require_few_walls(map_source, _walls_of(floor))
     return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
 
@@ -81,11 +80,7 @@ def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
     try:
         cells = trace(drivable_cells(source, settings))
     except TooRaggedError as error:
-        raise SettingsError(
-            f"image: {error}",
-            where=source,
-            do=("clean the map of specks or crop it to where the robot drives, and see whether the thresholds fit it"),
-        ) from error
+        raise image_error(source, str(error), f"{_SHRINK}; check the thresholds") from error
     floors = [scale(each, settings.resolution, settings.resolution, origin=(0, 0)) for each in cells]
     return sorted(floors, key=lambda each: float(each.area), reverse=True)
 
@@ -96,11 +91,7 @@ def _walls_of(floor: shapely.Polygon) -> int:
 
 def _require_few_walls(source: Path, walls: int) -> None:
     if walls > MOST_WALLS:
-        raise SettingsError(
-            f"image: its walls have {walls} pieces, allowed are {MOST_WALLS} at most",
-            where=source,
-            do="crop the map to where the robot drives, or clean it of specks",
-        )
+        raise image_error(source, f"too many pieces of walls (got {walls}, allowed {MOST_WALLS})", _SHRINK)
 
 
 def _on_grid(start: Pose, settings: MapSettings) -> Pose:
@@ -116,9 +107,9 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_ra
     width_m, height_m = east_m - west_m, north_m - south_m
     if max(width_m, height_m) > _MOST_M:
         raise SettingsError(
-            f"resolution: the free space is {width_m:.0f} m x {height_m:.0f} m, allowed are {_MOST_M:.0f} m",
-            where=source,
-            do="crop the map to where the robot drives",
+            f"the free space is too large (got {width_m:.0f} m x {height_m:.0f} m, allowed {_MOST_M:.0f} m)",
+            where=f"{source}: resolution",
+            do="crop the map to the robot's area",
         )
     shifted = translate(floor, -west_m, -south_m)
     try:

@@ -58,7 +58,7 @@ class NoiseSettings(Settings):
     def _bursts_go_forward(self) -> Self:
         ends = [end for burst in self.bursts_s for end in burst]
         if ends != sorted(ends):
-            raise ValueError("bursts_s must be pairs [begin, end], each after the one before")
+            raise ValueError("bursts_s must be ascending pairs [begin, end]")
         return self
 
 

@@ -5,16 +5,20 @@ import math
 from collections.abc import Iterable
 from typing import Self
 
+import pytest
+
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
 from hal.robot_settings import RobotSettings, load_robot
+from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.geometry import Point
 from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.sight import RayCaster
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.world import World
+from simbridge.world_loading import load_world
 from simbridge.world_settings import StartPoseSettings, WorldSettings
 
 CODEC: Codec = load_codec()
@@ -172,3 +176,10 @@ def left_clearances_m(world: WorldSettings, start: int) -> list[float]:
         for sensor in ROBOT.infrared.sensors
         if sensor.heading_deg == 90
     ]
+
+
+def refusal(source: str) -> str:
+    """Return the error of loading a world."""
+    with pytest.raises(SettingsError) as caught:
+        load_world(source, ROBOT)
+    return str(caught.value)

@@ -15,7 +15,6 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.map_server import world as map_world
 from simbridge.map_server.occupancy import drivable_cells
@@ -24,7 +23,7 @@ from simbridge.map_server.tracing import trace
 from simbridge.map_server.world import MOST_WALLS
 from simbridge.world_loading import load_world
 from simbridge.world_settings import WorldSettings
-from tests.simbridge.rig import ROBOT, Rig
+from tests.simbridge.rig import ROBOT, Rig, refusal
 
 CELL_M = 0.05
 FREE, UNKNOWN, OCCUPIED = 254, 205, 0
@@ -262,75 +261,72 @@ def test_trace_separates_cells_that_touch_at_a_corner() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "complaint"),
+    ("change", "key", "fragment"),
     [
-        ({"image": "none.pgm"}, r"flat\.yaml: image: .*none\.pgm"),
-        ({"resolution": 0.0}, r"flat\.yaml: resolution"),
-        ({"origin": [0.0, 0.0]}, r"flat\.yaml: origin"),
-        ({"free_thresh": 0.7}, r"flat\.yaml: .*free_thresh.*0\.65"),
-        ({"mode": "cubic"}, r"flat\.yaml: mode: .*'trinary', 'scale' or 'raw'"),
-        ({"resolutoin": 0.1}, r"flat\.yaml: resolutoin: no such key"),
-        ({"negate": 1}, r"flat\.yaml: image: no free space that the robot fits into, 0.67 m wide"),
-        ({"resolution": 0.001}, r"flat\.yaml: image: no free space that the robot fits into"),
-        ({"image": "."}, r"flat\.yaml: image: .* is a folder or device, not a file; give a PGM or PNG file"),
-        ({"image": "fifo.pgm"}, r"flat\.yaml: image: .*fifo\.pgm is a folder or device, not a file"),
-        ({"image": "junk.pgm"}, r"flat\.yaml: image: .*junk\.pgm cannot be read"),
-        ({"image": "cut.pgm"}, r"flat\.yaml: image: .*cut\.pgm cannot be read"),
-        ({"image": "huge.pgm"}, r"flat\.yaml: image: .*huge\.pgm has 10000 x 10000 cells"),
+        ({"image": "none.pgm"}, "image", "none.pgm"),
+        ({"resolution": 0.0}, "resolution", "0"),
+        ({"origin": [0.0, 0.0]}, "origin", ""),
+        ({"free_thresh": 0.7}, "", "0.65"),
+        ({"mode": "cubic"}, "mode", "'trinary', 'scale' or 'raw'"),
+        ({"resolutoin": 0.1}, "resolutoin", ""),
+        ({"negate": 1}, "image", "0.67 m"),
+        ({"resolution": 0.001}, "image", "0.67 m"),
+        ({"image": "."}, "image", ""),
+        ({"image": "fifo.pgm"}, "image", "fifo.pgm"),
+        ({"image": "junk.pgm"}, "image", "junk.pgm"),
+        ({"image": "cut.pgm"}, "image", "cut.pgm"),
+        ({"image": "huge.pgm"}, "image", "10000 x 10000"),
     ],
 )
-def test_map_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
+def test_map_wrong_file_names_file_and_key(change: dict[str, object], key: str, fragment: str, tmp_path: Path) -> None:
     write_map(tmp_path)
     (tmp_path / "junk.pgm").write_bytes(b"P5 this is not")
     (tmp_path / "cut.pgm").write_bytes(b"P5 100 80 255\n" + bytes(100))
     os.mkfifo(tmp_path / "fifo.pgm")
     (tmp_path / "huge.pgm").write_bytes(b"P5 10000 10000 255\n")
-    with pytest.raises(SettingsError, match=complaint):
-        load_world(write_yaml(tmp_path / "flat.yaml", {**PLAIN, **change}), ROBOT)
+    path = write_yaml(tmp_path / "flat.yaml", {**PLAIN, **change})
+    message = refusal(path)
+    assert message.startswith(f"{path}: {key}")
+    assert fragment in message
 
 
 def test_map_too_wide_is_refused(tmp_path: Path) -> None:
-    shades = np.full((300, 300), FREE, dtype=np.uint8)
-    with pytest.raises(
-        SettingsError, match=r"flat\.yaml: resolution: the free space is 240 m x 240 m, allowed are 200 m"
-    ):
-        load_world(write_map(tmp_path, shades, resolution=0.8), ROBOT)
-
-
-def test_map_of_specks_is_refused(tmp_path: Path) -> None:
-    dice = np.random.default_rng(1)
-    for side, share, complaint in (
-        (800, 0.3, "meet along"),
-        (400, 0.05, "areas and islands"),
-        (370, 0.01, "its walls have"),
-    ):
-        shades = np.where(dice.random((side, side)) < share, OCCUPIED, FREE).astype(np.uint8)
-        with pytest.raises(SettingsError, match=rf"flat\.yaml: image: .*{complaint}.* crop"):
-            load_world(write_map(tmp_path, shades), ROBOT)
+    path = write_map(tmp_path, np.full((300, 300), FREE, dtype=np.uint8), resolution=0.8)
+    message = refusal(path)
+    assert message.startswith(f"{path}: resolution: ")
+    assert "240 m x 240 m" in message
 
 
 @pytest.mark.parametrize(
-    ("change", "complaint"),
+    ("side", "occupied", "limit"), [(800, 0.3, 500_000), (400, 0.05, 5_000), (370, 0.01, MOST_WALLS)]
+)
+def test_map_of_specks_is_refused(side: int, occupied: float, limit: int, tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    path = write_map(tmp_path, np.where(rng.random((side, side)) < occupied, OCCUPIED, FREE).astype(np.uint8))
+    message = refusal(path)
+    assert message.startswith(f"{path}: image: ")
+    assert f"allowed {limit})" in message
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
     [
-        ({"map": "none.yaml"}, r"mine\.yaml: map: there is no .*none\.yaml"),
-        ({"start_poses": []}, r"mine\.yaml: start_poses"),
-        ({"start_poses": [START, START]}, r"mine\.yaml: .*start_poses.0 and start_poses.1 are alike"),
-        ({"map": "mine.yaml"}, r"mine\.yaml: map: no such key; allowed here: image, resolution"),
-        (
-            {"start_poses": [{"x_m": -7.8, "y_m": -5.9, "heading_deg": 0.0}]},
-            r"mine\.yaml: start_poses.0: the robot is 0.000 m from a wall",
-        ),
-        ({"size_m": [1, 1]}, r"mine\.yaml: size_m: no such key; allowed here: map, infrared_rays, start_poses"),
+        ({"map": "none.yaml"}, "map"),
+        ({"start_poses": []}, "start_poses"),
+        ({"start_poses": [START, START]}, ""),
+        ({"map": "mine.yaml"}, "map"),
+        ({"start_poses": [{"x_m": -7.8, "y_m": -5.9, "heading_deg": 0.0}]}, "start_poses.0"),
+        ({"size_m": [1, 1]}, "size_m"),
     ],
 )
-def test_world_on_map_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
+def test_world_on_map_wrong_file_names_file_and_key(change: dict[str, object], key: str, tmp_path: Path) -> None:
     write_map(tmp_path)
-    with pytest.raises(SettingsError, match=complaint):
-        load_world(world_on(tmp_path, **change), ROBOT)
+    path = world_on(tmp_path, **change)
+    assert refusal(path).startswith(f"{path}: {key}")
 
 
 def specks(side: int) -> Shades:
-    """Three cells of ten are occupied; the last column is a wall."""
+    """Return cells of which 30 % are occupied, with a wall in the last column."""
     shades = np.where(np.random.default_rng(1).random((side, side)) < 0.3, OCCUPIED, FREE).astype(np.uint8)
     shades[:, -1] = OCCUPIED
     return shades
@@ -342,15 +338,13 @@ def test_map_of_specks_limits_the_search(
 ) -> None:
     looked: list[shapely.Polygon] = []
     monkeypatch.setattr(map_world, "turning_places", lambda floor, _: looked.append(floor))
-    with pytest.raises(SettingsError, match=rf"flat\.yaml: image: its walls have .* allowed are {MOST_WALLS} at most"):
-        load_world(write_map(tmp_path, np.hstack([specks(side)] * rooms)), ROBOT)
+    assert f"allowed {MOST_WALLS})" in refusal(write_map(tmp_path, np.hstack([specks(side)] * rooms)))
     assert len(looked) == looked_at
 
 
 def test_world_on_map_of_specks_is_refused(tmp_path: Path) -> None:
     write_map(tmp_path, specks(130))
-    with pytest.raises(SettingsError, match=r"flat\.yaml: image: its walls have"):
-        load_world(world_on(tmp_path), ROBOT)
+    assert f"allowed {MOST_WALLS})" in refusal(world_on(tmp_path))
 
 
 def test_map_ragged_slit_is_skipped(tmp_path: Path) -> None:

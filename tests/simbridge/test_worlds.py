@@ -1,3 +1,5 @@
+"""Worlds: the shipped ones, and the checks of their files."""
+
 import math
 from itertools import pairwise
 from pathlib import Path
@@ -7,11 +9,10 @@ import shapely
 import yaml
 
 from config import CONFIG_DIR
-from hal.settings import SettingsError
 from simbridge.obstacle_settings import PolygonObstacleSettings
 from simbridge.world import World
 from simbridge.world_loading import load_world
-from tests.simbridge.rig import ROBOT, Rig, left_clearances_m, room
+from tests.simbridge.rig import ROBOT, Rig, left_clearances_m, refusal, room
 
 NAMES = ("a", "b", "c")
 PLAIN = {
@@ -25,8 +26,16 @@ BOW_TIE = [[0, 0], [3, 3], [3, 0], [0, 3], [0, 0]]
 BAY = [[1.5, 2.1], [2.2, 2.1], [2.2, 2.9], [1.5, 2.9], [1.5, 2.85], [2.0, 2.85], [2.0, 2.15], [1.5, 2.15]]
 STAR = [[0.5, 0.2], [0.68, 0.74], [0.2, 0.41], [0.8, 0.41], [0.32, 0.74]]
 AHEAD = {"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}
+TWO_STARTS = [AHEAD, {**AHEAD, "x_m": 0.4}]
 DIVIDER = {"name": "divider", "from_m": [0.8, 0.0], "to_m": [0.8, 3.0], "thickness_m": 0.02}
 BOARD = {"name": "board", "from_m": [1.5, 0.0], "to_m": [1.5, 1.5], "thickness_m": 0.05}
+
+
+def written(folder: Path, change: dict[str, object]) -> str:
+    """Return the path of a file of the plain world with some keys changed."""
+    path = folder / "plain.yaml"
+    path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
+    return str(path)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -45,71 +54,57 @@ def test_world_a_is_three_by_four_metres() -> None:
     assert 0.8 * 12 < shapely.Polygon(world.outline).area < 12
 
 
+def around(*corners: list[float]) -> dict[str, object]:
+    return {"outline": [[0, 0], [3, 0], *corners]}
+
+
+def with_box(name: str, *corners: list[float]) -> dict[str, object]:
+    return {"polygon_obstacles": [{"name": name, "corners": corners}]}
+
+
+def with_post(x_m: float, y_m: float, radius_m: float) -> dict[str, object]:
+    return {"round_obstacles": [{"name": "post", "x_m": x_m, "y_m": y_m, "radius_m": radius_m}]}
+
+
 @pytest.mark.parametrize(
-    ("change", "complaint"),
+    ("change", "fragments"),
     [
-        (
-            {"outline": [[0, 0], [3, 0], [3, 3], [0, 3]]},
-            r"outline: .*not closed: .*\(0.0, 3.0\) must repeat .*\(0.0, 0.0\)",
-        ),
-        ({"outline": BOW_TIE}, r"outline: .*intersects or touches itself: Self-intersection\[1.5 1.5\]"),
-        ({"outline": [[0, 0], [3, 0], [3, 0], [3, 3], [0, 3], [0, 0]]}, "outline: .*stands twice in a row"),
-        ({"outline": [[0, 0], [3, 0], [3, 3], [3, 1], [0, 3], [0, 0]]}, r"outline: .*touches itself: .*\[3 1\]"),
-        ({"size_m": [3.0, 4.0]}, "outline must span 0 to 4.0 in y"),
-        ({"walls": [BOARD, BOARD]}, "two walls or obstacles share the name board"),
-        ({"walls": [{**BOARD, "to_m": [1.5, 0.0]}]}, "walls.0: .*at least 0.01 m apart"),
-        ({"polygon_obstacles": [{"name": "star", "corners": STAR}]}, "polygon_obstacles.0.corners: .*no side crosses"),
-        (
-            {"polygon_obstacles": [{"name": "line", "corners": [[0.2, 0.2], [0.5, 0.2], [0.9, 0.2]]}]},
-            "polygon_obstacles.0.corners: .*must enclose one area",
-        ),
-        (
-            {"polygon_obstacles": [{"name": "ring", "corners": [[0.2, 0.2], [1, 0.2], [1, 1], [0.2, 0.2]]}]},
-            "polygon_obstacles.0.corners: .*each corner is named once",
-        ),
-        (
-            {"round_obstacles": [{"name": "tree", "x_m": 3.2, "y_m": 1.5, "radius_m": 0.2}]},
-            "tree stands outside the outline",
-        ),
-        ({"walls": [{**BOARD, "from_m": [-1, -0.1], "to_m": [4, -0.1]}]}, "board stands outside the outline"),
-        ({"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, AHEAD]}, "start_poses.0 and start_poses.2 are alike"),
+        (around([3, 3], [0, 3]), ("outline", "(0.0, 3.0)", "(0.0, 0.0)")),
+        ({"outline": BOW_TIE}, ("outline", "[1.5 1.5]")),
+        (around([3, 0], [3, 3], [0, 3], [0, 0]), ("outline", "(3.0, 0.0)")),
+        (around([3, 3], [3, 1], [0, 3], [0, 0]), ("outline", "[3 1]")),
+        ({"size_m": [3.0, 4.0]}, ("outline", "4.0 in y")),
+        ({"walls": [BOARD, BOARD]}, ("board",)),
+        ({"walls": [{**BOARD, "to_m": [1.5, 0.0]}]}, ("walls.0", "0.01 m")),
+        (with_box("star", *STAR), ("polygon_obstacles.0.corners",)),
+        (with_box("line", [0.2, 0.2], [0.5, 0.2], [0.9, 0.2]), ("polygon_obstacles.0.corners",)),
+        (with_box("ring", [0.2, 0.2], [1, 0.2], [1, 1], [0.2, 0.2]), ("polygon_obstacles.0.corners",)),
+        (with_post(3.2, 1.5, 0.2), ("post",)),
+        ({"walls": [{**BOARD, "from_m": [-1, -0.1], "to_m": [4, -0.1]}]}, ("board",)),
+        ({"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, AHEAD]}, ("start_poses.0", "start_poses.2")),
         (
             {"start_poses": [{**AHEAD, "heading_deg": 180}, {**AHEAD, "heading_deg": -179.5}]},
-            "start_poses.0 and start_poses.1 are alike",
+            ("start_poses.0", "start_poses.1"),
         ),
-        (
-            {"walls": [DIVIDER], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
-            "start_poses.1: no way that is 0.33 m wide leads there from start_poses.0",
-        ),
-        (
-            {"walls": [{**DIVIDER, "to_m": [0.8, 2.69]}], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
-            "start_poses.1: no way that is 0.33 m wide",
-        ),
-        (
-            {"streets": [{"from_m": [1.5, 1.5], "to_m": [1.5, 2.9], "width_m": 0.8}]},
-            "streets.0: the robot does not fit along its middle line",
-        ),
-        ({"start_poses": []}, "start_poses"),
-        ({"start_poses": [{"x_m": 0.25, "y_m": 1.5, "heading_deg": 0}]}, "start_poses.0: the robot is 0.033 m"),
-        ({"start_poses": [{"x_m": 5.0, "y_m": 1.5, "heading_deg": 0}]}, "start_poses.0: the robot is 0.000 m"),
-        ({"walls": [{**BOARD, "to_m": [1.5, 1.4]}]}, "start_poses.0: the robot is 0.000 m"),
-        (
-            {"round_obstacles": [{"name": "post", "x_m": 1.5, "y_m": 1.7, "radius_m": 0.01}]},
-            "start_poses.0: the robot is 0.025 m",
-        ),
-        (
-            {"polygon_obstacles": [{"name": "chip", "corners": [[1.6, 1.5], [1.62, 1.5], [1.61, 1.52]]}]},
-            "start_poses.0: the robot is 0.000 m",
-        ),
-        ({"infrared_rays": 2}, "infrared_rays"),
-        ({"wals": []}, "wals: no such key"),
+        ({"walls": [DIVIDER], "start_poses": TWO_STARTS}, ("start_poses.1", "0.33 m")),
+        ({"walls": [{**DIVIDER, "to_m": [0.8, 2.69]}], "start_poses": TWO_STARTS}, ("start_poses.1", "0.33 m")),
+        ({"streets": [{"from_m": [1.5, 1.5], "to_m": [1.5, 2.9], "width_m": 0.8}]}, ("streets.0",)),
+        ({"start_poses": []}, ("start_poses",)),
+        ({"start_poses": [{**AHEAD, "x_m": 0.25}]}, ("start_poses.0", "0.033 m")),
+        ({"start_poses": [{**AHEAD, "x_m": 5.0}]}, ("start_poses.0", "0.000 m")),
+        ({"walls": [{**BOARD, "to_m": [1.5, 1.4]}]}, ("start_poses.0", "0.000 m")),
+        (with_post(1.5, 1.7, 0.01), ("start_poses.0", "0.025 m")),
+        (with_box("chip", [1.6, 1.5], [1.62, 1.5], [1.61, 1.52]), ("start_poses.0", "0.000 m")),
+        ({"infrared_rays": 2}, ("infrared_rays",)),
+        ({"wals": []}, ("wals",)),
     ],
 )
-def test_load_world_wrong_file_names_file_and_key(change: dict[str, object], complaint: str, tmp_path: Path) -> None:
-    path = tmp_path / "wrong.yaml"
-    path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
-    with pytest.raises(SettingsError, match=rf"wrong\.yaml: .*{complaint}"):
-        load_world(str(path))
+def test_load_world_wrong_file_names_file_and_key(
+    change: dict[str, object], fragments: tuple[str, ...], tmp_path: Path
+) -> None:
+    message = refusal(written(tmp_path, change))
+    assert message.startswith(str(tmp_path))
+    assert [fragment for fragment in fragments if fragment not in message] == []
 
 
 @pytest.mark.parametrize(
@@ -117,15 +112,13 @@ def test_load_world_wrong_file_names_file_and_key(change: dict[str, object], com
     [
         {},
         {"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, {**AHEAD, "x_m": 1.52}]},
-        {"walls": [{**DIVIDER, "to_m": [0.8, 2.66]}], "start_poses": [AHEAD, {**AHEAD, "x_m": 0.4}]},
+        {"walls": [{**DIVIDER, "to_m": [0.8, 2.66]}], "start_poses": TWO_STARTS},
         {"walls": [{**BOARD, "from_m": [-0.2, 2.9], "to_m": [0.5, 3.2]}]},
         {"polygon_obstacles": [{"name": "bay", "corners": BAY}]},
     ],
 )
 def test_load_world_unusual_worlds_are_accepted(change: dict[str, object], tmp_path: Path) -> None:
-    path = tmp_path / "plain.yaml"
-    path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
-    assert load_world(str(path)).name == "plain"
+    assert load_world(written(tmp_path, change)).name == "plain"
 
 
 def test_concave_obstacle_lets_the_robot_in() -> None:
