@@ -1,13 +1,13 @@
 """What the machine tells of itself and of this program."""
 
-import os
 import threading
 import time
 from pathlib import Path
 
+import psutil
+
 from kurt2rt.health.report import Machine
 
-_PROC = Path("/proc")
 _POWER = Path("/sys/class/power_supply")
 
 
@@ -17,7 +17,7 @@ class MachineWatch:
     def __init__(self, power: Path = _POWER) -> None:
         """`power`: where the kernel tells of batteries."""
         self._power = power
-        self._page_bytes = os.sysconf("SC_PAGE_SIZE")
+        self._process = psutil.Process()
         self._looked_at_s = time.monotonic()
         self._used_s = time.process_time()
 
@@ -28,19 +28,13 @@ class MachineWatch:
         self._looked_at_s, self._used_s = now_s, used_s
         battery, discharging = battery_of(self._power)
         return Machine(
-            memory_bytes=self._memory_bytes(),
-            available_bytes=_available_bytes(),
+            memory_bytes=self._process.memory_info().rss,
+            available_bytes=psutil.virtual_memory().available,
             processor_share=share,
             threads=threading.active_count(),
             battery=battery,
             discharging=discharging,
         )
-
-    def _memory_bytes(self) -> int:
-        match _text(_PROC / "self" / "statm").split():
-            case [_, resident, *_]:
-                return int(resident) * self._page_bytes
-        return 0
 
 
 def battery_of(power: Path) -> tuple[float | None, bool]:
@@ -54,13 +48,6 @@ def battery_of(power: Path) -> tuple[float | None, bool]:
         if percent.isdecimal():
             found.append((int(percent) / 100, _text(supply / "status") == "Discharging"))
     return min(found) if found else (None, False)
-
-
-def _available_bytes() -> int | None:
-    for line in _text(_PROC / "meminfo").splitlines():
-        if line.startswith("MemAvailable:"):
-            return int(line.split()[1]) * 1024
-    return None
 
 
 def _text(path: Path) -> str:

@@ -2,14 +2,12 @@
 
 import ctypes
 import gc
-import os
 import sys
 import threading
 from collections import Counter
-from pathlib import Path
 
-_STATM = Path("/proc/self/statm")
-_FD = Path("/proc/self/fd")
+import psutil
+
 _MB = 1e6
 _USUAL_OBJECT_BYTES = 95
 """Mean of what Python's own allocator held in soaks."""
@@ -32,8 +30,7 @@ def resident_mb() -> float:
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)
-    pages = int(_STATM.read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / _MB
+    return float(psutil.Process().memory_info().rss) / _MB
 
 
 def used_mb() -> float:
@@ -49,7 +46,7 @@ def used_mb() -> float:
 
 def open_files() -> int:
     """File descriptors."""
-    return sum(1 for _ in _FD.iterdir())
+    return int(psutil.Process().num_fds())
 
 
 def threads() -> int:
