@@ -15,6 +15,5 @@ class Wanted:
     def pursue(self, name: str) -> None:
         """Follow another behaviour from now on. Raises CommandRefusedError that lists them."""
         if name not in self.behaviours:
-            known = tuple(filter(None, self.behaviours))
-            raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=known)
+            raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=self.behaviours)
         self.behaviour = name

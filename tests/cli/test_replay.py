@@ -7,7 +7,9 @@ import pytest
 
 from kurt2rt.knowledge.entry import JournalEntry
 from kurt2rt.knowledge.opening import open_knowledge
+from kurt2rt.outcome import Outcome, ResultCode
 from kurt2rt.replay.reading import read_run
+from kurt2rt.teaching.taught import Taught
 from tests.cli.helpers import CommandLine
 from tests.replay.stored_runs import STORED
 from tests.replay.stories import slim
@@ -88,5 +90,5 @@ def test_no_run_and_no_knowledge_are_refused_in_a_line(kurt2rt: CommandLine, tmp
     assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--with", tmp_path / "nothing.knowledge")
 
 
-def _teaches_nothing(*_: object) -> tuple[str, None]:
-    return "nothing", None
+def _teaches_nothing(*_: object) -> Taught:
+    return Taught(Outcome(ResultCode.REPEATED))

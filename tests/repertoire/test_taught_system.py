@@ -131,7 +131,10 @@ def test_a_repertoire_that_is_a_part_of_itself_is_refused(folder: Path) -> None:
         (("taught.knowledge", "repertoire.yaml"), r"repertoire\.yaml: .*no knowledge file|damaged"),
         (("task: wall_following", "task: fleeing"), r"taught for the task 'wall_following', not for 'fleeing'"),
         (("task: wall_following", "task: flying"), r"flying: no such file in tasks; give a path .* or one of: "),
-        (("name: follow_wall", "name: f, behaviour: turn"), "no taught behaviour 'turn'; this task has: nothing"),
+        (
+            ("name: follow_wall", "name: f, behaviour: turn"),
+            "no taught behaviour 'turn'; this task has: one, without a name",
+        ),
         (("task: wall_following", "task: streets"), "no taught behaviour ''; this task has: straight_on, turn_left, "),
     ],
 )
